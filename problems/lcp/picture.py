@@ -13,6 +13,7 @@ from continuation.plot.drawing import COLOURS, TURN, Axes, require_matplotlib, t
 Solution = Any
 """What `problems.lcp.solve` returns."""
 
+
 def draw_solution(solution: Solution) -> Any:
     """What was done in words, the path that led to x where one did, and beside it the face and the residual."""
     require_matplotlib()

@@ -222,7 +222,7 @@ def solver(w: World) -> Iterator[Call]:
         yield Call(function, right, kinds)
     yield Call(
         lcp.random_start, {**right, "generator": np.random.default_rng(0)},
-        {**kinds, "generator": "generator", "distance": "interval"},
+        {**kinds, "generator": "generator"},
     )  # fmt: skip
     yield Call(lcp.classify, {"A": np.eye(2)}, {"A": "exact matrix"})
     ends = {"x0": "positive start", "y0": "positive start"}

@@ -74,22 +74,37 @@ def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constra
 @matrix_class
 def is_semimonotone(matrix: ExactMatrix) -> Membership:
     """E0: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i >= 0."""
-    words = ("(Ax)_i < 0 wherever x_i > 0", "no x has (Ax)_i < 0 wherever x_i > 0")
-    return _by_supports(matrix, "E0", _all_at_most(-1), words, CPS + ", section 3.9")
+    return _by_supports(
+        matrix,
+        "E0",
+        _all_at_most(-1),
+        ("(Ax)_i < 0 wherever x_i > 0", "no x has (Ax)_i < 0 wherever x_i > 0"),
+        CPS + ", section 3.9",
+    )
 
 
 @matrix_class
 def is_strictly_semimonotone(matrix: ExactMatrix) -> Membership:
     """E: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i > 0."""
-    words = ("(Ax)_i <= 0 wherever x_i > 0", "no x has (Ax)_i <= 0 wherever x_i > 0")
-    return _by_supports(matrix, "E", _all_at_most(0), words, CPS + ", section 3.9")
+    return _by_supports(
+        matrix,
+        "E",
+        _all_at_most(0),
+        ("(Ax)_i <= 0 wherever x_i > 0", "no x has (Ax)_i <= 0 wherever x_i > 0"),
+        CPS + ", section 3.9",
+    )
 
 
 @matrix_class
 def is_r0(matrix: ExactMatrix) -> Membership:
     """R0: LCP(0, A) has no solution but zero."""
-    words = ("Ax >= 0 and x'Ax = 0: it solves LCP(0, A)", "LCP(0, A) has no nonzero solution")
-    return _by_supports(matrix, "R0", _homogeneous_solution, words, CPS + ", section 3.8")
+    return _by_supports(
+        matrix,
+        "R0",
+        _homogeneous_solution,
+        ("Ax >= 0 and x'Ax = 0: it solves LCP(0, A)", "LCP(0, A) has no nonzero solution"),
+        CPS + ", section 3.8",
+    )
 
 
 @matrix_class

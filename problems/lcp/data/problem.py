@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import math
-import struct
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -273,11 +272,8 @@ def _stated(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> State:
 
 
 @lru_cache(maxsize=64)
-def _all(value: bytes, n: int) -> Array:
-    return np.ndarray(n, buffer=value, strides=(0,))
-
-
-_ZERO, _INFINITY = struct.pack("d", 0.0), struct.pack("d", math.inf)
+def _all(value: float, n: int) -> Array:
+    return np.broadcast_to(value, n)
 
 
 @frozen(eq=False)
@@ -302,8 +298,8 @@ class LCP(MixedLCP):
     """
 
     # Views of one number each: an LCP carries no bounds.
-    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_ZERO, self.n), takes_self=True))
-    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_INFINITY, self.n), takes_self=True))
+    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(0.0, self.n), takes_self=True))
+    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.n), takes_self=True))
 
     def __attrs_post_init__(self) -> None:
         """Nothing to check."""

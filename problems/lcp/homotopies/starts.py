@@ -23,7 +23,7 @@ from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
 START_DISTANCES = (1.0, 2.5)
-"""Ten to a power from this interval is the distance of a random start in natural units.
+"""Ten to a power from this interval is the distance of a random start in natural units, or `typical_units`.
 
 Measured on random nonmonotone problems (docs/lcp_benchmark.md): paths from so far out solve several times as often as
 those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100) 17 solve from 1 to 1.5 or further, 11
@@ -183,9 +183,7 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
     return centred(problem, x0, np.where(boxed, _product(gaps, w0) / gaps, w0))
 
 
-def random_start(
-    problem: MixedLCP, generator: np.random.Generator, distance: tuple[float, float] = START_DISTANCES
-) -> Start:
+def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """A relaxed start for another try: scale, balance and components random; all products x0 z1 equal, and all w0 z2.
 
     Parameters
@@ -193,16 +191,11 @@ def random_start(
     problem : MixedLCP
     generator : numpy.random.Generator
         Its state decides, so that restarts can be repeated.
-    distance : tuple of float
-        The scale is ten to a power from this interval, in natural units, without bounds in `typical_units`.
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
-    ends = finite_vector("distance", distance, 2)
-    if not ends[0] < ends[1]:
-        raise ValueError(f"distance: expected (least, most), found {distance}")
     x, w = typical_units(problem) if problem.standard else natural_units(problem)
-    scale = 10.0 ** generator.uniform(*distance)
+    scale = 10.0 ** generator.uniform(*START_DISTANCES)
     if not problem.standard:
         return _random_inside(problem, generator, scale * x, scale * w)
     balance = 10.0 ** generator.normal(*BALANCE)

@@ -17,25 +17,20 @@ from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
-from continuation.step.tracer import Tracer
 from problems.lcp.data.problem import MixedLCP, require_problem
 from problems.lcp.data.scaling import Exponents, balanced
+from problems.lcp.data.spread import alike
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.natural import NaturalMap
 from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
+from problems.lcp.parametric.walk import OUTSIDE_LIMITS
+from problems.lcp.search.padded import show
 from problems.lcp.search.solver import solve
 from problems.options import check_budget, finite_vector
 
 CORNERS = 100_000
 """Where no budget is given: Murty's example of order 16 has 65,535."""
-
-PATH_UNIT_SPREAD = 1e3
-"""Rows and columns whose largest entries differ by less than this need no other units, which take a tenth of the time
-of a path to find (p = 500)."""
-
-OFF = 1e-9
-"""What a start that is given may be off by, relative to q, A and x."""
 
 
 def along(
@@ -132,16 +127,14 @@ def along(
     counts = Counts(accepted=len(steps))
     path = Path(steps, events, status, message, counts, time.perf_counter() - began, references=_CITED)
     if archive is not None:
-        _archived(path, natural, archive)
+        with PathLog(as_file("archive", archive)) as log:
+            show(path, natural, log)
     return path
 
 
 def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Exponents, Exponents]:
     """The problem in units in which its rows and columns are comparable, and the exponents of two that lead there."""
-    size = np.abs(problem.A)
-    largest = np.concatenate([size.max(axis=0, initial=0.0), size.max(axis=1, initial=0.0)])
-    alike = largest.max(initial=0.0) <= PATH_UNIT_SPREAD * largest.min(initial=np.inf)
-    scaled = None if alike else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
+    scaled = None if alike(problem) else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
     if scaled is None or not scaled.exact:
         none = np.zeros(problem.n, dtype=np.int64)
         return problem, none, none
@@ -194,21 +187,7 @@ def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> A
         return found.x
     given = finite_vector("x", x, problem.n)
     off = np.abs(NaturalMap(problem, d, levels, given).residual(given, t))
-    if (off > OFF * at.scale(given)).any():
+    if (off > OUTSIDE_LIMITS * at.scale(given)).any():
         i = int(np.argmax(off))
         raise ValueError(f"x: expected a solution for t = {t:g}, found one that is off by {off[i]:.1e} at index {i}")
     return given
-
-
-def _archived(path: Path, homotopy: NaturalMap, archive: str | PathLike[str]) -> None:
-    tracer = Tracer(homotopy)
-    with PathLog(as_file("archive", archive)) as log:
-        # The log takes a step's kink from the last events of a path that grows.
-        tracer.path, tracer.counts = Path(), path.counts
-        kinks = {event.step: event for event in path.events}
-        for step in path.steps:
-            tracer.path.steps.append(step)
-            tracer.path.events += [kinks[step.index]] if step.index in kinks else []
-            log.step(tracer, step)
-        tracer.path = path
-        log.end(tracer)

@@ -1,9 +1,14 @@
-"""A piecewise linear path proved: its corners in rational numbers, each stretch on one piece, exactly."""
+"""A piecewise linear path proved: its corners in rational numbers, each stretch on one piece, exactly.
+
+On a piece every pair has one equation in (x, t): x_i, or w_i, is what is fixed there. A corner solves the equations of
+both of its pieces; where it is within the limits of both, so is all between two corners, by convexity.
+"""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from math import lcm
 from typing import Any
 
 import numpy as np
@@ -16,7 +21,7 @@ from continuation.path.path import require_path
 from problems.lcp.data.problem import MixedLCP, State, require_problem
 from problems.lcp.parametric.along import levels_of
 from problems.lcp.parametric.stairs import Stairs
-from problems.lcp.proof.rational import fractions, full_row_rank, integers, solve_exactly
+from problems.lcp.proof.rational import Integers, fractions, full_row_rank, integers, solve_exactly
 from problems.options import finite_vector
 
 SAME_CORNER = 1e-6
@@ -86,15 +91,15 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
         problem = evolve(problem, A=problem.A.toarray())
     if len(path) < 2 or path.endpoint.u.size != problem.n + 1:
         raise ValueError(f"path: expected two points of {problem.n} unknowns at least, found {path!r}")
-    exact = _Exactly(problem, slope, Stairs.of(problem, levels))
+    exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
     u = path.u
-    states = [exact.stretch(problem, a, b) for a, b in pairwise(u)]
+    # What is at a bound is there exactly, at both ends.
+    states = [exact.stairs.states(problem, 0.5 * a[:-1] + 0.5 * b[:-1]) for a, b in pairwise(u)]
     tied = {event.step: event.switches for event in path.kinks}
-    held = [_mostly(u[1] - u[0]), _mostly(u[-1] - u[-2])]
-    points = [exact.point(states[0], states[0], u[0], (), held[0])]
+    points = [exact.point(states[0], states[0], u[0], held=_mostly(u[1] - u[0]))]
     for k, (before, after) in enumerate(pairwise(states), 1):
-        points.append(exact.point(before, after, u[k], tied.get(k, ()), None))
-    points.append(exact.point(states[-1], states[-1], u[-1], (), held[1]))
+        points.append(exact.point(before, after, u[k], tied.get(k, ())))
+    points.append(exact.point(states[-1], states[-1], u[-1], held=_mostly(u[-1] - u[-2])))
     _as_listed(path, points, states)
     single = True
     for k, state in enumerate(states):
@@ -124,82 +129,61 @@ def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
             )
 
 
+@frozen(eq=False)
 class _Exactly:
-    """The data as integers over powers of two."""
+    """The data as integers over 2^shift: `table` the rows of [A, d, q], `values` those of the stairs, 0 for infinity.
 
-    def __init__(self, problem: MixedLCP, d: Array, stairs: Stairs) -> None:
-        self.n = problem.n
-        self.stairs = stairs
-        whole, self.shift = integers(np.column_stack([problem.A, d, problem.q]).ravel())
-        self.floats, self.q = np.column_stack([problem.A, d]), problem.q
-        self.table: NDArray[Any] = np.array(whole, dtype=object).reshape(self.n, self.n + 2)
+    `floats` of shape (n, n + 2): [A, d, q].
+    """
 
-    def stretch(self, problem: MixedLCP, a: Array, b: Array) -> State:
-        """The piece of a stretch, by what is off its bounds in the middle."""
-        # What is at a bound is there exactly, at both ends.
-        return self.stairs.states(problem, 0.5 * a[:-1] + 0.5 * b[:-1])
+    stairs: Stairs
+    floats: Array
+    table: Integers
+    values: Integers
+    shift: int
 
-    def _fixed(self, state: State) -> Array:
-        return self.stairs.fixed[state + 1, np.arange(self.n)]
+    @classmethod
+    def of(cls, problem: MixedLCP, d: Array, stairs: Stairs) -> _Exactly:
+        """Of the floats of a dense problem, as they are."""
+        floats, n = np.column_stack([problem.A, d, problem.q]), problem.n
+        values = np.where(np.isfinite(stairs.values), stairs.values, 0.0)
+        whole, shift = integers(np.append(floats.ravel(), values.ravel()))
+        table, rest = np.split(np.array(whole, dtype=object), [floats.size])
+        return cls(stairs, floats, table.reshape(floats.shape), rest.reshape(6, 3, n), shift)
 
-    def _slopes(self, state: State) -> Array:
-        return self.stairs.fixed_slope[state + 1, np.arange(self.n)]
+    def equations(self, pairs: NDArray[np.intp], pieces: NDArray[np.intp]) -> Integers:
+        """What is fixed of each pair on a piece (0, 1, 2): rows [a, b] with a (x, t) + b = 0, shape (m, n + 2)."""
+        rows: Integers = np.zeros((pairs.size, self.table.shape[1]), dtype=object)
+        by_w = self.stairs.moves_x[pieces, pairs]
+        rows[by_w] = self.table[pairs[by_w]]
+        rows[np.flatnonzero(~by_w), pairs[~by_w]] = 1 << self.shift
+        rows[:, -2:] -= self.values[1::-1, pieces, pairs].T
+        return rows
 
-    def _corner(self, near: Array) -> NDArray[np.intp]:
-        """Which corner of each pair is the nearer one."""
-        x, t = near[:-1], near[-1]
-        w = self.floats @ near + self.q
-        off = np.abs(np.where(self.stairs.levels, w - t * self.stairs.corner_slope, x - self.stairs.corner_x))
-        found: NDArray[np.intp] = off.argmin(axis=0)
-        return found
-
-    def _rows(
-        self, rows: NDArray[np.intp], columns: list[int], values: list[Fraction], slopes: Array
-    ) -> tuple[NDArray[Any], list[Fraction]]:
-        """The equations of rows in the columns and t, with the values of all others on the right."""
-        left = self.table[np.ix_(rows, np.array([*columns, self.n]))].copy()
-        others = [j for j in range(self.n) if values[j] and j not in set(columns)]
-        right = []
-        for place, i in enumerate(rows):
-            share = _fraction(slopes[i]) * (1 << self.shift)
-            if share.denominator != 1:
-                self.table, self.shift = self.table * share.denominator, self.shift + share.denominator.bit_length() - 1
-                return self._rows(rows, columns, values, slopes)
-            left[place, -1] -= int(share)
-            known = sum((int(self.table[i, j]) * values[j] for j in others), Fraction(0))
-            right.append(-known - int(self.table[i, self.n + 1]))
-        return left, right
-
-    def point(self, before: State, after: State, near: Array, tied: tuple[int, ...], held: int | None) -> Exactly:
+    def point(
+        self, before: State, after: State, near: Array, tied: tuple[int, ...] = (), held: int | None = None
+    ) -> Exactly:
         """The corner between two pieces, of these pairs at least; or the point of a piece with one number held."""
-        every = np.arange(self.n)
-        moves = [self.stairs.moves_x[state + 1, every] for state in (before, after)]
-        there = moves[0] != moves[1]
+        there = before != after
         there[list(tied)] = True
-        moving = moves[0] & moves[1] & ~there
-        columns, rows = np.flatnonzero(moving).tolist(), np.flatnonzero(moving | there)
-        corner = self._corner(near)
-        values = [_fraction(v) for v in np.where(there, self.stairs.corner_x[corner, every], self._fixed(before))]
-        slopes = np.where(there, self.stairs.corner_slope[corner, every], self._slopes(before))
-        left, right = self._rows(rows, columns, values, slopes)
-        columns.append(self.n)
-        guess, whole = near[columns], [*values, Fraction(0)]
+        # At the nearer corner of a pair two of its pieces meet.
+        x, w = near[:-1], self.floats @ np.append(near, 1.0)
+        corners = np.where(self.stairs.levels, w - near[-1] * self.stairs.corner_slope, x - self.stairs.corner_x)
+        corner, at, rest = np.abs(corners).argmin(axis=0), np.flatnonzero(there), np.flatnonzero(~there)
+        pieces = np.concatenate([before[rest].astype(np.intp) + 1, corner[at], corner[at] + 1])
+        rows = self.equations(np.concatenate([rest, at, at]), pieces)
         if held is not None:
-            place, known = columns.index(held), _fraction(near[held])
-            right = [b - int(a) * known for a, b in zip(left[:, place], right)]
-            left, guess = np.delete(left, place, axis=1), np.delete(guess, place)
-            columns.remove(held)
-            whole[held] = known
-        common = max((value.denominator for value in right), default=1)
-        solved = solve_exactly(left * common, [int(value * common) for value in right], guess)
+            number, one = Fraction(float(near[held])), np.zeros((1, rows.shape[1]), dtype=object)
+            one[0, held], one[0, -1] = number.denominator, -number.numerator
+            rows = np.concatenate([rows, one])
+        solved = solve_exactly(rows[:, :-1], (-rows[:, -1]).tolist(), near)
         if solved is None:
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, where its pieces do not meet")
-        for j, value in zip(columns, fractions(*solved)):
-            whole[j] = value
+        whole = fractions(*solved)
         off = max(abs(float(a) - b) for a, b in zip(whole, near.tolist()))
         if off > SAME_CORNER * (1.0 + float(np.abs(near).max())):
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, found the nearest one {off:.1e} away")
-        return tuple(whole)
+        return whole
 
     def at_corners(self, state: State, point: Exactly, stretch: int) -> int:
         """How many pairs are at a corner of their graphs in a point of a piece.
@@ -209,46 +193,26 @@ class _Exactly:
         UnprovenError
             If the point is not on the piece.
         """
-        *x, t = point
-        unit = Fraction(1, 1 << self.shift)
-        count = 0
-        for i in range(self.n):
-            row, s = self.table[i], int(state[i]) + 1
-            w = unit * (
-                sum((int(row[j]) * x[j] for j in range(self.n) if x[j]), Fraction(0))
-                + int(row[self.n]) * t
-                + int(row[self.n + 1])
-            )
-            moved, other = (x[i], w) if self.stairs.moves_x[s, i] else (w, x[i])
-            ends = [
-                _limit(table[s, i], slopes[s, i], t)
-                for table, slopes in (
-                    (self.stairs.least, self.stairs.least_slope), (self.stairs.most, self.stairs.most_slope)
-                )
-            ]  # fmt: skip
-            if other != _fraction(self.stairs.fixed[s, i]) + _fraction(self.stairs.fixed_slope[s, i]) * t:
-                raise UnprovenError(f"path: pair {i} is off its piece on stretch {stretch}")
-            if (ends[0] is not None and moved < ends[0]) or (ends[1] is not None and moved > ends[1]):
-                raise UnprovenError(f"path: pair {i} is beyond its limits on stretch {stretch}, if by rounding only")
-            count += moved in ends
-        return count
+        unit, piece = lcm(*(value.denominator for value in point)), (state.astype(np.intp) + 1, np.arange(state.size))
+        whole: Integers = np.array([int(value * unit) for value in point] + [unit], dtype=object)
+        x, w, moves_x = whole[:-2] * (1 << self.shift), self.table @ whole, self.stairs.moves_x[piece]
+        moved, other = np.where(moves_x, x, w), np.where(moves_x, w, x)
+        fixed, least, most = (self.values[k][piece] * unit + self.values[m][piece] * whole[-2]
+                              for k, m in ((0, 1), (2, 4), (3, 5)))  # fmt: skip
+        low, high = np.isfinite(self.stairs.values[2:4])[:, *piece]
+        if (other != fixed).any():
+            raise UnprovenError(f"path: pair {int(np.argmax(other != fixed))} is off its piece on stretch {stretch}")
+        beyond = (low & (moved < least)) | (high & (moved > most))
+        if beyond.any():
+            i = int(np.argmax(beyond))
+            raise UnprovenError(f"path: pair {i} is beyond its limits on stretch {stretch}, if by rounding only")
+        return int(((low & (moved == least)) | (high & (moved == most))).sum())
 
     def is_line(self, state: State) -> bool:
         """Whether the equations of a piece are independent, so that all of it is one line."""
-        moving = np.flatnonzero(self.stairs.moves_x[state + 1, np.arange(self.n)])
-        values = [_fraction(v) for v in self._fixed(state)]
-        left, _ = self._rows(moving, moving.tolist(), values, self._slopes(state))
-        return full_row_rank(left)
+        return full_row_rank(self.equations(np.arange(state.size), state.astype(np.intp) + 1)[:, :-1])
 
 
 def _mostly(change: Array) -> int:
     """Which number to hold at an end: t, unless that stands still."""
     return change.size - 1 if change[-1] != 0.0 else int(np.abs(change).argmax())
-
-
-def _fraction(value: float) -> Fraction:
-    return Fraction(float(value))
-
-
-def _limit(value: float, slope: float, t: Fraction) -> Fraction | None:
-    return _fraction(value) + _fraction(slope) * t if np.isfinite(value) else None

@@ -69,7 +69,7 @@ class NaturalMap:
         side = np.zeros(stairs.corner_x.shape)
         side[np.isfinite(stairs.corner_x)] = signs
         row = 1 + (side[1] > 0.0) - (side[0] < 0.0)
-        return Piece(self, ~stairs.moves_x[row, every], stairs.fixed[row, every], -stairs.fixed_slope[row, every])
+        return Piece(self, ~stairs.moves_x[row, every], stairs.values[0, row, every], -stairs.values[1, row, every])
 
     @property
     def stairs(self) -> Stairs:

@@ -13,8 +13,13 @@ from continuation.arguments.checks import check_flag
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.active_set.iteration import Policy
+from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.parametric.along import along
+from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.verdict import confirmed
 from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
@@ -124,7 +129,7 @@ def solutions(
     check_flag("enumerate_faces", enumerate_faces)
     if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_TRIED):
         return _on_faces(problem, tolerance)
-    search = _Search(problem, tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
+    search = _Search(Structure(problem), tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
     for k, given in enumerate(known):
         if not search.take(finite_vector(f"known[{k}]", given, problem.n)):
             raise ValueError(f"known[{k}]: expected a solution that no other one in the list is, found another point")
@@ -155,7 +160,7 @@ def _on_faces(problem: LCP, tolerance: float) -> Solutions:
 class _Search:
     """What was found, and where the next path begins."""
 
-    problem: MixedLCP
+    structure: Structure
     tolerance: float
     random: np.random.Generator
     budget: Budget
@@ -163,19 +168,24 @@ class _Search:
     paths: int = 0
     counts: Counts = field(factory=Counts)
 
+    @property
+    def problem(self) -> MixedLCP:
+        """The problem."""
+        return self.structure.problem
+
     def take(self, x: Array) -> bool:
         """Take a point into the list, if it is a solution, and new."""
         if self._known(x):
             return False
-        polished = _polished(self.problem, x)
-        for point in (x,) if polished is None else (polished, x):
-            certificate = certify(self.problem, point)
-            if confirmed(self.problem, certificate, self.tolerance):
-                if self._known(point):
-                    return False
-                self.found.append(certificate)
-                return True
-        return False
+        # The solution of the equations of its piece is better than a point between two corners.
+        finish = Finish(Faces(self.structure), self.tolerance)
+        piece = Stairs.of(self.problem, np.zeros(x.size)).states(self.problem, x)
+        solved = finish.settle(piece, Policy(steps=0), x)
+        solved = finish.take(x) if solved is None else solved
+        if solved is None or finish.certificate is None or self._known(solved):
+            return False
+        self.found.append(finish.certificate)
+        return True
 
     def _known(self, x: Array) -> bool:
         size = SAME_SOLUTION * float(np.abs(x).max(initial=0.0))
@@ -200,17 +210,3 @@ class _Search:
                 new += sum(self.take(u[:n]) for u in path.crossings(0.0)[1:])
             in_vain = 0 if new else in_vain + 1
         return f"The last {in_vain} directions found nothing new."
-
-
-def _polished(problem: MixedLCP, x: Array) -> Array | None:
-    """The solution of the equations of x's piece: better than a point between two corners."""
-    inside = np.flatnonzero((x > problem.lower) & (x < problem.upper))
-    A = problem.A.toarray() if problem.sparse else problem.A
-    moved = x.copy()
-    block = A[np.ix_(inside, inside)]
-    try:
-        for _ in range(2):
-            moved[inside] -= np.linalg.solve(block, problem.w(moved)[inside])
-    except np.linalg.LinAlgError:
-        return None
-    return moved if np.isfinite(moved).all() else None

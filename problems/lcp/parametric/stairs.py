@@ -6,7 +6,7 @@ w_i = -t, t on the outer ones. On each piece one of the two is fixed, and the ot
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from attrs import frozen
@@ -22,19 +22,14 @@ Mask = NDArray[np.bool_]
 class Stairs:
     """What is fixed and what may move, by state (row state + 1) and index: all of shape (3, n).
 
-    `moves_x`: Whether x_i moves, and w_i is fixed; else the other way round. `fixed`, `fixed_slope`: The value of what
-    is fixed is ``fixed + t fixed_slope``. `least`, `least_slope`, `most`, `most_slope`: The limits of what moves,
-    likewise. `levels`, of shape (n,): Where an outer piece fixes w_i. `corner_x`, `corner_slope`, of shape (2, n): The
-    corners, infinite where there is none: w_i is ``t corner_slope`` there.
+    `moves_x`: Whether x_i moves, and w_i is fixed; else the other way round. `values`, of shape (6, 3, n): The value of
+    what is fixed is ``values[0] + t values[1]``; the limits of what moves are ``values[2] + t values[4]`` and
+    ``values[3] + t values[5]``. `levels`, of shape (n,): Where an outer piece fixes w_i. `corner_x`, `corner_slope`, of
+    shape (2, n): The corners, infinite where there is none: w_i is ``t corner_slope`` there.
     """
 
     moves_x: Mask
-    fixed: Array
-    fixed_slope: Array
-    least: Array
-    least_slope: Array
-    most: Array
-    most_slope: Array
+    values: Array
     levels: Mask
     corner_x: Array
     corner_slope: Array
@@ -58,18 +53,15 @@ class Stairs:
         bottom[0, problem.fixed] = -np.inf
         # Outer pieces at bounds that are infinite are never entered: no limit leads to them.
         outer_x = np.array([corner_x[0], zero, corner_x[1]])
-        return cls(
-            moves_x,
-            np.where(moves_x, 0.0, np.where(np.isfinite(outer_x), outer_x, 0.0)),
-            np.where(moves_x, np.array([slope[0], zero, slope[1]]), 0.0),
-            np.where(moves_x, left, bottom),
-            np.where(moves_x, 0.0, np.array([slope[0], slope[1], zero])),
-            np.where(moves_x, right, top),
-            np.where(moves_x, 0.0, np.array([zero, slope[0], slope[1]])),
-            levels,
-            corner_x,
-            slope,
-        )
+        values: list[tuple[Any, Any]] = [
+            (0.0, np.where(np.isfinite(outer_x), outer_x, 0.0)),
+            (np.array([slope[0], zero, slope[1]]), 0.0),
+            (left, bottom),
+            (right, top),
+            (0.0, np.array([slope[0], slope[1], zero])),
+            (0.0, np.array([zero, slope[0], slope[1]])),
+        ]
+        return cls(moves_x, np.array([np.where(moves_x, *pair) for pair in values]), levels, corner_x, slope)
 
     def states(self, problem: MixedLCP, x: Array) -> State:
         """On which piece each pair of a solution is, with x moving only where it is off its bounds, or off zero.

@@ -10,30 +10,11 @@ from scipy.linalg import qr
 from continuation.arrays import Array
 from continuation.kinks.pivots import ZERO_COMPONENT
 from problems.lcp.data.problem import MixedLCP, State
-from problems.lcp.parametric.basis import Basis, SingularBasisError
+from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.parametric.ties import aim, small
 from problems.lcp.parametric.walk import FLAT, Walk
-
-
-def walk_at(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
-    """The walk from given pieces: where t is, and which way it goes; along another variable where t cannot move.
-
-    `problem`: Dense. `d`, `level` of shape (n,). Raises `SingularBasisError` if the equations of these pieces are
-    dependent, t's column included.
-    """
-    walk = _walk(problem, d, level, state, t, sign)
-    walk.rebase(problem.n)
-    return walk
-
-
-def _walk(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
-    """The same without a basis."""
-    matrix = np.asfortranarray(problem.A)
-    sizes = np.maximum(np.abs(matrix).max(axis=1, initial=0.0), np.abs(d))
-    stairs, basis = Stairs.of(problem, level), Basis(matrix, d.copy())
-    return Walk(problem, d, stairs, state.copy(), basis, problem.n, t, sign, matrix, sizes)
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
@@ -45,7 +26,7 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     state: State = np.where(
         level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
     ).astype(np.int8)
-    walk = walk_at(problem, d, level, state, 0.0, -sign)
+    walk = Walk(problem, d, Stairs.of(problem, level), state, problem.n, 0.0, -sign)
     walk.locate()
     gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
     # As t grows out of sight no gap may shrink.
@@ -71,13 +52,11 @@ def from_solution(
     leaves that way. Raises `SingularBasisError` if the ray is not the only one on its piece.
     """
     stairs = Stairs.of(problem, level)
-    state = stairs.states(problem, x)
-    n = problem.n
+    walk = Walk(problem, d, stairs, stairs.states(problem, x), problem.n, t, sign)
     try:
-        walk = walk_at(problem, d, level, state, t, sign)
+        walk.locate()
     except SingularBasisError:
-        return _standing(_walk(problem, d, level, state, t, sign), x, t, ray, sign)
-    walk.locate()
+        return _standing(walk, x, t, ray, sign)
     walk.find_tied()
     if walk.tied.size:
         S, r, along = small(walk)
@@ -96,10 +75,9 @@ def from_solution(
             switched, chosen = found[best].grown > 0.0, directions[best]
         walk.switch_tied(switched)
         aim(walk, chosen)
-        return walk
-    if ray is not None and walk.u[1] @ ray < 0.0:
+        walk.locate()
+    elif ray is not None and walk.u[1] @ ray < 0.0:
         walk.sign = -walk.sign
-    assert n == walk.driver
     return walk
 
 
@@ -114,8 +92,7 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
     """Where A is singular on the moving x: the path goes along the kernel of [A, d] there."""
     moving = np.flatnonzero(walk.moves_x)
-    shares = walk.d[moving] - walk.stairs.fixed_slope[walk.state[moving] + 1, moving]
-    block = np.column_stack([walk.matrix[np.ix_(moving, moving)], shares])
+    block = np.column_stack([walk.problem.A[np.ix_(moving, moving)], walk.shares[moving]])
     q, r, _ = qr(block.T, pivoting=True)
     diagonal = np.abs(np.diag(r))
     if diagonal.size and diagonal.min() <= FLAT * diagonal.max():
@@ -126,4 +103,5 @@ def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) ->
         kernel = -kernel
     walk.u = np.array([np.append(x, t), kernel])
     aim(walk, kernel)
+    walk.locate()
     return walk

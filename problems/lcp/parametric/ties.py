@@ -8,10 +8,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.kinks.pivots import Ray, way
 from problems.lcp.parametric.corner import LARGEST_LISTED, rays
-from problems.lcp.parametric.walk import FLAT, Walk
-
-AIMED = 1e-5
-"""Of a direction's largest component: t drives if it moves by more."""
+from problems.lcp.parametric.walk import FLAT, SLOW_RATE, Walk
 
 
 @frozen(eq=False)
@@ -34,13 +31,7 @@ class Corner:
 
 
 def turn(walk: Walk) -> Corner | None:
-    """Take the corner found; what it was, or None where no way on was found.
-
-    Raises
-    ------
-    SingularBasisError
-        If the basis behind it is singular to working precision.
-    """
+    """Take the corner found; what it was, or None where no way on was found."""
     if walk.tied.size == 1:
         i = int(walk.tied[0])
         walk.pivot(i)
@@ -64,24 +55,16 @@ def _turn_tied(walk: Walk) -> Corner | None:
         aim(walk, along @ np.append(onward[0].grown, onward[0].driven), walk.step)
         return Corner(tuple(tied.tolist()), found)
     walk.switch_tied(np.isin(np.arange(tied.size), on.switched))
-    i = int(tied[on.driver])
-    walk.rebase(i, bool(low[on.driver]))
-    walk.drive(i, bool(low[on.driver]))
+    walk.drive(int(tied[on.driver]), bool(low[on.driver]))
     return Corner(tuple(tied.tolist()), found)
 
 
 def aim(walk: Walk, direction: Array, step: float = 0.0) -> None:
-    """Go on along a direction from where so long a step leads: driven by t, or by the x that moves most.
-
-    Raises
-    ------
-    SingularBasisError
-        If the direction is not the only one on its piece.
-    """
+    """Go on along a direction from where so long a step leads: driven by t, or by the x that moves most."""
     n = walk.problem.n
-    moving = np.abs(np.where(np.append(walk.moves_x, True), direction, 0.0))
-    driver = n if moving[n] > AIMED * moving.max() else int(np.argmax(moving))
-    walk.rebase(driver)
+    moves_x = walk.stairs.moves_x[walk.state.astype(np.intp) + 1, np.arange(n)]
+    moving = np.abs(np.where(np.append(moves_x, True), direction, 0.0))
+    driver = n if moving[n] > SLOW_RATE * moving.max() else int(np.argmax(moving))
     walk.driver, walk.sign = driver, float(np.sign(direction[driver]))
     walk.value = float(walk.u[0, driver] + step * walk.u[1, driver])
 
@@ -96,20 +79,19 @@ def small(walk: Walk) -> tuple[Array, Array, Array]:
         if walk.moves_x[i]:
             right[i, k] = -sign[k]
         else:
-            right[:, k] = sign[k] * walk.matrix[:, i]
+            right[:, k] = sign[k] * walk.problem.A[:, i]
     z, left = basis.solve(right)
     along = np.zeros((n + 1, m + 1))
-    along[basis.columns, :m] = z[: basis.order]
+    along[basis.columns, :m] = z
     along[:, m] = walk.u[1]
     moving = walk.moves_x[tied]
     j = walk.driver
     if j < n and not walk.moves_x[j]:
         # Its w moves with the corner that it left.
-        left[j] = (walk.d[j] - basis.shares[j]) * along[n, :m]
+        left[j] = (walk.d[j] - walk.shares[j]) * along[n, :m]
     rates = np.where(moving[:, None], along[tied, :m], left[tied])
     rates = np.column_stack([rates, walk.dy[tied]])
-    if walk.slopes is not None:
-        rates -= walk.slopes[np.where(walk.low, 0, 1), tied][:, None] * along[n]
+    rates -= walk.slopes[np.where(walk.low, 0, 1), tied][:, None] * along[n]
     rates *= sign[:, None]
     size = np.append(np.abs(along[:, :m]).max(axis=0, initial=0.0), walk.scale[1])
     rates[np.abs(rates) <= FLAT * size * walk.terms[tied][:, None]] = 0.0

@@ -16,13 +16,10 @@ from continuation.status import Kind, Status
 from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.ties import Corner, snap, turn
-from problems.lcp.parametric.walk import Left, Walk
+from problems.lcp.parametric.walk import SWITCH_TIE, Walk
 
 SAME_DIRECTION = 1e-9
 """Two unit directions, or two points relative to their size, that differ by less are the same."""
-
-ARRIVED = 1e-11
-"""A corner as near as this to the t where the path ends, relative to both and to the step, is on it."""
 
 
 @define(eq=False)
@@ -48,8 +45,13 @@ class Trail:
         """
         began = time.perf_counter()
         corner: Corner | None = None
+        t = walk.t
         while True:
-            if not _located(walk):
+            try:
+                inside = walk.locate()
+            except SingularBasisError:
+                return _no_way(t)
+            if not inside:
                 return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
             if corner is not None and len(corner.switches) > 1:
                 snap(walk, corner.switches)
@@ -63,25 +65,22 @@ class Trail:
                 return Status.UNRESOLVED_KINK, (
                     f"The path is back at a kink, t = {walk.t:g}, and goes round from here: other rays leave its kinks."
                 )
-            left, step = walk.next_corner()
+            step = walk.next_corner()
             to_last = math.nan if walk.still else (last - walk.t) / walk.dt
             if not walk.still and _arrives(walk, last, to_last, step):
                 self._end(unit, to_last * length, last)
                 return Status.REACHED_TARGET, str(Status.REACHED_TARGET)
             if len(self.points) > 1 and self._closes(unit, step * length):
                 return Status.CLOSED, str(Status.CLOSED)
-            if left is Left.RAY:
+            if math.isinf(step):
                 return self._leave(walk, unit, length, last)
             spent = budget.spent(Counts(accepted=len(self.points)), time.perf_counter() - began)
             if spent:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
             t = walk.t if walk.still else walk.t + step * walk.dt
-            try:
-                corner = turn(walk)
-            except SingularBasisError:
-                corner = None
+            corner = turn(walk)
             if corner is None:
-                return Status.UNRESOLVED_KINK, f"No way on was found from the corner at t = {t:g}."
+                return _no_way(t)
             if corner.dead:
                 self._end(unit, step * length, t)
                 self.kinks[len(self.points) - 1] = "dead end", corner.switches, -unit[None]
@@ -167,20 +166,8 @@ class Trail:
 
 def state_at(walk: Walk, last: float, most: int) -> State | None:
     """The pieces of the point where t is `last`, by a walk of at most so many corners; None where it leads away."""
-    for _ in range(most):
-        if not _located(walk):
-            return None
-        left, step = walk.next_corner()
-        if not walk.still and _arrives(walk, last, (last - walk.t) / walk.dt, step):
-            return walk.state
-        if left is Left.RAY:
-            return None
-        try:
-            if turn(walk) is None:
-                return None
-        except SingularBasisError:
-            return None
-    return None
+    status, _ = Trail(np.ones(walk.problem.n + 1)).follow(walk, last, Budget(steps=most))
+    return walk.state if status is Status.REACHED_TARGET else None
 
 
 def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
@@ -188,7 +175,11 @@ def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
     if math.isinf(last) or math.isinf(step):
         return 0.0 <= to_last < math.inf
     off = abs(walk.t + step * walk.dt - last)
-    return 0.0 <= to_last <= step or off <= ARRIVED * max(abs(walk.t), abs(last), abs(step * walk.dt))
+    return 0.0 <= to_last <= step or off <= SWITCH_TIE * max(abs(walk.t), abs(last), abs(step * walk.dt))
+
+
+def _no_way(t: float) -> tuple[Status, str]:
+    return Status.UNRESOLVED_KINK, f"No way on was found from the corner at t = {t:g}."
 
 
 def _unit(a: Array) -> Array:
@@ -198,16 +189,3 @@ def _unit(a: Array) -> Array:
 
 def _same(a: Array, b: Array) -> bool:
     return largest(a - b) <= SAME_DIRECTION
-
-
-def _located(walk: Walk) -> bool:
-    """Solve for the corner; once more with the inverse afresh where it is not within its limits."""
-    walk.locate()
-    if walk.inside():
-        return True
-    try:
-        walk.basis.invert()
-    except SingularBasisError:
-        return False
-    walk.locate()
-    return walk.inside()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
 import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
@@ -27,59 +25,50 @@ RATE_NOISE = 1e-15
 """A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
 
 SLOW_RATE = 1e-6
-"""Whether a rate of t is rounding is looked at where it is this much smaller than the largest."""
+"""Whether a rate of t is rounding is looked at where it is this much smaller than the largest, and t does not drive."""
 
 OUTSIDE_LIMITS = 1e-9
 """How far outside its limits, relative to its row, rounding may put a variable before the path counts as lost."""
-
-
-class Left(Enum):
-    """What the next corner is."""
-
-    CORNER = "a switch vanishes"
-    RAY = "nothing stops it"
 
 
 @define(eq=False)
 class Walk:
     """A place on the path, and how it goes on from there.
 
-    `problem`: Dense. `d` of shape (n,). `state`: The piece of each pair. `basis`: Its rows are those whose w is fixed,
-    its columns the x that move, and t; but for the driver. `driver`: What moves the path on: of pair i what moves on
-    its piece, or t for i = n. `value`: Of x_driver, or t, at the last corner; of w_driver the distance from its corner.
-    `sign`: Whether the driver grows or falls. `matrix`, of shape (n, n): A, in Fortran's order. `sizes`, of shape (n,):
-    The largest entry of each row of [A, d]. `u`, of shape (2, n + 1): (x, t) at the last corner, and how it moves. `t`,
-    `dt`: Its last numbers. `still`: Whether t stands still. `gaps`, `rates`, of shape (2, n): How far all that moves is
-    from its lower limits, and from its upper ones, and how fast that grows. `tied`: The pairs at the next corner, and
-    in `low` whether at their lower limit. `limits`, `slopes`, of shape (2, n): The limits of all that moves at t = 0,
-    and how they move with t: None if none does. `dy`, `scale`, `terms`: How all that moves does so; the largest number
-    of u and of its rate; the sizes of the entries of each row. `step`: How far the driver goes to the next corner.
-    `degenerate`: Whether several switches have vanished at once before.
+    `problem`: Dense. `d` of shape (n,). `state`: The piece of each pair. `driver`: What moves the path on: of pair i
+    what moves on its piece, or t for i = n. `value`: Of x_driver, or t, at the last corner; of w_driver the distance
+    from its corner. `sign`: Whether the driver grows or falls. `sizes`, of shape (n,): The largest entry of each row of
+    [A, d]. `moves_x`, of shape (n,): Where x moves, and w is fixed. `basis`: Its rows are those whose w is fixed, its
+    columns the x that move, and t; but for the driver. `shares`, of shape (n,): The column of t. `u`, of shape
+    (2, n + 1): (x, t) at the last corner, and how it moves. `t`, `dt`: Its last numbers. `still`: Whether t stands
+    still. `limits`, `slopes`, of shape (2, n): The limits of all that moves at t = 0, and how they move with t. `gaps`,
+    `rates`, of shape (2, n): How far all that moves is from its lower limits, and from its upper ones, and how fast
+    that grows. `tied`: The pairs at the next corner, and in `low` whether at their lower limit. `dy`, `scale`, `terms`:
+    How all that moves does so; the largest number of u and of its rate; the sizes of the entries of each row. `step`:
+    How far the driver goes to the next corner. `degenerate`: Whether several switches have vanished at once before.
     """
 
     problem: MixedLCP
     d: Array
     stairs: Stairs
     state: State
-    basis: Basis
     driver: int
     value: float
     sign: float
-    matrix: Array
-    sizes: Array
-    fixed_part: Array = field(init=False)
+    sizes: Array = field(init=False)
     moves_x: NDArray[np.bool_] = field(init=False)
+    basis: Basis = field(init=False)
+    shares: Array = field(init=False)
     u: Array = field(init=False)
     t: float = field(init=False, default=0.0)
     dt: float = field(init=False, default=0.0)
     still: bool = field(init=False, default=False)
+    limits: Array = field(init=False)
+    slopes: Array = field(init=False)
     gaps: Array = field(init=False)
     rates: Array = field(init=False)
     tied: NDArray[np.intp] = field(init=False)
     low: NDArray[np.bool_] = field(init=False)
-    limits: Array = field(init=False)
-    slopes: Array | None = field(init=False)
-    _fixed: Array = field(init=False)
     terms: Array = field(init=False)
     _constant: Array = field(init=False)
     dy: Array = field(init=False)
@@ -88,59 +77,64 @@ class Walk:
     degenerate: bool = field(init=False, default=False)
 
     def __attrs_post_init__(self) -> None:
-        every = np.arange(self.problem.n)
-        row = self.state.astype(np.intp) + 1
-        stairs = self.stairs
-        self.moves_x = stairs.moves_x[row, every]
-        self._fixed = stairs.fixed[row, every]
-        self.limits = np.array([stairs.least[row, every], stairs.most[row, every]])
-        slopes = np.array([stairs.least_slope[row, every], stairs.most_slope[row, every]])
-        self.slopes = slopes if stairs.levels.any() else None
-        self.fixed_part = self.problem.q + self.matrix @ self._fixed
-        # What a gap is a difference of: entries of its row times the largest number, and q; of x that number itself.
-        self.terms = np.where(self.moves_x, 1.0, self.sizes)
-        self._constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
+        self.sizes = np.maximum(np.abs(self.problem.A).max(axis=1, initial=0.0), np.abs(self.d))
 
     # -- where it is, and where the next corner is ----------------------------------------------------------------
 
-    def locate(self) -> None:
-        """Solve for the corner, and for the direction in which the path leaves it."""
-        n, basis, j = self.problem.n, self.basis, self.driver
-        by_x = j == n or bool(self.moves_x[j])
+    def locate(self) -> bool:
+        """Solve for the corner, and for the direction in which the path leaves it; whether that is within its limits.
+
+        Raises `SingularBasisError` if the equations of the pieces are dependent.
+        """
+        n, j, A = self.problem.n, self.driver, self.problem.A
+        row, every = self.state.astype(np.intp) + 1, np.arange(n)
+        self.moves_x = self.stairs.moves_x[row, every]
+        fixed, slope, *ends = self.stairs.values[:, row, every]
+        self.limits, self.slopes = np.array(ends[:2]), np.array(ends[2:])
+        # What a gap is a difference of: entries of its row times the largest number, and q; of x that number itself.
+        self.terms = np.where(self.moves_x, 1.0, self.sizes)
+        self._constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
+        by_x, self.shares = j == n or bool(self.moves_x[j]), self.d - slope
+        rows = np.flatnonzero(self.moves_x)
+        columns = np.append(rows[rows != j], np.full(int(j != n), n))
+        if not by_x:
+            # Its w is as far from its corner as the driver has gone, and the corner moves with t.
+            rows = np.append(rows, j)
+            self.shares[j] -= self.slopes[0 if self.sign > 0.0 else 1, j]
+        block = np.empty((n, columns.size), order="F")
+        block[:, : columns.size - (j != n)] = A[:, columns[: columns.size - (j != n)]]
+        if j != n:
+            block[:, -1] = self.shares
+        self.basis = Basis.of(rows, columns, block)
         right = np.zeros((n, 2), order="F")
-        right[:, 0] = self.fixed_part
+        right[:, 0] = self.problem.q + A @ fixed
         if by_x:
-            driven = basis.column(j)
+            driven = self.shares if j == n else A[:, j]
             right[:, 0] += self.value * driven
             right[:, 1] = self.sign * driven
         else:
             right[j] -= self.value, self.sign
-        z, left = basis.solve(right)
+        z, left = self.basis.solve(right)
         self.u = whole = np.zeros((2, n + 1))
-        if basis.order:
-            whole[0, basis.columns], whole[1, basis.columns] = z[: basis.order, 0], z[: basis.order, 1]
+        whole[:, columns] = z.T
         if by_x:
             whole[:, j] = self.value, self.sign
         self.t, self.dt = whole[:, n].tolist()
         y = np.where(self.moves_x, whole[:, :n], left.T)
         if not by_x:
-            slope = self.d[j] - basis.shares[j]
-            y[:, j] = self.value + slope * self.t, self.sign + slope * self.dt
+            y[:, j] = np.array([self.value, self.sign]) + (self.d[j] - self.shares[j]) * whole[:, n]
         self.dy = dy = y[1]
         self.scale = [largest(whole[0]), largest(whole[1])]
         self.still = j != n and abs(self.dt) <= SLOW_RATE * self.scale[1] and self._stands()
         # Of what does not move by x nothing is in z: there x is what is fixed.
-        whole[0, :n] += self._fixed
+        whole[0, :n] += fixed
         if self.degenerate:
             self._settle(y)
-        self.gaps, self.rates = y[0] - self.limits, np.empty((2, n))
-        self.rates[0], self.rates[1] = dy, -dy
-        if self.slopes is not None:
-            self.gaps -= self.t * self.slopes
-            moved = self.dt * self.slopes
-            self.rates[0] -= moved[0]
-            self.rates[1] += moved[1]
-        np.negative(self.gaps[1], out=self.gaps[1])
+        self.gaps = y[0] - self.limits - self.t * self.slopes
+        self.rates = dy - self.dt * self.slopes
+        for part in (self.gaps, self.rates):
+            np.negative(part[1], out=part[1])
+        return bool((self.gaps >= -OUTSIDE_LIMITS * self._terms(0.0)).all())
 
     def _settle(self, y: Array) -> None:
         """What is basic and stays at its limit, as x of columns that are alike, is there exactly."""
@@ -152,24 +146,21 @@ class Walk:
 
     def _stands(self) -> bool:
         """Whether the rate of t is no more than rounding."""
-        basis = self.basis
-        of_t = np.abs(basis.inverse[basis.column_place[self.problem.n], : basis.order])
-        return bool(abs(self.dt) <= RATE_NOISE * (of_t @ self.sizes[basis.rows]) * self.scale[1])
+        of_t = np.abs(self.basis.row_of_inverse(self.problem.n))
+        return bool(abs(self.dt) <= RATE_NOISE * (of_t @ self.sizes[self.basis.rows]) * self.scale[1])
 
     def find_tied(self) -> None:
         """Which switches vanish where it is."""
         self._tie(self.gaps <= ZERO_SWITCH * self._terms(0.0))
 
-    def next_corner(self) -> tuple[Left, float]:
-        """How far the driver goes until a switch vanishes, and which do then."""
+    def next_corner(self) -> float:
+        """How far the driver goes until a switch vanishes, and which do then; infinite where nothing stops it."""
         gaps, rates = self.gaps.ravel(), self.rates.ravel()
         falling = np.flatnonzero(self.rates < -FLAT * self.scale[1] * self.terms)
-        if falling.size == 0:
-            return Left.RAY, np.inf
         steps = np.maximum(gaps[falling], 0.0) / -rates[falling]
-        step = float(steps.min())
+        step = float(steps.min(initial=np.inf))
         if step == np.inf:
-            return Left.RAY, step
+            return step
         reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
         self.step = step
         vanishing = self.gaps + step * self.rates <= ZERO_SWITCH * self._terms(step)
@@ -178,7 +169,7 @@ class Walk:
             vanishing[:, self.driver] = False
         vanishing.ravel()[falling[steps <= step + SWITCH_TIE * reach]] = True
         self._tie(vanishing)
-        return Left.CORNER, step
+        return step
 
     def _terms(self, step: float) -> Array:
         return (self.scale[0] + step * self.scale[1]) * self.terms + self._constant
@@ -187,80 +178,25 @@ class Walk:
         self.tied = np.flatnonzero(vanishing[0] | vanishing[1])
         self.low = vanishing[0, self.tied]
 
-    def inside(self) -> bool:
-        """Whether all that moves is within its limits, but for rounding."""
-        return bool((self.gaps >= -OUTSIDE_LIMITS * self._terms(0.0)).all())
-
     # -- round the corner -----------------------------------------------------------------------------------------
 
     def pivot(self, i: int) -> None:
-        """What moves of pair i leaves the basis, the driver enters, and the complement drives."""
-        basis, j, n = self.basis, self.driver, self.problem.n
+        """Pair i goes on to the piece beyond its limit, and its complement drives."""
         low = bool(self.low[self.tied == i][0])
-        driver_x = j == n or bool(self.moves_x[j])
-        leaving_x = bool(self.moves_x[i])
-        self._switch(i, low)
-        if i == j:
-            # From one corner of its graph to the other: what is basic stays so.
-            if not leaving_x:
-                basis.share(i, self.d[i] - self._slope(i))
-        elif driver_x and leaving_x:
-            basis.exchange_column(i, j)
-        elif driver_x:
-            basis.share(i, self.d[i] - self._slope(i))
-            basis.enter_both(i, j)
-        elif leaving_x:
-            basis.leave_both(j, i)
-            basis.share(j, self.d[j])
-        else:
-            basis.share(i, self.d[i] - self._slope(i))
-            basis.exchange_row(j, i)
-            basis.share(j, self.d[j])
+        self.switch(i, low)
         self.drive(i, low)
 
     def drive(self, i: int, low: bool) -> None:
         """Pair i drives, away from the corner to which it came from above its limit, or from below."""
         self.driver, self.sign = i, 1.0 if low else -1.0
-        self.value = float(self.limits[0 if low else 1, i]) if self.moves_x[i] else 0.0
-
-    def _slope(self, i: int) -> float:
-        return float(self.stairs.fixed_slope[self.state[i] + 1, i])
-
-    def _switch(self, i: int, low: bool) -> None:
-        """Pair i is on the piece beyond its lower, or upper, limit."""
-        up = low != bool(self.moves_x[i])
-        self.state[i] += 1 if up else -1
         row = int(self.state[i]) + 1
-        self.moves_x[i] = self.stairs.moves_x[row, i]
-        stairs = self.stairs
-        self.limits[:, i] = stairs.least[row, i], stairs.most[row, i]
-        if self.slopes is not None:
-            self.slopes[:, i] = stairs.least_slope[row, i], stairs.most_slope[row, i]
-        self.terms[i], self._constant[i] = (
-            (1.0, 0.0) if self.moves_x[i] else (self.sizes[i], abs(float(self.problem.q[i])))
-        )
-        before, self._fixed[i] = self._fixed[i], self.stairs.fixed[row, i]
-        if before != self._fixed[i]:
-            self.fixed_part = self.problem.q + self.matrix @ self._fixed
+        self.value = float(self.stairs.values[2 if low else 3, row, i]) if self.stairs.moves_x[row, i] else 0.0
+
+    def switch(self, i: int, low: bool) -> None:
+        """Pair i is on the piece beyond its lower, or upper, limit."""
+        self.state[i] += 1 if low != bool(self.moves_x[i]) else -1
 
     def switch_tied(self, which: NDArray[np.bool_]) -> None:
         """Of the switches that vanish some are passed."""
         for i, low in zip(self.tied[which], self.low[which]):
-            self._switch(int(i), bool(low))
-
-    def rebase(self, driver: int, low: bool = True) -> None:
-        """Rows and columns anew, from the pieces and the driver; a w that drives leaves its lower corner, or upper.
-
-        Raises `SingularBasisError` if their block is singular.
-        """
-        n = self.problem.n
-        moving = np.flatnonzero(self.moves_x)
-        shares = self.basis.shares
-        shares[:] = self.d
-        shares[moving] -= self.stairs.fixed_slope[self.state[moving] + 1, moving]
-        columns = np.append(moving[moving != driver], np.full(int(driver != n), n))
-        rows = moving
-        if driver < n and not self.moves_x[driver]:
-            rows = np.append(rows, driver)
-            shares[driver] -= 0.0 if self.slopes is None else self.slopes[0 if low else 1, driver]
-        self.basis.reset(rows, columns)
+            self.switch(int(i), bool(low))

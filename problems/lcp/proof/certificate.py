@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import numpy as np
 from attrs import frozen
-from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest, least
 from continuation.linear.silence import without_warnings
@@ -16,7 +15,7 @@ from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
 from problems.lcp.proof.off import DROWNED, drowned_part, shares_in_rows
-from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, integers, solve_exactly
+from problems.lcp.proof.rational import IntegerRow, block_of, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
@@ -303,7 +302,7 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
     # The equations times 2^shift, by which bounds other than zero become integers.
     at_bounds, shift = integers(problem.at(state))
     right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
-    solution = solve_exactly(_block(rows, active, problem.n) << shift, right, x[active])
+    solution = solve_exactly(block_of([rows[i] for i in chosen], active, problem.n) << shift, right, x[active])
     if solution is None:
         return ExactCertificate(False, None, None, chosen, "The equations w_i = 0 of the active set are inconsistent.")
     numerators, denominator = [value * solution[1] for value in at_bounds], solution[1] << shift
@@ -331,18 +330,6 @@ def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tup
         if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
             return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
     return ""
-
-
-def _block(rows: list[IntegerRow], active: NDArray[np.intp], n: int) -> Integers:
-    """The rows and columns of the active set as Python integers."""
-    place = np.full(n, -1)
-    place[active] = np.arange(active.size)
-    block = np.zeros((active.size, active.size), dtype=object)
-    for i, index in enumerate(active):
-        for column, value in zip(place[rows[index].columns], rows[index].values):
-            if column >= 0:
-                block[i, column] = value
-    return block
 
 
 def _fraction_w(row: IntegerRow, numerators: list[int], denominator: int) -> Fraction:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from math import gcd, lcm
+from math import gcd
 
 import numpy as np
 import scipy.sparse as sp
@@ -22,20 +22,14 @@ from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
-from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
+from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers, solve_exactly
 
 HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance that HiGHS accepts."""
-_CLEARLY_POSITIVE = 1e-6
-"""A scaled gap q'y above this is not worth an attempt at an exact proof."""
-_DENOMINATORS = (1, 12, 360, 10**4, 10**8)
-"""Largest denominators to which the multipliers are rounded, the simplest first."""
-_LONGEST_DENOMINATOR = 4096
-"""In bits; a common denominator longer than this is no simplification."""
-_TIGHT = (1e-12, 1e-9, 1e-7)
-"""A scaled condition this close to zero is tried as an equation."""
-_SUPPORT = 1e-9
-"""Scaled multipliers above this are taken as nonzero."""
+MULTIPLIER_ZERO = 1e-9
+"""What HiGHS leaves of zero, with a digit to spare: a scaled condition so near to it is tried as an equation, and a
+scaled multiplier no larger is zero."""
+
 PRECISION = 100 * float(np.finfo(float).eps)
 """The relative error of A'y <= 0 that counts as rounding."""
 GAP_IN_DOUBT = 1e-6
@@ -161,16 +155,16 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
     guess : Array of shape (n,), optional
         A multiplier to be tried in place of that program's.
     """
-    system = inequalities(problem)
-    if (system.q >= 0.0).all():
+    scaled = _Scaled.of(problem)
+    if (scaled.system.q >= 0.0).all():
         return None  # z = 0 is feasible
-    rows, columns = scales(system)
-    matrix, vector = scaled_data(system, rows, columns)
-    vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    if guess is not None:
-        guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
-    guess = by_linear_program(matrix, vector) if guess is None else guess
-    return None if guess is None else _proved(problem, system, matrix, vector, guess, rows)
+    if guess is None:
+        guess = by_linear_program(scaled.A, scaled.q)
+    else:
+        guess = guess * scaled.rows / max(float((guess * scaled.rows).max()), np.finfo(float).tiny)
+    if guess is None or not float(scaled.q @ guess) < 0.0 or float((scaled.A.T @ guess).max()) > _NEARLY_TIGHT:
+        return None
+    return scaled.exact(guess, True, AFFORDABLE_VERTEX) or scaled.nearly(guess)
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
@@ -194,16 +188,6 @@ def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
 def transposed(matrix: Matrix) -> Matrix:
     """A', stored as A is."""
     return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
-
-
-def _proved(
-    problem: MixedLCP, system: Inequalities, matrix: Matrix, vector: Array, guess: Array, rows: Array
-) -> Farkas | FloatFarkas | None:
-    """The proof near a scaled guess, if there is one."""
-    if not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
-        return None
-    proof = _exact(problem, system, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
-    return proof if proof is not None else _nearly(Inequalities(matrix, vector), guess, rows, system, problem.n)
 
 
 def empty_interior(problem: LCP) -> Farkas | None:
@@ -250,94 +234,91 @@ def _power_of_two(values: Array) -> Array:
 
 
 def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
-    system = inequalities(problem)
-    rows, columns = scales(system)
-    matrix, vector = scaled_data(system, rows, columns)
-    vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = by_linear_program(matrix, vector)
-    if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
+    scaled = _Scaled.of(problem)
+    guess = by_linear_program(scaled.A, scaled.q)
+    if guess is None or float(scaled.q @ guess) > (0.0 if strict else GAP_IN_DOUBT):
         return None
-    return _exact(problem, system, matrix, guess, rows, strict, LARGEST_VERTEX)
+    return scaled.exact(guess, strict, LARGEST_VERTEX)
 
 
-def _exact(
-    problem: MixedLCP, system: Inequalities, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int
-) -> Farkas | None:
-    """The first candidate near the guess that passes the check in integers."""
-    # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
-    conditions = conditions_of(system)
-    for candidate in _candidates(conditions, matrix, guess, rows, largest):
-        if conditions.hold(candidate, strict):
-            return multiplier(problem, system.integers_on_rows(candidate, problem.n))
-    return None
+@frozen(eq=False)
+class _Scaled:
+    """The inequalities of a problem, and the same with rows over `rows`, columns over others, q over a power of two."""
 
+    problem: MixedLCP
+    system: Inequalities
+    A: Matrix
+    q: Array
+    rows: Array
 
-def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalities, n: int) -> FloatFarkas | None:
-    """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
-    y = np.where(guess > _SUPPORT, guess, 0.0)
-    conditions = Inequalities(transposed(scaled.A), np.zeros(scaled.A.shape[1]))
-    for _ in range(_REFINEMENTS):
-        terms = row_terms(conditions, y)
-        relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
-        error = max(float(relative.max()), 0.0)
-        size = float(np.abs(scaled.q) @ y)
-        if size == 0.0:
-            return None
-        gap = float(scaled.q @ y) / size
-        if error <= PRECISION and gap <= -GAP_IN_DOUBT:
-            given = system.on_rows(y / rows, n)
-            return FloatFarkas(given / np.abs(given).max(), error, -gap) if given.any() else None
-        support, tight = np.flatnonzero(y), np.flatnonzero(np.abs(relative) <= _NEARLY_TIGHT)
-        if support.size > LARGEST_REFINED or not tight.size:
-            return None
-        block = scaled.A[support][:, tight].T
-        block = block.toarray() if scaled.sparse else block
-        moved = y.copy()
-        # Relative to y, so that small multipliers move little.
-        moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
-        y = np.maximum(moved, 0.0)
-    return None
+    @classmethod
+    def of(cls, problem: MixedLCP) -> _Scaled:
+        """Of a problem."""
+        system = inequalities(problem)
+        rows, columns = scales(system)
+        matrix, vector = scaled_data(system, rows, columns)
+        return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
+    def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
+        """The first candidate near a scaled guess that passes the check in integers: its floats, or its vertex."""
+        # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
+        conditions = conditions_of(self.system)
+        for candidate in self._candidates(conditions, guess, largest):
+            if conditions.hold(candidate, strict):
+                return multiplier(self.problem, self.system.integers_on_rows(candidate, self.problem.n))
+        return None
 
-def _candidates(conditions: Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:
-    """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
-    weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
-    largest = float(guess.max())
-    for denominator in _DENOMINATORS:
-        simple = [Fraction(value / largest).limit_denominator(denominator) for value in guess.tolist()]
-        common = lcm(*(value.denominator for value in simple))
-        if common.bit_length() <= _LONGEST_DENOMINATOR:
-            yield [int(value * common) * weight for value, weight in zip(simple, weights)]
-    yield [value * weight for value, weight in zip(integers(guess)[0], weights)]
-    slack = np.asarray(matrix.T @ guess).ravel()
-    for tolerance in _TIGHT:
-        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -tolerance)]
+    def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:
+        # y of the data as given is the scaled one over the row scales.
+        weights = integers(self.rows.max() / self.rows)[0]
+        yield [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
+        slack = np.asarray(self.A.T @ guess).ravel()
+        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -MULTIPLIER_ZERO)]
         for equations in (tight, [*tight, conditions.constant]):
-            found = _vertex(equations, guess, rows, order)
+            found = self._vertex(equations, guess, order)
             if found is not None:
                 yield found
 
+    def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
+        """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
+        support = np.flatnonzero(guess > MULTIPLIER_ZERO)
+        if support.size > order or len(equations) > 4 * order:
+            return None
+        last, shift = integers(self.rows[support])
+        system: Integers = np.vstack([block_of(equations, support, guess.size), np.array(last, dtype=object)])
+        found = solve_exactly(system, [0] * len(equations) + [1 << shift], guess[support] / self.rows[support])
+        if found is None:
+            return None
+        y = [0] * guess.size
+        for j, numerator in zip(support, found[0]):
+            y[j] = numerator
+        return y
 
-def _vertex(equations: list[IntegerRow], guess: Array, rows: Array, order: int) -> list[int] | None:
-    """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
-    support = np.flatnonzero(guess > _SUPPORT)
-    if support.size > order or len(equations) > 4 * order:
+    def nearly(self, guess: Array) -> FloatFarkas | None:
+        """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
+        y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
+        conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
+        for _ in range(_REFINEMENTS):
+            terms = row_terms(conditions, y)
+            relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
+            error = max(float(relative.max()), 0.0)
+            size = float(np.abs(self.q) @ y)
+            if size == 0.0:
+                return None
+            gap = float(self.q @ y) / size
+            if error <= PRECISION and gap <= -GAP_IN_DOUBT:
+                given = self.system.on_rows(y / self.rows, self.problem.n)
+                return FloatFarkas(given / np.abs(given).max(), error, -gap) if given.any() else None
+            support, tight = np.flatnonzero(y), np.flatnonzero(np.abs(relative) <= _NEARLY_TIGHT)
+            if support.size > LARGEST_REFINED or not tight.size:
+                return None
+            block = self.A[support][:, tight].T
+            block = block.toarray() if sp.issparse(block) else block
+            moved = y.copy()
+            # Relative to y, so that small multipliers move little.
+            moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
+            y = np.maximum(moved, 0.0)
         return None
-    system: Integers = np.zeros((len(equations) + 1, support.size), dtype=object)
-    place = np.full(guess.size, -1)
-    place[support] = np.arange(support.size)
-    for i, equation in enumerate(equations):
-        for column, value in zip(place[equation.columns], equation.values):
-            if column >= 0:
-                system[i, column] = value
-    system[-1], shift = integers(rows[support])
-    found = solve_exactly(system, [0] * len(equations) + [1 << shift], guess[support] / rows[support])
-    if found is None:
-        return None
-    y = [0] * guess.size
-    for j, numerator in zip(support, found[0]):
-        y[j] = numerator
-    return y
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:

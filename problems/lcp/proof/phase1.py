@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import linprog
@@ -55,16 +57,16 @@ def strictly_feasible_start(problem: LCP) -> Array:
     Dutta, Das and Jana, "Bounded Homotopy Path Approach", which needs such a start and does not say how to find it.
     """
     require_lcp(problem)
-    margin = float("nan")
-    for program in (_unit_margin, _largest_margin):
-        x0, margin = program(problem)
+    largest = float("nan")
+    for x0, margin in _programs(problem):
+        largest = margin
         if x0 is not None and is_strictly_feasible(problem, x0):
             return x0
     certificate = empty_interior(problem)
     if certificate is None:
         message = (
             "A, q: expected a point with x > 0 and A x + q > 0; the linear program reached only the scaled margin "
-            f"{margin:.1e}. This is numerical: no exact proof that there is none was found. "
+            f"{largest:.1e}. This is numerical: no exact proof that there is none was found. "
             "A start need not be feasible."
         )
     elif certificate.no_feasible_point:
@@ -77,7 +79,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
             "A, q: expected a point with x > 0 and A x + q > 0; proved exactly that there is none. "
             "The LCP may still have solutions, and a start need not be feasible."
         )
-    raise NoStrictlyFeasiblePoint(message, certificate, margin)
+    raise NoStrictlyFeasiblePoint(message, certificate, largest)
 
 
 def is_strictly_feasible(problem: LCP, x: Array) -> bool:
@@ -88,32 +90,20 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
     return bool((np.isfinite(w) & (w > bound)).all())
 
 
-def _unit_margin(problem: LCP) -> tuple[Array | None, float]:
-    """The x of least scaled sum with scaled margin 1, and 1; (None, nan) if there is none."""
-    rows, columns = scales(problem)
-    matrix, vector = scaled_data(problem, rows, columns)
-    result = linprog(np.ones(problem.n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
-    if result.status != 0:
-        return None, float("nan")
-    start: Array = result.x / columns
-    return start, 1.0
+def _programs(problem: LCP) -> Iterator[tuple[Array | None, float]]:
+    """The x of least scaled sum with scaled margin 1; then that of the largest margin t <= 1, and t.
 
-
-def _largest_margin(problem: LCP) -> tuple[Array | None, float]:
-    """The x of the linear program max t <= 1 in scaled units, and t; (None, nan) if HiGHS gave up."""
+    (None, nan) where HiGHS finds none, or gave up.
+    """
     rows, columns = scales(problem)
-    matrix, vector = scaled_data(problem, rows, columns)
-    n = problem.n
-    ones = np.ones((n, 1))
+    (matrix, vector), n, none = scaled_data(problem, rows, columns), problem.n, (None, float("nan"))
+    result = linprog(np.ones(n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
+    yield (result.x / columns, 1.0) if result.status == 0 else none
     # Unknowns (u, t) with x = u / columns: -u + t <= 0 and -(A x + q) + t <= 0.
-    if problem.sparse:
-        left = sp.block_array([[-sp.eye_array(n), ones], [-matrix, ones]], format="csr")
-    else:
-        left = np.block([[-np.eye(n), ones], [-matrix, ones]])
-    objective = np.append(np.zeros(n), -1.0)
+    block, eye = (sp.block_array, sp.eye_array(n)) if problem.sparse else (np.block, np.eye(n))
+    left = block([[-eye, np.ones((n, 1))], [-matrix, np.ones((n, 1))]])
     bounds = [(None, None)] * n + [(None, 1.0)]
-    result = linprog(objective, A_ub=left, b_ub=np.concatenate([np.zeros(n), vector]), bounds=bounds, method="highs")
-    if result.status != 0:
-        return None, float("nan")
-    start: Array = result.x[:-1] / columns
-    return start, float(result.x[-1])
+    result = linprog(
+        np.append(np.zeros(n), -1.0), A_ub=left, b_ub=np.append(np.zeros(n), vector), bounds=bounds, method="highs"
+    )
+    yield (result.x[:-1] / columns, float(result.x[-1])) if result.status == 0 else none

@@ -6,6 +6,7 @@ stay what they were. Nothing found here is trusted before M z = b has been check
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd, isqrt
 from typing import Any
@@ -64,6 +65,18 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
         whole, shift = integers(np.append(entries, constant))
         rows.append(IntegerRow(columns, whole[:-1], whole[-1], shift))
     return rows
+
+
+def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
+    """Some columns, of n, of rows, as Python integers, shape (number of rows, number of columns)."""
+    place = np.full(n, -1)
+    place[columns] = np.arange(columns.size)
+    block = np.zeros((len(rows), columns.size), dtype=object)
+    for i, row in enumerate(rows):
+        for column, value in zip(place[row.columns], row.values):
+            if column >= 0:
+                block[i, column] = value
+    return block
 
 
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 
 from continuation.arrays import Array
+from continuation.linear.dense import factor_lu
 from continuation.linear.superlu import factor_superlu
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved, without_point
@@ -52,15 +53,9 @@ def modulus(problem: LCP) -> ReferenceResult:
 
 def _factored(problem: LCP) -> Callable[[Array], Array] | None:
     """The solver of I + A, or None if that is singular."""
+    factored: Any
     if problem.sparse:
         factored = factor_superlu(sp.csc_array(problem.A + sp.eye_array(problem.n)))
-        return None if factored is None else factored.solve
-    factors, swaps, info = scipy.linalg.lapack.dgetrf(problem.A + np.eye(problem.n))
-    if info != 0:
-        return None
-
-    def solve(right: Array) -> Array:
-        solution: Array = scipy.linalg.lapack.dgetrs(factors, swaps, right)[0]
-        return solution
-
-    return solve
+    else:
+        factored = factor_lu(np.asfortranarray(problem.A + np.eye(problem.n)))
+    return None if factored is None else factored.solve

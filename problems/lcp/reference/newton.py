@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import lsmr
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.linear.superlu import factor_superlu
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
@@ -42,7 +41,7 @@ def min_newton(problem: LCP) -> ReferenceResult:
     x = np.zeros(problem.n)
     for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
-        trial = _line_search(problem, x, _newton_step(problem.A, x > w, -np.minimum(x, w)))
+        trial = _line_search(problem, x, solved_on(problem, x > w, -np.minimum(x, w)))
         # A point that passes is polished until it gets no better: with the right active set one step is exact.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return at_point(problem, x, iteration, iteration + 1, "")
@@ -51,49 +50,17 @@ def min_newton(problem: LCP) -> ReferenceResult:
     return at_point(problem, x, most, most, f"No convergence within {most} iterations.")
 
 
-def _newton_step(matrix: Matrix, active: NDArray[np.bool_], right: Array) -> Array:
+def solved_on(problem: LCP, active: NDArray[np.bool_], right: Array) -> Array:
     """Solve J d = right, row i of J being row i of A where active and of I elsewhere; least squares if singular."""
-    inside = np.flatnonzero(active)
-    step = np.where(active, 0.0, right)
-    if inside.size == 0:
-        return step
-    rows = matrix[inside]
-    reduced = right[inside] - rows @ step
-    block = rows[:, inside]
-    solved = _solve_sparse(block, reduced) if sp.issparse(matrix) else _solve_dense(block, reduced)
-    if solved is None:
-        return _least_squares(matrix, active, right)
-    step[inside] = solved
-    return step
-
-
-def _solve_dense(block: Array, right: Array) -> Array | None:
-    factors, swaps, info = scipy.linalg.lapack.dgetrf(block)
-    if info != 0:
-        return None
-    norm = np.abs(block).sum(axis=0).max()
-    reciprocal, _ = scipy.linalg.lapack.dgecon(factors, norm)
-    if reciprocal < np.finfo(float).eps:
-        return None
-    solution: Array = scipy.linalg.lapack.dgetrs(factors, swaps, right)[0]
-    return solution
-
-
-def _solve_sparse(block: Matrix, right: Array) -> Array | None:
-    factored = factor_superlu(sp.csc_array(block))
-    solution = None if factored is None else factored.solve(right)
-    return solution if solution is not None and np.isfinite(solution).all() else None
-
-
-def _least_squares(matrix: Matrix, active: NDArray[np.bool_], right: Array) -> Array:
-    """The least-norm least-squares step on the whole generalised Jacobian."""
-    chosen = active.astype(float)
-    if sp.issparse(matrix):
-        jacobian = sp.diags_array(chosen) @ matrix + sp.diags_array(1.0 - chosen)
-        step: Array = lsmr(jacobian, right, atol=1e-14, btol=1e-14)[0]
-    else:
-        step = scipy.linalg.lstsq(chosen[:, None] * matrix + np.diag(1.0 - chosen), right)[0]
-    return step
+    if problem.sparse:
+        J = sp.csc_array(sp.diags_array(active * 1.0) @ problem.A + sp.diags_array(~active * 1.0))
+        factored = factor_superlu(J)
+        return np.asarray(lsmr(J, right, atol=1e-14, btol=1e-14)[0]) if factored is None else factored.solve(right)
+    dense = np.where(active[:, None], problem.A, np.eye(problem.n))
+    try:
+        return np.asarray(np.linalg.solve(dense, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(dense, right, rcond=None)[0])
 
 
 def _line_search(problem: LCP, x: Array, step: Array) -> Array:

@@ -54,7 +54,12 @@ def show(path: Path, homotopy: Any, observer: Observer) -> None:
     `homotopy`: Of the path.
     """
     tracer = Tracer(homotopy)
-    tracer.path, tracer.counts = path, path.counts
+    # An archive takes a step's kink from the last events of a path that grows.
+    tracer.path, tracer.counts = Path(), path.counts
+    events = {event.step: event for event in path.events}
     for step in path.steps:
+        tracer.path.steps.append(step)
+        tracer.path.events += [events[step.index]] if step.index in events else []
         observer.step(tracer, step)
+    tracer.path = path
     observer.end(tracer)

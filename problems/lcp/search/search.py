@@ -17,7 +17,7 @@ from continuation.counts import Counts
 from continuation.path import Path
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
+from problems.lcp.data.matrix_facts import MatrixFacts
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.homotopies import Structure
@@ -131,14 +131,12 @@ class Search:
 
     @cached_property
     def facts(self) -> MatrixFacts:
-        """What the entries of the matrix tell, at a cost of n^2."""
-        return entry_facts(self.structure)
+        """What is known of the matrix."""
+        return MatrixFacts(self.structure)
 
     def semidefinite(self) -> bool:
         """Whether A is known to be positive semidefinite: costs a factorisation."""
-        if self.facts.semidefinite is None:
-            self.facts = matrix_facts(self.structure, self.facts)
-        return bool(self.facts.semidefinite)
+        return self.facts.semidefinite
 
     @property
     def solved(self) -> bool:

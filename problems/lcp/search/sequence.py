@@ -16,10 +16,10 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
-from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled, balanced
+from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering, unit_of
-from problems.lcp.search.judge import answer, unscaled
+from problems.lcp.search.judge import answer, units_of_its_own, unscaled
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.pivots import LARGEST_TABLE, most_pivots
 from problems.lcp.search.search import Search
@@ -106,7 +106,8 @@ class Solver:
             moved = np.ldexp(problem.q, scaled.rows)
             if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= LEAST_EXPONENT).any():
                 return None
-            current = self._scaled_lcp().with_q(moved)
+            assert isinstance(scaled.problem, LCP)
+            current = scaled.problem.with_q(moved)
         finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
         search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
         message = "Solved by the active set of a problem nearby, corrected."
@@ -123,11 +124,6 @@ class Solver:
         # The last one, which may be singular, and before it that of the last path, which is not.
         self._bases[1:] = [(current.q, self._active)]
         return found
-
-    def _scaled_lcp(self) -> LCP:
-        assert self._structure is not None
-        assert isinstance(self._structure.problem, LCP)
-        return self._structure.problem
 
     def _pivoted(self, search: Search) -> bool:
         """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
@@ -146,7 +142,7 @@ class Solver:
 
     def _learn(self, problem: LCP) -> None:
         """Scale A, in the units in which the first q is about 1."""
-        self._first, scaled = problem, balanced(problem)
+        self._first, scaled = problem, units_of_its_own(problem, roughly=True)
         self._scaled = scaled if scaled is not None and scaled.exact else None
         self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
 

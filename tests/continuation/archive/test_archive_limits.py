@@ -230,5 +230,3 @@ def test_contents_are_one_line_or_text_that_can_be_shown(tmp_path, changed, cont
             assert "\n" not in said
         assert "\x1b" not in said
         said.encode()
-
-

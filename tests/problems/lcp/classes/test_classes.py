@@ -254,4 +254,3 @@ def test_a_closure_is_refuted_by_a_minor_or_by_the_signature_and_shown_by_a_sequ
     shown = classes.is_n_bar([[0, 1, 1], [0, 0, -1], [0, 0, 0]])
     assert shown.holds
     assert shown.certificate.perturbation is not None
-

@@ -9,7 +9,6 @@ from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
-from problems.lcp.reference.lemke import lemke
 from problems.lcp.search.pivots import constraints
 
 
@@ -33,19 +32,16 @@ def random_problem(k):
     return LCP(A, r.standard_normal(n) if k % 4 == 0 else r.integers(-3, 3, n).astype(float))
 
 
-def test_the_same_pivots_as_another_lemke():
+def test_pivots_end_at_a_solution_or_on_a_ray():
     solved = 0
     for k in range(400):
         problem = random_problem(k)
         path = covering(problem, np.ones(problem.n))
-        ended, expected = path.run(1000), lemke(problem)
-        assert (ended is Ended.REACHED) == expected.solved
-        assert path.pivots == expected.iterations
-        if ended is Ended.REACHED:
+        if path.run(1000) is Ended.REACHED:
             solved += 1
             assert problem.natural_residual(on_face(problem, path.active)) < 1e-9
         else:
-            assert ended is Ended.RAY
+            assert path.ended is Ended.RAY
     assert solved > 200
 
 

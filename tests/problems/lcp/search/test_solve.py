@@ -7,7 +7,7 @@ import scipy.sparse as sp
 import continuation
 from continuation.predictors import Taylor
 from problems import lcp
-from problems.lcp.data.matrix_facts import matrix_facts
+from problems.lcp.data.matrix_facts import MatrixFacts
 from problems.lcp.data.scaling import balanced
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
@@ -248,13 +248,13 @@ def test_a_large_sparse_problem_is_never_made_dense():
 
 
 def test_the_look_proves_what_it_says():
-    seen = matrix_facts(lcp.Structure(lcp.LCP([[2.0, -1.0], [-1.0, 2.0]], [0.0, 0.0])))
+    seen = MatrixFacts(lcp.Structure(lcp.LCP([[2.0, -1.0], [-1.0, 2.0]], [0.0, 0.0])))
     assert (seen.symmetric, seen.semidefinite, seen.z_matrix, seen.nonnegative, seen.negative_diagonal) == (
         True, True, True, False, False,
     )  # fmt: skip
-    seen = matrix_facts(lcp.Structure(lcp.LCP(sp.csr_array([[0.0, 1.0], [2.0, 0.0]]), [0.0, 0.0])))
+    seen = MatrixFacts(lcp.Structure(lcp.LCP(sp.csr_array([[0.0, 1.0], [2.0, 0.0]]), [0.0, 0.0])))
     assert (seen.symmetric, seen.semidefinite, seen.z_matrix, seen.nonnegative) == (False, False, False, True)
-    seen = matrix_facts(lcp.Structure(lcp.LCP([[-1.0]], [1.0])))
+    seen = MatrixFacts(lcp.Structure(lcp.LCP([[-1.0]], [1.0])))
     assert seen.negative_diagonal
 
 
