@@ -164,8 +164,10 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     elif not source.paths["n_points"][last]:
         said = f"path {last} has no state to resume from; trace it again"
     else:
+        writer = str(source.attributes.get("library_version", "unknown"))
         said = (
-            f"path {last} has no state that version {__version__} resumes (a state resumes within its major version); "
+            f"path {last} was written by version {writer:.20} and has no state that version {__version__} resumes "
+            f"(a state resumes within its major version); "
             f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
         )
     raise ArchiveError(f"{source.file}: {said}")
