@@ -13,11 +13,9 @@ from continuation.arguments.checks import FINITE, complain
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import GOVAERTS
-from continuation.curves.arguments import as_event, as_point, as_size
+from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import HopfCondition, Singular
-from continuation.curves.correcting import corrected
-from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
 from continuation.curves.local import Condition
 from continuation.curves.monitors import AlongTangent, Vanishing, plainly, without_tangent

@@ -1,0 +1,123 @@
+"""Where a curve begins: at what event, near which point, and that point brought onto the curve."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import eigs
+
+from continuation.arguments.checks import complain, real_vector
+from continuation.arrays import Array, Matrix
+from continuation.contraction import Contraction, Iteration
+from continuation.evaluation.products import sizes
+from continuation.linear import BorderedSystem
+from continuation.path.steps import LocatedEvent
+from continuation.status import Kind
+
+BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
+"""What an event can be by its kind alone; of others the function is needed."""
+
+CORRECTING = Contraction(iterations=20, ratio=1.0)
+"""Newton's method as long as its increments shrink: of where the curve is no more is known than the guess."""
+
+NOTHING = 1e-14
+"""What is smaller, beside how far it goes, is what round-off left of zero: as a size it would mislead."""
+
+SINGULAR_INCREMENT = 10.0
+"""A first increment longer than this, beside the size of the point, is that of a singular system."""
+
+ALL_OF_SPARSE = 500
+"""Up to this order all eigenvalues of a sparse matrix are computed: a second at most."""
+
+NEAREST = 40
+"""Of a larger one so many nearest to zero: the frequencies of a Hopf point are low among those of a discretised
+problem, whose other eigenvalues are far on the stable side."""
+
+NEAR_AXIS = 0.1
+"""The largest real part of a pair, relative to its size, that Newton's method is to bring to the imaginary axis."""
+
+
+def as_event(value: Any) -> Any:
+    """The kind of an event where that says what holds, else the event itself."""
+    kind = getattr(value, "kind", value)
+    if isinstance(value, LocatedEvent):
+        if kind == Kind.TURNING_POINT and value.name != "turning point":
+            raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
+    elif hasattr(value, "monitor") and (kind not in BY_KIND or getattr(value, "component", -1) != -1):
+        return value
+    if kind not in BY_KIND:
+        expected = "a turning point, branch point, Hopf point or kink, located or as a Kind, or an event with a monitor"
+        raise complain(TypeError, "event", expected, value)
+    return Kind(kind)
+
+
+def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
+    """The pair (y, lam), of numbers; `name` is that of the argument."""
+    if hasattr(at, "u"):
+        at = (at.u[:-1], float(at.u[-1]))
+    if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
+        raise complain(TypeError, name, "a located event, a step, or a pair (y, lam)", at)
+    y, lam = np.atleast_1d(real_vector(name, at[0])), float(real_vector(name, at[1]))
+    if y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(lam)):
+        raise complain(ValueError, name, "finite numbers", at)
+    return y, lam
+
+
+def as_size(size: Any, at: Any, u: Array) -> Array:
+    """How far each component goes: what was given, else the metric of the located event, else the point's size."""
+    if size is None:
+        weights = getattr(at, "weights", None)
+        return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))
+    found = real_vector("size", size)
+    if found.shape != u.shape or not (found > 0.0).all():
+        raise complain(ValueError, "size", f"{u.size} positive numbers", size)
+    return found
+
+
+def corrected(homotopy: Any, y: Array, lam: float, size: Array) -> Array:
+    """The unknowns with the smallest of Newton's increments, at the parameter of the guess.
+
+    `homotopy`: With `bordered`. `y` of shape (N,). `size`, of shape (N,): What increments are measured by.
+    """
+    newton, unit = Iteration(y, CORRECTING), np.append(np.zeros(y.size), 1.0)
+
+    def increment() -> Array:
+        system: BorderedSystem = homotopy.bordered(newton.x, lam, unit)
+        return -system.solve(homotopy.residual(newton.x, lam), 0.0)[:-1]
+
+    def measure(step: Array) -> float:
+        longest = float(np.abs(step / size).max())
+        if not longest < SINGULAR_INCREMENT:
+            raise ArithmeticError("the system is singular at the guess")
+        return longest
+
+    try:
+        with np.errstate(all="ignore"):
+            newton.run(increment, measure, lambda longest: longest == 0.0)
+    except ArithmeticError:
+        pass  # The last point that an increment led to is the best.
+    return np.where(np.abs(newton.x) > NOTHING * size, newton.x, 0.0)
+
+
+
+def frequency_at(H_y: Matrix) -> float:
+    """The imaginary part of the pair.
+
+    `H_y` of shape (N, N). Raises `ValueError` if no pair is near the axis.
+    """
+    if sp.issparse(H_y) and H_y.shape[0] <= ALL_OF_SPARSE:
+        H_y = H_y.toarray()
+    if sp.issparse(H_y):
+        # A shift that is no eigenvalue, and of the matrix' own size: at zero it may be singular.
+        shift = 1e-6 * float(np.abs(H_y.diagonal()).max())
+        values = eigs(sp.csc_array(H_y), k=NEAREST, sigma=shift, return_eigenvectors=False)
+    else:
+        values = np.linalg.eigvals(H_y)
+    pairs = values[values.imag > 0.0]
+    off = np.abs(pairs.real) / np.abs(pairs)
+    if not pairs.size or off.min() > NEAR_AXIS:
+        found = f"{pairs[int(np.argmin(off))]:.3g}" if pairs.size else "none that is not real"
+        raise ValueError(f"at: expected a pair of eigenvalues of H_y near the imaginary axis, found {found}")
+    return float(pairs[int(np.argmin(off))].imag)
