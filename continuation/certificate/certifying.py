@@ -9,6 +9,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
+from continuation.auditing.length import metric_of
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, cell_sizes, joined
 from continuation.certificate.closing import made
@@ -27,7 +28,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
-from continuation.metric import Automatic, Metric, norm
+from continuation.metric import norm
 from continuation.numbers.ends import Mask
 from continuation.path import Path
 from continuation.path.path import require_path
@@ -219,13 +220,12 @@ class TubeSearch:
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
             return nodes
-        before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
         for k, a in enumerate(found if regular else []):
             if search(self.engine, _cell(a, end)).proved.all():
                 found = [*found[: k + 1], end]
                 break
-        return [*nodes[:-2], before, *found] if found else nodes
+        return [*nodes[:-1], *found] if found else nodes
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
@@ -247,23 +247,9 @@ def _cell(a: Node, b: Node) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """The metric at each point: the homotopy's own, or one by how far the path has gone up to the next point."""
-    points, tangents = path.u, path.tangents
-    own: Metric | None = getattr(homotopy, "metric", None)
-    if own is None:
-        # Where a component turns within a step, it has gone farther than the points tell.
-        rates = np.diff(tangents, axis=0) * np.diff(path.arclength)[:, None]
-        middles = 0.5 * (points[1:] + points[:-1]) - 0.125 * rates
-        far = np.fmax(np.abs(points[1:] - points[0]), np.abs(middles - points[0]))
-        extent = np.maximum.accumulate(np.vstack([np.zeros_like(points[:1]), far]), axis=0)
-        return [_by_extent(row) for row in np.vstack([extent[1:], extent[-1:]])]
-    out: list[Array] = []
-    for u, tangent in zip(points, tangents):
-        out.append(own.weights(u, tangent, out[-1] if out else None))
+    """The metric at each point: that in which the path went on from there, where it is known."""
+    rule, out = metric_of(homotopy, path), list[Array]()
+    for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
+        usual = rule.weights(step.u, step.tangent, out[-1] if out else None)
+        out.append(usual if after.weights is None else after.weights)
     return out
-
-
-def _by_extent(extent: Array) -> Array:
-    """The metric for how far a path goes; what stands still counts as what goes farthest."""
-    extent = np.where(extent > 0.0, extent, extent.max())
-    return Automatic().of_extent(np.where(extent > 0.0, extent, 1.0))

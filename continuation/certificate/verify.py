@@ -10,14 +10,14 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, cell_sizes, joined
+from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
-from continuation.numbers.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 
@@ -32,9 +32,6 @@ POINT_DISTANCE = 1e-4
 
 PARAMETER_STEPS = 30
 """Of Newton's method from the middle of a cell, along which its chart advances."""
-
-WIDER = 1.5
-"""A tube that does not hold its neighbour's node is tried with radii that do, and so much more."""
 
 
 def verified(
@@ -69,7 +66,7 @@ def verified(
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
-    cells, at, joints, ends = _joined_up(engine, cells, at)
+    at, joints, ends = _joined_up(engine, cells, at)
     gaps += [
         Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
         for k in np.flatnonzero(~joints)
@@ -92,13 +89,11 @@ def verified(
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
-def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes, Mask, Nodes]:
-    """The cells with links between them, some of them widened for that; points of the curve at all nodes.
+def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Nodes, Mask, Nodes]:
+    """Points of the curve at all nodes, which cells are linked to the next, and two more points of the curve.
 
-    Those that are `known`, to have a point in the tube, are not looked for again, unless they do not link. A wider tube
-    that is proved holds the same curve, and no other: what is known of its points stays.
-
-    The last two are those at the start, and at the end with the parameter for a chart.
+    Nodes that are `known`, to have a point in the tube, are not looked for again, unless they do not link. The last two
+    are those at the start, and at the end with the parameter for a chart.
     """
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
@@ -110,33 +105,13 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
     every = nodes(engine, joined([cells.take(ask), first, last]), s)
     at.put(ask, every.take(slice(0, -2)))
     joints = linked(cells.take(slice(None, -1)), at.take(slice(0, -1)), cells.take(slice(1, None)))
-    # What the bounds of a tube tell of its end may be wide: that alone is looked at, and then with wider tubes.
-    for wider in (False, True):
-        left = np.flatnonzero(~joints)
-        if not len(left):
-            break
-        cells = _widened(engine, cells, at, left) if wider else cells
-        ask = ~at.proved if wider else np.append(~joints, False)
-        if ask.any():
-            at.put(ask, nodes(engine, cells.take(ask), np.ones(ask.sum())))
-        # Links that hold do so between wider tubes as well.
-        joints[left] = linked(cells.take(left), at.take(left), cells.take(left + 1))
-    return cells, at, joints, every.take(slice(-2, None))
-
-
-def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
-    """The cells, those to the left and to the right of links that fail with wider tubes, where these are proved."""
-    wanted, off = cells.radius.copy(), at.radius[left]
-    wanted[left] = np.fmax(wanted[left], WIDER * off)
-    least = reach(cells.take(left + 1), np.zeros(len(left)), Ends(-off, off))
-    wanted[left + 1] = np.fmax(wanted[left + 1], WIDER * least)
-    changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
-    if not len(changed):
-        return cells
-    good, _ = check(engine, cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed]))
-    radius = cells.radius.copy()
-    radius[changed[good]] = wanted[changed[good]]
-    return cells.with_tubes(radius, cells.slabs)
+    left = np.flatnonzero(~joints)
+    if len(left):
+        # What the bounds of a tube tell of its end may be wide.
+        own = cells.take(left)
+        at.put(left, nodes(engine, own, np.ones(len(left))))
+        joints[left] = linked(own, at.take(left), cells.take(left + 1))
+    return at, joints, every.take(slice(-2, None))
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:

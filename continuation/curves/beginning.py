@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import eigs
 
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, Matrix
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.products import sizes
 from continuation.linear import BorderedSystem
+from continuation.linear.spectrum import nearest_zero
 from continuation.path.steps import LocatedEvent
 from continuation.status import Kind
 
@@ -28,12 +27,9 @@ NOTHING = 1e-14
 SINGULAR_INCREMENT = 10.0
 """A first increment longer than this, beside the size of the point, is that of a singular system."""
 
-ALL_OF_SPARSE = 500
-"""Up to this order all eigenvalues of a sparse matrix are computed: a second at most."""
-
 NEAREST = 40
-"""Of a larger one so many nearest to zero: the frequencies of a Hopf point are low among those of a discretised
-problem, whose other eigenvalues are far on the stable side."""
+"""Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
+those of a discretised problem, whose other eigenvalues are far on the stable side."""
 
 NEAR_AXIS = 0.1
 """The largest real part of a pair, relative to its size, that Newton's method is to bring to the imaginary axis."""
@@ -107,14 +103,7 @@ def frequency_at(H_y: Matrix) -> float:
 
     `H_y` of shape (N, N). Raises `ValueError` if no pair is near the axis.
     """
-    if sp.issparse(H_y) and H_y.shape[0] <= ALL_OF_SPARSE:
-        H_y = H_y.toarray()
-    if sp.issparse(H_y):
-        # A shift that is no eigenvalue, and of the matrix' own size: at zero it may be singular.
-        shift = 1e-6 * float(np.abs(H_y.diagonal()).max())
-        values = eigs(sp.csc_array(H_y), k=NEAREST, sigma=shift, return_eigenvectors=False)
-    else:
-        values = np.linalg.eigvals(H_y)
+    values = nearest_zero(H_y, NEAREST)
     pairs = values[values.imag > 0.0]
     off = np.abs(pairs.real) / np.abs(pairs)
     if not pairs.size or off.min() > NEAR_AXIS:
