@@ -17,7 +17,6 @@ from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.lifting import lifted
-from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
@@ -101,8 +100,8 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     engine = engine_of(homotopy, path.u)
     if cells is not None:
         return verified(engine, cells, path, homotopy, []), engine
-    cells, gaps, found, ends = TubeSearch(engine, homotopy, path).run()
-    return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
+    cells, gaps, found = TubeSearch(engine, homotopy, path).run()
+    return verified(engine, cells, path, homotopy, gaps, found), engine
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
@@ -141,13 +140,12 @@ class TubeSearch:
     homotopy: Any
     path: Path
 
-    def run(self) -> tuple[Cells, list[Gap], list[Piece], Nodes]:
-        """Proved cells in order, the gaps between them, the pieces of the cells, and the curve at their ends."""
+    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
+        """Proved cells in order, the gaps between them, and the pieces of the cells."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         pending = list(pairwise(self._to_end(solver, nodes)))
         done: list[Cells] = []
-        ends: list[Nodes] = []
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
         own = getattr(self.homotopy, "metric", None) is not None
@@ -164,7 +162,6 @@ class TubeSearch:
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
-            ends.append(found.ends.take(settled))
             told += by_cell
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
@@ -178,7 +175,7 @@ class TubeSearch:
         cells = joined(done)
         order = np.argsort(cells.place[:, 0], kind="stable")
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
-        return cells.take(order), gaps, numbered, Nodes.joined(ends).take(order)
+        return cells.take(order), gaps, numbered
 
     def _counted(self, cells: Cells, known: list[list[Piece]], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
@@ -187,7 +184,7 @@ class TubeSearch:
         by_cell: list[list[Piece]] = known
         if not known:
             by_cell = [[] for _ in range(len(cells))]
-            for piece in pieces(self.engine, cells, last):
+            for piece in pieces(self.engine, cells):
                 by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]

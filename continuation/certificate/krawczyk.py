@@ -248,10 +248,6 @@ class Bounded:
         """They are valid for one tube."""
         return
 
-    def closed(self, tube: Array) -> None:
-        """They are wider than what a node needs."""
-        return
-
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E) Y_0."""
         return self._moved(applied(self.Y, v))
