@@ -94,7 +94,8 @@ def search(engine: Engine, cells: Cells) -> Tubes:
 def _search(engine: Engine, cells: Cells) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
     slabs = cells.slabs.copy()
-    radius = FIRST_RADII * scale / (2.0 * slabs[:, None])
+    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    radius = np.maximum(FIRST_RADII * scale / (2.0 * slabs[:, None]), least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[Piece]] = [[] for _ in range(count)]
     pending = np.arange(count)
@@ -106,8 +107,7 @@ def _search(engine: Engine, cells: Cells) -> Tubes:
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        least = LEAST_RADIUS * scale[pending] + STILL_ULPS * EPS * np.maximum(np.abs(tried.begin), np.abs(tried.end))
-        wanted, kappa, _ = settled(judged, parts.owner, least, bounded, WIDE * scale[pending])
+        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, WIDE * scale[pending])
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             for piece in told(judged, parts, wanted[parts.owner]):
@@ -122,7 +122,7 @@ def _search(engine: Engine, cells: Cells) -> Tubes:
             cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
             wider = np.where(good[:, None], wanted, INFLATION * wanted)
         slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
-        first = FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None])
+        first = np.maximum(FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), least[pending])
         again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(again[:, None], first, wider)
         pending = pending[~good & (slabs[pending] <= engine.most)]

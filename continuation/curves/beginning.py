@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, Matrix
-from continuation.contraction import Contraction, Iteration
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import sizes
-from continuation.linear import BorderedSystem
 from continuation.linear.spectrum import nearest_zero
 from continuation.path.steps import LocatedEvent
+from continuation.point.projection import PathSolver
 from continuation.status import Kind
+from continuation.step.start import at_parameter
+from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """What an event can be by its kind alone; of others the function is needed."""
 
-CORRECTING = Contraction(iterations=20, ratio=1.0)
-"""Newton's method as long as its increments shrink: of where the curve is no more is known than the guess."""
+CLOSE = 1e-12
+"""To what a guess is corrected, relative to how far each component goes."""
 
 NOTHING = 1e-14
 """What is smaller, beside how far it goes, is what round-off left of zero: as a size it would mislead."""
-
-SINGULAR_INCREMENT = 10.0
-"""A first increment longer than this, beside the size of the point, is that of a singular system."""
 
 NEAREST = 40
 """Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
@@ -72,30 +73,15 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
     return found
 
 
-def corrected(homotopy: Any, y: Array, lam: float, size: Array) -> Array:
-    """The unknowns with the smallest of Newton's increments, at the parameter of the guess.
+def corrected(homotopy: Any, u: Array, size: Array) -> Array:
+    """The unknowns at the parameter of a guess, by Newton's method; those of the guess where that fails.
 
-    `homotopy`: With `bordered`. `y` of shape (N,). `size`, of shape (N,): What increments are measured by.
+    `u` of shape (N + 1,). `size`, of shape (N,): How large unknowns are.
     """
-    newton, unit = Iteration(y, CORRECTING), np.append(np.zeros(y.size), 1.0)
-
-    def increment() -> Array:
-        system: BorderedSystem = homotopy.bordered(newton.x, lam, unit)
-        return -system.solve(homotopy.residual(newton.x, lam), 0.0)[:-1]
-
-    def measure(step: Array) -> float:
-        longest = float(np.abs(step / size).max())
-        if not longest < SINGULAR_INCREMENT:
-            raise ArithmeticError("the system is singular at the guess")
-        return longest
-
-    try:
-        with np.errstate(all="ignore"):
-            newton.run(increment, measure, lambda longest: longest == 0.0)
-    except ArithmeticError:
-        pass  # The last point that an increment led to is the best.
-    return np.where(np.abs(newton.x) > NOTHING * size, newton.x, 0.0)
-
+    y = u[:-1]
+    with suppress(ArithmeticError), np.errstate(all="ignore"):
+        y = at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance(relative=CLOSE)), u)[:-1]
+    return np.where(np.abs(y) > NOTHING * size, y, 0.0)
 
 
 def frequency_at(H_y: Matrix) -> float:
