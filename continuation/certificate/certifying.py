@@ -154,7 +154,7 @@ class TubeSearch:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
             still = np.array([a.weights for a, _ in pending]) ** -0.5 if own else trial.radius
-            trial = trial.with_tubes(still, np.full(len(trial), self.engine.fine) if depth else trial.slabs)
+            trial = trial.with_tubes(still, trial.slabs)
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
             known = [some for some, good in zip(found.pieces, found.proved) if good and some]

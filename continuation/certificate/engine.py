@@ -84,11 +84,6 @@ class Engine(Protocol):
         """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
         ...
 
-    @property
-    def fine(self) -> int:
-        """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
-        ...
-
     def together(self, m: int) -> int:
         """So many slabs are best judged together.
 
