@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -24,9 +23,6 @@ BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 
 CLOSE = 1e-12
 """To what a guess is corrected, relative to how far each component goes."""
-
-NOTHING = 1e-14
-"""What is smaller, beside how far it goes, is what round-off left of zero: as a size it would mislead."""
 
 NEAREST = 40
 """Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
@@ -73,15 +69,13 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
     return found
 
 
-def corrected(homotopy: Any, u: Array, size: Array) -> Array:
-    """The unknowns at the parameter of a guess, by Newton's method; those of the guess where that fails.
-
-    `u` of shape (N + 1,). `size`, of shape (N,): How large unknowns are.
-    """
-    y = u[:-1]
-    with suppress(ArithmeticError), np.errstate(all="ignore"):
-        y = at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance(relative=CLOSE)), u)[:-1]
-    return np.where(np.abs(y) > NOTHING * size, y, 0.0)
+def corrected(homotopy: Any, u: Array) -> Array:
+    """The unknowns at the parameter of a guess u, shape (N + 1,), by Newton's method; the guess where that fails."""
+    try:
+        with np.errstate(all="ignore"):
+            return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance(relative=CLOSE)), u)[:-1]
+    except ArithmeticError:
+        return u[:-1]
 
 
 def frequency_at(H_y: Matrix) -> float:

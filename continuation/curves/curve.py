@@ -150,7 +150,7 @@ class Curve:
     def _corrected(self) -> Array:
         """The point brought onto the curve at its mu, if Newton's method does that."""
         beside = [self._frequency] if self.event == Kind.HOPF else []
-        return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]), self.extents[:-1])
+        return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]))
 
     @property
     def extents(self) -> Array:
