@@ -11,13 +11,12 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.auditing.length import metric_of
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, cell_sizes, joined
+from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.closing import made
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.lifting import lifted
-from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
@@ -208,17 +207,14 @@ class TubeSearch:
         before, end = nodes[-2:]
         if not made(self.path.steps[-1]):
             return nodes
-        cell = _cell(before, end)
-        # Whether the end can be proved to be a point of the curve: where it cannot, no tube reaches it.
-        regular = bool(ends_of(self.engine, cell.with_tubes(cell_sizes(cell), cell.slabs), np.ones(1)).proved.all())
-        if regular and search(self.engine, cell).proved.all():
+        if search(self.engine, _cell(before, end)).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
             return nodes
         found = tail(solver, before, end, near)
-        for k, a in enumerate(found if regular else []):
+        for k, a in enumerate(found):
             if search(self.engine, _cell(a, end)).proved.all():
                 found = [*found[: k + 1], end]
                 break
