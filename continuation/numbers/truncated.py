@@ -84,6 +84,8 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap, (self.c.copy(), self.algebra)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        if method == "__call__" and not keywords:  # at once: it is asked for each operator
+            return self._call(ufunc, inputs)
         name = f"numpy.{ufunc.__name__}"
         if method != "__call__":
             raise self.unknown(f"{name}.{method}")
