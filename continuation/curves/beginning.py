@@ -21,9 +21,6 @@ from continuation.tolerance import Tolerance
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """What an event can be by its kind alone; of others the function is needed."""
 
-CLOSE = 1e-12
-"""To what a guess is corrected, relative to how far each component goes."""
-
 NEAREST = 40
 """Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
 those of a discretised problem, whose other eigenvalues are far on the stable side."""
@@ -73,7 +70,7 @@ def corrected(homotopy: Any, u: Array) -> Array:
     """The unknowns at the parameter of a guess u, shape (N + 1,), by Newton's method; the guess where that fails."""
     try:
         with np.errstate(all="ignore"):
-            return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance(relative=CLOSE)), u)[:-1]
+            return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance()), u)[:-1]
     except ArithmeticError:
         return u[:-1]
 
