@@ -70,6 +70,7 @@ $(STUDIES:%=chart-%): chart-%: $(VENV)/.chart
 	$(TESTENV) $(BIN)/continuation chart $* --compare --output build/chart
 
 docs: $(VENV)/.docs
+	$(BIN)/python docs/generate_constants.py
 	$(TESTENV) $(BIN)/python -m sphinx -b html -W --keep-going docs build/docs
 
 clean:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -233,11 +233,6 @@ def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
 def owner(point: EntryPoint) -> str:
     """Distribution and version that an entry point comes from, or its object where that is not known."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
-
-
-def owners(points: Sequence[EntryPoint]) -> str:
-    """The distributions that claim one name, for a sentence."""
-    return " and ".join(point.dist.name if point.dist else point.value for point in points)
 
 
 def _imported(path: str, kind: str) -> Factory:

@@ -22,7 +22,6 @@ from continuation.tolerance import Tolerance
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
-_MIDDLE = 2
 _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
 """The interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where the speed is known anyway."""
@@ -96,7 +95,7 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
             return gauss
     if divisions == 0:
         raise EvaluationError(f"the path could not be measured near lam = {a.lam:g}")
-    middle = inside[_MIDDLE]
+    middle = inside[len(inside) // 2]
     return sum(_length(solver, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
 
 

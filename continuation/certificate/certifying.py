@@ -9,15 +9,14 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
+from continuation.auditing.length import metric_of
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, cell_sizes, joined
+from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.closing import made
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.lifting import lifted
-from continuation.certificate.links import Nodes
-from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
@@ -27,7 +26,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
-from continuation.metric import Automatic, Metric, norm
+from continuation.metric import norm
 from continuation.numbers.ends import Mask
 from continuation.path import Path
 from continuation.path.path import require_path
@@ -100,8 +99,8 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     engine = engine_of(homotopy, path.u)
     if cells is not None:
         return verified(engine, cells, path, homotopy, []), engine
-    cells, gaps, found, ends = TubeSearch(engine, homotopy, path).run()
-    return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
+    cells, gaps, found = TubeSearch(engine, homotopy, path).run()
+    return verified(engine, cells, path, homotopy, gaps, found), engine
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
@@ -140,13 +139,12 @@ class TubeSearch:
     homotopy: Any
     path: Path
 
-    def run(self) -> tuple[Cells, list[Gap], list[Piece], Nodes]:
-        """Proved cells in order, the gaps between them, the pieces of the cells, and the curve at their ends."""
+    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
+        """Proved cells in order, the gaps between them, and the pieces of the cells."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         pending = list(pairwise(self._to_end(solver, nodes)))
         done: list[Cells] = []
-        ends: list[Nodes] = []
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
         own = getattr(self.homotopy, "metric", None) is not None
@@ -155,7 +153,7 @@ class TubeSearch:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
             still = np.array([a.weights for a, _ in pending]) ** -0.5 if own else trial.radius
-            trial = trial.with_tubes(still, np.full(len(trial), self.engine.fine) if depth else trial.slabs)
+            trial = trial.with_tubes(still, trial.slabs)
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
             known = [some for some, good in zip(found.pieces, found.proved) if good and some]
@@ -163,7 +161,6 @@ class TubeSearch:
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
-            ends.append(found.ends.take(settled))
             told += by_cell
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
@@ -177,7 +174,7 @@ class TubeSearch:
         cells = joined(done)
         order = np.argsort(cells.place[:, 0], kind="stable")
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
-        return cells.take(order), gaps, numbered, Nodes.joined(ends).take(order)
+        return cells.take(order), gaps, numbered
 
     def _counted(self, cells: Cells, known: list[list[Piece]], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
@@ -186,7 +183,7 @@ class TubeSearch:
         by_cell: list[list[Piece]] = known
         if not known:
             by_cell = [[] for _ in range(len(cells))]
-            for piece in pieces(self.engine, cells, last):
+            for piece in pieces(self.engine, cells):
                 by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]
@@ -210,22 +207,18 @@ class TubeSearch:
         before, end = nodes[-2:]
         if not made(self.path.steps[-1]):
             return nodes
-        cell = _cell(before, end)
-        # Whether the end can be proved to be a point of the curve: where it cannot, no tube reaches it.
-        regular = bool(ends_of(self.engine, cell.with_tubes(cell_sizes(cell), cell.slabs), np.ones(1)).proved.all())
-        if regular and search(self.engine, cell).proved.all():
+        if search(self.engine, _cell(before, end)).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
             return nodes
-        before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
-        for k, a in enumerate(found if regular else []):
+        for k, a in enumerate(found):
             if search(self.engine, _cell(a, end)).proved.all():
                 found = [*found[: k + 1], end]
                 break
-        return [*nodes[:-2], before, *found] if found else nodes
+        return [*nodes[:-1], *found] if found else nodes
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
@@ -247,23 +240,9 @@ def _cell(a: Node, b: Node) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """The metric at each point: the homotopy's own, or one by how far the path has gone up to the next point."""
-    points, tangents = path.u, path.tangents
-    own: Metric | None = getattr(homotopy, "metric", None)
-    if own is None:
-        # Where a component turns within a step, it has gone farther than the points tell.
-        rates = np.diff(tangents, axis=0) * np.diff(path.arclength)[:, None]
-        middles = 0.5 * (points[1:] + points[:-1]) - 0.125 * rates
-        far = np.fmax(np.abs(points[1:] - points[0]), np.abs(middles - points[0]))
-        extent = np.maximum.accumulate(np.vstack([np.zeros_like(points[:1]), far]), axis=0)
-        return [_by_extent(row) for row in np.vstack([extent[1:], extent[-1:]])]
-    out: list[Array] = []
-    for u, tangent in zip(points, tangents):
-        out.append(own.weights(u, tangent, out[-1] if out else None))
+    """The metric at each point: that in which the path went on from there, where it is known."""
+    rule, out = metric_of(homotopy, path), list[Array]()
+    for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
+        usual = rule.weights(step.u, step.tangent, out[-1] if out else None)
+        out.append(usual if after.weights is None else after.weights)
     return out
-
-
-def _by_extent(extent: Array) -> Array:
-    """The metric for how far a path goes; what stands still counts as what goes farthest."""
-    extent = np.where(extent > 0.0, extent, extent.max())
-    return Automatic().of_extent(np.where(extent > 0.0, extent, 1.0))

@@ -9,15 +9,13 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells
 from continuation.certificate.links import Nodes, reach
+from continuation.certificate.tails import NEXT_TO_END
 from continuation.numbers.ends import Ends
 from continuation.path import Path, Step
 from continuation.status import Status
 
 NO_CURVE = "no point of the curve was found at the end"
 LIMIT = "the end is the limit of a series, of which nothing is proved"
-
-NEAR_END = 1e-5
-"""How far the parameter may be from its target, of its way there, where an exact end takes the place of the rest."""
 
 
 @runtime_checkable
@@ -53,7 +51,7 @@ def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> t
     if whole and there.proved.all() and held.all():
         return f"The end lies on it, exactly at lam = {end.lam:g}.", there.radius[0], ""
     off = abs(last - end.lam)
-    if at.proved[-1] and off <= NEAR_END * abs(path.steps[0].lam - end.lam):
+    if at.proved[-1] and off <= 2.0 * NEXT_TO_END * abs(path.steps[0].lam - end.lam):
         proved = f"Proved to lam = {last:.1e}"
         if isinstance(homotopy, SupportsEndCertificate) and (sentence := homotopy.certify_end(end.y)):
             return f"{proved}. {sentence}", None, ""

@@ -44,17 +44,6 @@ class Judged(Protocol):
         """
         ...
 
-    def closed(self, tube: Array) -> tuple[Array, Ends] | None:
-        """How far the curve in the tube is from the end of the cubic there, and its tangent; nan where that is no end.
-
-        None where the bounds of a slab do not tell it.
-
-        Parameters
-        ----------
-        tube : ndarray, shape (slabs, N + 1)
-        """
-        ...
-
     def applied(self, v: Ends) -> Ends:
         """The range of Y(s) v over each slab.
 
@@ -93,11 +82,6 @@ class Engine(Protocol):
     @property
     def most(self) -> int:
         """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
-        ...
-
-    @property
-    def fine(self) -> int:
-        """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
         ...
 
     def together(self, m: int) -> int:

@@ -12,12 +12,9 @@ from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_nod
 from continuation.certificate.engine import Engine, Judged, solution_range, together
 from continuation.numbers.ends import EPS, Ends
 
-SLAB_CUTS, LAST_CUTS = 3, 6
-"""A slab without a sign is halved so often at most, as a shorter cell tells more; and one of a cell that is not halved
-any more: two turning points within 3e-8 of the parameter, on a way of 1, took five."""
-
-HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
-"""A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
+SLAB_CUTS = 6
+"""A slab without a sign is halved so often at most: two turning points within 3e-8 of the parameter, on a way of 1,
+took five."""
 
 AskSigns = Callable[[Judged, Slabs, Array], tuple[Index, Index]]
 """Signs of some numbers on slabs, and of their derivatives along the curve where they have none, shape (slabs, k)."""
@@ -65,7 +62,7 @@ class Turn:
     bend: int
 
 
-def scanned(engine: Engine, cells: Cells, look: AskSigns, last: bool = True) -> list[list[Piece]]:
+def scanned(engine: Engine, cells: Cells, look: AskSigns) -> list[list[Piece]]:
     """Of each number pieces of all cells in order, cut until its sign, or that of its derivative, is known.
 
     Parameters
@@ -74,21 +71,16 @@ def scanned(engine: Engine, cells: Cells, look: AskSigns, last: bool = True) -> 
     cells : Cells
         Proved ones.
     look : callable
-    last : bool
-        Whether cells are not to be halved instead, where many cuts do not tell it.
     """
     found: list[list[Piece]] = []
-    cuts, patient = (LAST_CUTS, LAST_HOPE_CUTS) if last else (SLAB_CUTS, HOPE_CUTS)
     for place in together(engine, cells):
         slabs = slabs_of(cells.take(place))
         slabs, radius = evolve(slabs, owner=place[slabs.owner]), slabs.cells.radius
-        for depth in range(cuts + 1):
+        for depth in range(SLAB_CUTS + 1):
             judged, radius = narrowed(engine, slabs, radius, min(depth, 1))
             sign, bend = look(judged, slabs, radius)
             clear = np.asarray(((sign != 0) | (bend != 0)).all(axis=1))
-            share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
-            # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
-            keep = clear | (depth == cuts) | (depth >= patient) & (share[slabs.owner] < HOPE)
+            keep = clear | (depth == SLAB_CUTS)
             rows = [_rows(slabs.take(keep), a[keep], b[keep]) for a, b in zip(sign.T, bend.T)]
             found = [old + new for old, new in zip(found, rows)] if found else rows
             if keep.all():
@@ -98,12 +90,12 @@ def scanned(engine: Engine, cells: Cells, look: AskSigns, last: bool = True) -> 
     return [sorted(one, key=_where) for one in found]
 
 
-def pieces(engine: Engine, cells: Cells, last: bool = True) -> list[Piece]:
+def pieces(engine: Engine, cells: Cells) -> list[Piece]:
     """Those of the parameter's component of the tangent.
 
     Parameters
     ----------
-    engine, cells, last
+    engine, cells
         As in `scanned`.
     """
     if engine.exact:
@@ -119,7 +111,7 @@ def pieces(engine: Engine, cells: Cells, last: bool = True) -> list[Piece]:
         bend = _bends(engine, judged, slabs, radius, slabs.cells.radius, sign)
         return sign[:, None], bend[:, None]
 
-    return scanned(engine, cells, look, last)[0]
+    return scanned(engine, cells, look)[0]
 
 
 def told(judged: Judged, slabs: Slabs, tube: Array) -> list[Piece]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 
 from continuation.arrays import Array
@@ -20,6 +22,6 @@ def inverses(matrices: Array) -> Array:
     except np.linalg.LinAlgError:
         out = np.full_like(matrices, np.nan)
         for k, matrix in enumerate(matrices):
-            if np.isfinite(matrix).all() and np.linalg.matrix_rank(matrix) == len(matrix):
+            with suppress(np.linalg.LinAlgError):
                 out[k] = np.linalg.inv(matrix)
         return out

@@ -76,11 +76,6 @@ class ByIntervals:
         """See `Engine`."""
         return 8 if self.moving else 16
 
-    @property
-    def fine(self) -> int:
-        """See `Engine`."""
-        return 1 if self.moving else 4
-
     def image(self, u: Interval) -> Any:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
         whole: Any = u
@@ -246,10 +241,6 @@ class Bounded:
 
     def pace(self, radius: Array, tube: Array) -> None:
         """They are valid for one tube."""
-        return
-
-    def closed(self, tube: Array) -> None:
-        """They are wider than what a node needs."""
         return
 
     def applied(self, v: Ends) -> Ends:

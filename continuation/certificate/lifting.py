@@ -71,7 +71,7 @@ def _lifted(whole: Lifting, path: Path, cells: Cells | None) -> Path:
     for step in path.steps:
         found = known.get(step.u.tobytes())
         before = whole.lifted(step.u, before) if found is None else found
-        steps.append(evolve(step, u=before, tangent=np.full_like(before, np.nan)))
+        steps.append(evolve(step, u=before, tangent=np.full_like(before, np.nan), weights=None))
     events = []
     for event in path.events:
         u = whole.lifted(event.u, steps[min(event.step, len(steps) - 1)].u)

@@ -55,17 +55,6 @@ class Nodes:
         """Some of them."""
         return Nodes(self.radius[index], self.tangent[index])
 
-    def put(self, index: Any, some: Nodes) -> None:
-        """Replace some of them."""
-        self.radius[index] = some.radius
-        self.tangent[index] = some.tangent
-
-    @classmethod
-    def unknown(cls, count: int, m: int) -> Nodes:
-        """So many of which nothing is known."""
-        none = np.full((count, m), np.nan)
-        return cls(none, Ends(none.copy(), none.copy()))
-
     @classmethod
     def joined(cls, parts: list[Nodes]) -> Nodes:
         """One after the other."""

@@ -9,7 +9,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Piece, told
-from continuation.certificate.links import INFLATION, Nodes, largest_by_cell, settled
+from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
@@ -65,15 +65,12 @@ class Tubes:
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
     pieces : list of list of Piece
         Of each cell; none where it is not proved, or the engine's bounds do not hold for all radii.
-    ends : Nodes
-        The curve at the end of each cell, where they told that.
     """
 
     cells: Cells
     proved: Mask
     undefined: Mask
     pieces: list[list[Piece]]
-    ends: Nodes
 
 
 def search(engine: Engine, cells: Cells) -> Tubes:
@@ -91,14 +88,14 @@ def search(engine: Engine, cells: Cells) -> Tubes:
         np.concatenate([one.proved for one in found]),
         np.concatenate([one.undefined for one in found]),
         [some for one in found for some in one.pieces],
-        Nodes.joined([one.ends for one in found]),
     )
 
 
 def _search(engine: Engine, cells: Cells) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
-    ends, slabs = Nodes.unknown(count, scale.shape[1]), cells.slabs.copy()
-    radius = FIRST_RADII * scale / (2.0 * slabs[:, None])
+    slabs = cells.slabs.copy()
+    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    radius = np.maximum(FIRST_RADII * scale / (2.0 * slabs[:, None]), least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[Piece]] = [[] for _ in range(count)]
     pending = np.arange(count)
@@ -110,15 +107,12 @@ def _search(engine: Engine, cells: Cells) -> Tubes:
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        least = LEAST_RADIUS * scale[pending] + STILL_ULPS * EPS * np.maximum(np.abs(tried.begin), np.abs(tried.end))
-        wanted, kappa, _ = settled(judged, parts.owner, least, bounded, WIDE * scale[pending])
+        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, WIDE * scale[pending])
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
-            tube = wanted[parts.owner]
-            for piece in told(judged, parts, tube):
+            for piece in told(judged, parts, wanted[parts.owner]):
                 if good[piece.cell]:
                     known[pending[piece.cell]].append(piece)
-            ends.put(pending[good], _ends(parts, judged, tube).take(good))
         proved[pending] = good
         undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
@@ -128,18 +122,11 @@ def _search(engine: Engine, cells: Cells) -> Tubes:
             cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
             wider = np.where(good[:, None], wanted, INFLATION * wanted)
         slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
-        first = FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None])
+        first = np.maximum(FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), least[pending])
         again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(again[:, None], first, wider)
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Tubes(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
-
-
-def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
-    """The curve at the end of each cell, which its last slab knows, or nothing."""
-    last = np.flatnonzero(np.append(np.diff(slabs.owner) != 0, True))
-    found = judged.closed(tube)
-    return Nodes.unknown(len(last), tube.shape[1]) if found is None else Nodes(found[0][last], found[1][last])
+    return Tubes(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known)
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
@@ -149,26 +136,18 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
-    """Whether the tubes of these cells are proved, with the radii and slabs that they have; the curve at their ends.
+def check(engine: Engine, cells: Cells) -> Mask:
+    """Whether the tubes of these cells are proved, with the radii and slabs that they have, cell by cell.
 
     Parameters
     ----------
     engine : Engine
     cells : Cells
-
-    Returns
-    -------
-    good : ndarray of bool, shape (cells,)
-    ends : Nodes
-        Where the bounds tell it.
     """
-    good, ends = [], []
+    good = []
     for place in together(engine, cells):
         some = cells.take(place)
         parts = slabs_of(some)
         radius = some.radius[parts.owner]
-        judged = engine.judge(parts, radius)
-        good.append(_every(contracts(parts, judged, radius), parts.owner, len(some)))
-        ends.append(_ends(parts, judged, radius))
-    return np.concatenate(good), Nodes.joined(ends)
+        good.append(_every(contracts(parts, engine.judge(parts, radius), radius), parts.owner, len(some)))
+    return np.concatenate(good)

@@ -10,14 +10,14 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, cell_sizes, joined
+from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
-from continuation.numbers.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 
@@ -33,9 +33,6 @@ POINT_DISTANCE = 1e-4
 PARAMETER_STEPS = 30
 """Of Newton's method from the middle of a cell, along which its chart advances."""
 
-WIDER = 1.5
-"""A tube that does not hold its neighbour's node is tried with radii that do, and so much more."""
-
 
 def verified(
     engine: Engine,
@@ -43,7 +40,7 @@ def verified(
     path: Path,
     homotopy: Any,
     gaps: list[Gap],
-    found: tuple[list[Piece], Nodes] | None = None,
+    found: list[Piece] | None = None,
 ) -> Proof:
     """The proof that these cells make.
 
@@ -57,19 +54,18 @@ def verified(
     homotopy : Homotopy
     gaps : list of Gap
         Known already.
-    found : tuple of list of Piece and Nodes, optional
-        The pieces of the cells and the curve at their ends, where their tubes have been tested already.
+    found : list of Piece, optional
+        The pieces of the cells, where their tubes have been tested already.
     """
     gaps = list(gaps)
-    known, at = found or (None, Nodes.unknown(*cells.radius.shape))
     if found is None and len(cells):
-        good, at = check(engine, cells)
+        good = check(engine, cells)
         gaps += [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~good].tolist()]
-        cells, at = cells.take(good), at.take(good)
+        cells = cells.take(good)
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
-    cells, at, joints, ends = _joined_up(engine, cells, at)
+    at, joints, ends = _joined_up(engine, cells)
     gaps += [
         Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
         for k in np.flatnonzero(~joints)
@@ -84,7 +80,7 @@ def verified(
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
     places = [_place(cells, event, path.arclength) for event in path.events]
     _leave_out(engine, cells, path, places)
-    told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
+    told = _between_nodes(found or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
     if missing:
@@ -92,51 +88,20 @@ def verified(
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
-def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes, Mask, Nodes]:
-    """The cells with links between them, some of them widened for that; points of the curve at all nodes.
+def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
+    """Points of the curve at the ends of cells, which cells are linked to the next, and two more points.
 
-    Those that are `known`, to have a point in the tube, are not looked for again, unless they do not link. A wider tube
-    that is proved holds the same curve, and no other: what is known of its points stays.
-
-    The last two are those at the start, and at the end with the parameter for a chart.
+    These are at the start, and at the end with the parameter for a chart.
     """
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
-    ask = ~known.proved
-    at = Nodes(known.radius.copy(), known.tangent.copy())
-    s = np.ones(ask.sum() + 2)
+    s = np.ones(len(cells) + 2)
     s[-2] = 0.0
-    every = nodes(engine, joined([cells.take(ask), first, last]), s)
-    at.put(ask, every.take(slice(0, -2)))
+    every = nodes(engine, joined([cells, first, last]), s)
+    at, ends = every.take(slice(0, -2)), every.take(slice(-2, None))
     joints = linked(cells.take(slice(None, -1)), at.take(slice(0, -1)), cells.take(slice(1, None)))
-    # What the bounds of a tube tell of its end may be wide: that alone is looked at, and then with wider tubes.
-    for wider in (False, True):
-        left = np.flatnonzero(~joints)
-        if not len(left):
-            break
-        cells = _widened(engine, cells, at, left) if wider else cells
-        ask = ~at.proved if wider else np.append(~joints, False)
-        if ask.any():
-            at.put(ask, nodes(engine, cells.take(ask), np.ones(ask.sum())))
-        # Links that hold do so between wider tubes as well.
-        joints[left] = linked(cells.take(left), at.take(left), cells.take(left + 1))
-    return cells, at, joints, every.take(slice(-2, None))
-
-
-def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
-    """The cells, those to the left and to the right of links that fail with wider tubes, where these are proved."""
-    wanted, off = cells.radius.copy(), at.radius[left]
-    wanted[left] = np.fmax(wanted[left], WIDER * off)
-    least = reach(cells.take(left + 1), np.zeros(len(left)), Ends(-off, off))
-    wanted[left + 1] = np.fmax(wanted[left + 1], WIDER * least)
-    changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
-    if not len(changed):
-        return cells
-    good, _ = check(engine, cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed]))
-    radius = cells.radius.copy()
-    radius[changed[good]] = wanted[changed[good]]
-    return cells.with_tubes(radius, cells.slabs)
+    return at, joints, ends
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
@@ -172,15 +137,11 @@ def _beside(engine: Engine, cells: Cells, at: Nodes, first: Nodes, path: Path) -
     Of standing paths nodes are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
     count = len(cells)
-    owner, s = np.append(0, np.arange(count)), np.append(0.0, np.ones(count))
+    owner = np.append(0, np.arange(count))
     own, u = cells.take(owner), np.vstack([cells.begin[:1], cells.end])
     place = np.append(cells.place[0, 0], cells.place[:, 1])
     allowed = _allowed(own, u, place, path)
-    # What the test of a tube tells of its end may be wide.
-    far = np.asarray(~(np.vstack([first.radius, at.radius]) <= allowed).all(axis=1))
-    if far.any():
-        again = nodes(engine, own.take(far), s[far]).radius
-        far[far] = ~(again <= allowed[far]).all(axis=1)
+    far = ~(np.vstack([first.radius, at.radius]) <= allowed).all(axis=1)
     return [Gap(s, s, OFF_CURVE) for s in place[far].tolist()]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -14,16 +15,10 @@ from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
 from continuation.evaluation.products import difference_along, sizes
-from continuation.events.singularity import SECOND, full_derivative, row_sizes
+from continuation.events.singularity import SECOND, full_derivative
 
 JET_COLUMNS = 128
 """Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
-
-JETS_AGREE = 1e-3
-"""Jets are believed where they agree with a difference so well, relative to the largest."""
-
-TRIAL_DISTANCE = 1e-2
-"""How far beside the start, in extents."""
 
 Member = Callable[[Any], Any]
 """From mu to the homotopy."""
@@ -123,23 +118,8 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     with_jets = evolve(plain, jets=True)
     if U.size > JET_COLUMNS:
         return plain
-    try:
-        with np.errstate(all="ignore"):
-            # Each equation and each unknown in its own size: the difference of another one's round-off tells nothing.
-            left, columns = 1.0 / row_sizes(plain.evaluator(mu), extent, (u,)), np.append(extent, along[-1])
-            # Where a derivative vanishes its difference is round-off: a point beside the start decides then.
-            for beside in (u, u + TRIAL_DISTANCE * v):
-                both = (with_jets, plain)
-                if _alike(*(left * one.by_parameter(beside, mu) for one in both)) and _alike(
-                    *(columns * one.second(beside, mu, v, left) for one in both)
-                ):
-                    return with_jets
-    except (TypeError, ArithmeticError, ValueError, AttributeError):
-        pass
+    with suppress(TypeError, ArithmeticError, ValueError, AttributeError), np.errstate(all="ignore"):
+        if np.isfinite(with_jets.by_parameter(u, mu)).all():
+            with_jets.second(u, mu, v, np.ones(u.size - 1))
+            return with_jets
     return plain
-
-
-def _alike(found: Array, difference: Array) -> bool:
-    return found.shape == difference.shape and bool(
-        (np.abs(found - difference) <= JETS_AGREE * float(np.abs(difference).max())).all()
-    )

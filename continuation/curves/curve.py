@@ -13,11 +13,9 @@ from continuation.arguments.checks import FINITE, complain
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import GOVAERTS
-from continuation.curves.arguments import as_event, as_point, as_size
+from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import HopfCondition, Singular
-from continuation.curves.correcting import corrected
-from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
 from continuation.curves.local import Condition
 from continuation.curves.monitors import AlongTangent, Vanishing, plainly, without_tangent
@@ -152,7 +150,7 @@ class Curve:
     def _corrected(self) -> Array:
         """The point brought onto the curve at its mu, if Newton's method does that."""
         beside = [self._frequency] if self.event == Kind.HOPF else []
-        return corrected(self, np.array([*self.at[0], self.at[1], *beside]), self.mu, self.extents[:-1])
+        return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]))
 
     @property
     def extents(self) -> Array:

@@ -10,17 +10,10 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE, complain, real_vector
 from continuation.arrays import Array, Matrix
-from continuation.contraction import HALVING, Contraction, Iteration
-from continuation.correctors.base import holds
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
-
-SEARCHING = Contraction(iterations=60, ratio=np.inf)
-"""Newton's method far from a solution: its increments may grow, and it may wander for a while."""
-
-FOUND, NEARLY_FOUND = 1e-13, 1e-6
-"""The last increment, and that below which increments that no longer halve are round-off."""
+from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
 """By so much an increment of Newton's method for H alone may be longer than that for M H."""
@@ -164,32 +157,6 @@ class DeflatedSystem:
         return z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
 
 
-def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
-    """The solution at a value of the parameter that Newton's method finds from a guess.
-
-    `scale`, of shape (N,): What increments are measured by; the size of the guess by default.
-    Raises `ArithmeticError` if it does not converge.
-    """
-    evaluator = Evaluator(homotopy, Counts())
-    unit = np.append(np.zeros(guess.size), 1.0)
-    size = 1.0 + np.abs(guess) if scale is None else scale
-    newton = Iteration(np.append(guess, lam), SEARCHING)
-
-    def increment() -> Array:
-        return evaluator.factor(newton.x, unit).solve(-evaluator.residual(newton.x), 0.0)
-
-    def measure(step: Array) -> float:
-        return float(np.abs(step[:-1] / size).max())
-
-    def done(last: float) -> bool:
-        return last <= FOUND or (last < NEARLY_FOUND and newton.ratio >= HALVING)
-
-    with np.errstate(all="ignore"):
-        if not newton.run(increment, measure, done) or not holds(evaluator, newton.x):
-            raise ArithmeticError(f"Newton's method at lam = {lam:g} does not converge")
-    return newton.x[:-1]
-
-
 def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:
     """Solutions at a value of the parameter beside known ones: Newton's method on the deflated residual.
 
@@ -202,7 +169,7 @@ def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[
         while True:
             try:
                 # What is left is found to the last digit without the factor, which changes none of it.
-                y = solved(homotopy, lam, solved(Deflated(homotopy, every, scale=scale), lam, guess, scale), scale)
+                y = solve_at(homotopy, lam, solve_at(Deflated(homotopy, every, scale=scale), lam, guess))
             except ArithmeticError:
                 break
             if any(same_solution(y, other, scale) for other in every):

@@ -16,7 +16,7 @@ from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
-from continuation.diagrams.deflation import others, same_solution, solved
+from continuation.diagrams.deflation import others, same_solution
 from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import PointIndex
 from continuation.diagrams.points import points_of
@@ -26,7 +26,7 @@ from continuation.path import LocatedEvent, Path
 from continuation.status import Status
 from continuation.step.options import Options
 from continuation.step.start import guessed
-from continuation.tracing import trace
+from continuation.tracing import solve_at, trace
 
 WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.DIVERGED, Status.DEAD_END)
 """Ends of branches that leave nothing open."""
@@ -177,7 +177,7 @@ class BranchSearch:
         found = []
         for guess in guesses:
             try:
-                found.append(solved(self.homotopy, lam, guess))
+                found.append(solve_at(self.homotopy, lam, guess))
             except ArithmeticError:
                 found.append(guess)
         return found

@@ -68,12 +68,7 @@ class Banded:
         if other.ndim == 1 and len(self.ab) <= n:
             image: Array = dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other)
             return image
-        product = np.zeros(other.shape)
-        for k, diagonal in enumerate(self.ab):
-            below = k - self.upper  # the rows of this diagonal are its columns, shifted down by so many
-            first, last = max(0, -below), min(n, n - below)
-            if first < last:
-                product[first + below : last + below] += (diagonal[first:last] * other[first:last].T).T
+        product: Array = self.tosparse() @ other
         return product
 
 

@@ -13,6 +13,7 @@ from scipy.linalg.blas import dasum, dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
 from continuation.arrays import Array
+from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
@@ -49,14 +50,11 @@ class LU:
         return x
 
 
-FIRST, IN_PLACE = slice(None, -1), 1
-"""All components but the last; and that LAPACK may write over what it is given."""
-
 HIDDEN = 1e-10
 """An entry smaller than this part of the largest, once rows and columns are scaled, may be all that matters to its row,
 where units differ more than scaling by the largest can mend: six digits of it are left by a factorisation."""
 
-CORRECTIONS, BACKWARD_ERROR = 8, 16 * float(np.finfo(float).eps)
+CORRECTIONS = 8
 """At most so many, until each row holds to round-off of its own terms."""
 
 
@@ -90,18 +88,19 @@ class Dense:
         """
         factor = self.factor
         z = np.empty(r.size + 1)
-        z[FIRST] = r
+        z[:-1] = r
         z[-1] = rho
-        # Arguments of LAPACK and BLAS by position: by name they take as long as the work itself, for a few unknowns.
+        # Arguments of LAPACK and BLAS by position, the last 1 to write over what is given: by name they take as long as
+        # the work itself, for a few unknowns.
         if self.scale is not None:
             # By BLAS, which does not warn of overflow.
-            z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, IN_PLACE)
+            z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, 1)
         if self.whole is None:
-            dgetrs(factor.lu, factor.pivots, z, 0, IN_PLACE)
+            dgetrs(factor.lu, factor.pivots, z, 0, 1)
         else:
             z = self._corrected(*self.whole, z)
         if self.columns is not None:
-            z = dtbmv(0, self.columns, z, 1, 0, 0, 0, 0, IN_PLACE)
+            z = dtbmv(0, self.columns, z, 1, 0, 0, 0, 0, 1)
         if not isfinite(dasum(z)):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
@@ -149,7 +148,7 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     sizes = None if scale is None and columns is None else np.abs(whole)
     hidden = sizes is not None and sizes.min(where=sizes > 0.0, initial=1.0) < HIDDEN
     kept = (whole.copy(), sizes) if sizes is not None and hidden else None
-    lu, pivots, info = dgetrf(whole, IN_PLACE)
+    lu, pivots, info = dgetrf(whole, 1)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
     return Dense(

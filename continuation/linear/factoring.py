@@ -11,7 +11,6 @@ from continuation.arrays import Matrix
 from continuation.linear.cholmod import CholmodMethod
 from continuation.linear.look import Look
 from continuation.linear.multigrid import MultigridMethod
-from continuation.linear.pardiso import PardisoMethod
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
 
@@ -47,7 +46,7 @@ class SparseMethod(Protocol):
         ...
 
 
-EXTRAS: tuple[SparseMethod, ...] = (MultigridMethod(), CholmodMethod(), PardisoMethod())
+EXTRAS: tuple[SparseMethod, ...] = (MultigridMethod(), CholmodMethod())
 """What may be installed besides, in the order in which it is chosen."""
 
 METHODS = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))

@@ -8,13 +8,11 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.refine import BACKWARD_ERROR
 
 POSITIVE_SHARE = 0.25
 """Of the entries off the diagonal so many may be positive in a matrix of the diffusion kind: coarser problems that
 Galerkin's way makes of one have a few."""
-
-SYMMETRY_ROUNDING = 16 * float(np.finfo(float).eps)
-"""Of what should be alike or cancel, a_ij and a_ji or a row that sums to zero, relative to the diagonal."""
 
 
 @frozen(eq=False, slots=False)
@@ -60,7 +58,7 @@ class Look:
             return True
         root = np.sqrt(self.diagonal)
         size = root[self.matrix.indices] * np.repeat(root, np.diff(self.matrix.indptr))
-        return bool((np.abs(here - across) <= SYMMETRY_ROUNDING * size).all())
+        return bool((np.abs(here - across) <= BACKWARD_ERROR * size).all())
 
     @cached_property
     def diffusion(self) -> bool:
@@ -77,4 +75,4 @@ class Look:
     @cached_property
     def dominant(self) -> bool:
         """Whether its diagonal is positive and dominates the rows: with symmetry, no eigenvalue is negative."""
-        return bool((self.row_sums <= 2.0 * self.diagonal * (1.0 + SYMMETRY_ROUNDING)).all())
+        return bool((self.row_sums <= 2.0 * self.diagonal * (1.0 + BACKWARD_ERROR)).all())

@@ -11,6 +11,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import cg
 
 from continuation.arrays import Array
+from continuation.contraction import HALVING
 from continuation.linear.look import Look
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
@@ -19,11 +20,8 @@ GAINED = 1e-7
 """What one run of conjugate gradients leaves of a residual: two or three bring it to round-off. With one alone its
 recurrence would say that more is gained than is."""
 
-RUNS, ITERATIONS = 6, 60
+ITERATIONS = 60
 """A run takes four to eight on grids of 1e4 to 1e6 points; where these are not enough multigrid is no good."""
-
-WORTH_MORE = 0.1
-"""A run that gains less than a digit is the last."""
 
 GOOD_ENOUGH = 1e-12
 """Normwise backward error of the point that is then given back; beyond it the matrix is factored after all."""
@@ -51,18 +49,18 @@ class Multigrid:
         """The solution of A x = rhs, shape (N,): its residual is measured."""
         A, sums = self.look.matrix, self.look.row_sums
         x: Array = np.zeros_like(rhs)
-        gap, before = rhs, np.inf
-        for _ in range(RUNS):
+        gap, off, before = rhs, 1.0, np.inf
+        # A run that does not halve what is left is the last.
+        while off <= HALVING * before:
             step, left = cg(A, gap, rtol=GAINED, maxiter=ITERATIONS, M=self._preconditioner)
             if left or not np.isfinite(step).all():
                 break
-            x = x + step
+            x, before = x + step, off
             gap = rhs - A @ x
             size = sums * np.abs(x).max() + np.abs(rhs)
             off = float((np.abs(gap) / np.where(size > 0.0, size, 1.0)).max())
-            if off <= BACKWARD_ERROR or (off <= GOOD_ENOUGH and off > WORTH_MORE * before):
+            if off <= BACKWARD_ERROR or (off <= GOOD_ENOUGH and off > HALVING * before):
                 return x
-            before = off
         direct = self._direct
         return np.full_like(rhs, np.nan) if direct is None else np.asarray(direct.solve(rhs))
 

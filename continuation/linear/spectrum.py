@@ -113,9 +113,28 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
     if matrix.shape[0] <= ALL_OF_DENSE and k is None:
-        whole = matrix.toarray() if issparse(matrix) else matrix
-        return _counted(eigvals(side * np.asarray(whole, dtype=float)))
+        return _counted(_all(side * matrix))
     return _nearest(side * matrix, WANTED if k is None else k)
+
+
+def nearest_zero(matrix: Matrix, k: int) -> Any:
+    """The eigenvalues of a small matrix, or the k nearest to zero of a large one, to four digits.
+
+    `matrix`: ndarray or sparse array, shape (N, N). Raises `ArithmeticError` as `spectrum`.
+    """
+    n = matrix.shape[0]
+    if n <= ALL_OF_DENSE:
+        return _all(matrix)
+    shift = LEAST_SHIFT * float(np.abs(matrix.diagonal()).max())
+
+    def known(theta: Any, error: Array) -> bool:
+        return bool((error <= DIGITS * np.abs(theta)).all())
+
+    return shift + 1.0 / dominant(_solver(matrix, shift), generic_vector(n), min(k, n), known)[0]
+
+
+def _all(matrix: Matrix) -> Any:
+    return eigvals(np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float))
 
 
 def plain(matrix: Matrix) -> Matrix:

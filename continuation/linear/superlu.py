@@ -93,14 +93,7 @@ class SuperLUMethod:
     """
 
     name: ClassVar[str] = "superlu"
-    needs: ClassVar[str] = "scipy"
-    signed: ClassVar[bool] = True
-    least: ClassVar[float] = 0.0
     weak_pivots: bool = True
-
-    def suits(self, look: Look) -> bool:
-        """Always."""
-        return True
 
     def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None where a pivot is exactly zero."""

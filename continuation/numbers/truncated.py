@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 from scipy.sparse import issparse
 
 from continuation.arrays import Array
@@ -23,38 +25,14 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {}
 """Rules by numpy function. The package fills it from `functions`, whose rules are built on `Truncated`."""
 
 
-def _operator(ufunc: np.ufunc, *, swapped: bool = False) -> Callable[[Truncated, Any], Any]:
-    def method(self: Truncated, other: Any) -> Any:
-        return self._call(ufunc, (other, self) if swapped else (self, other))
-
-    return method
+METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
+"""Functions of numpy that arrays have as methods."""
 
 
-def _in_place(ufunc: np.ufunc) -> Callable[[Truncated, Any], Any]:
-    def method(self: Truncated, other: Any) -> Any:
-        result = self._call(ufunc, (self, other))
-        if self.ndim == 0:  # as numpy's scalars, which never change
-            return result
-        self[...] = result
-        return self
-
-    return method
-
-
-def _method(function: Any) -> Callable[..., Any]:
-    def method(self: Truncated, *args: Any, **keywords: Any) -> Any:
-        return function(self, *args, **keywords)
-
-    parameters = "Parameters\n----------\n*args, **keywords\n    As for that function."
-    method.__doc__ = f"`numpy.{function.__name__}` of this array.\n\n{parameters}"
-    return method
-
-
-class Truncated:
+class Truncated(NDArrayOperatorsMixin):
     """An array of truncated series that goes through numpy as an array of its shape would."""
 
     __slots__ = ("algebra", "c")
-    __hash__ = None  # type: ignore[assignment]
 
     OWN: ClassVar[int]
     WHO: ClassVar[str]
@@ -97,15 +75,17 @@ class Truncated:
 
     def __getattr__(self, name: str) -> Any:
         # numpy's loops over object arrays call a method of the function's name on each entry.
-        ufunc = getattr(np, name, None)
-        if ufunc not in ELEMENTARY:
+        function = getattr(np, name, None)
+        if function not in ELEMENTARY and function not in METHODS:
             raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
-        return lambda: self._call(ufunc, (self,))
+        return partial(function, self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return wrap, (self.c.copy(), self.algebra)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        if method == "__call__" and not keywords:  # at once: it is asked for each operator
+            return self._call(ufunc, inputs)
         name = f"numpy.{ufunc.__name__}"
         if method != "__call__":
             raise self.unknown(f"{name}.{method}")
@@ -113,7 +93,7 @@ class Truncated:
         if keywords:
             raise self.unknown(f"{name} with {', '.join(keywords)}")
         result = self._call(ufunc, inputs)
-        if out is None:
+        if out is None or (isinstance(out, Truncated) and out.ndim == 0):  # scalars of numpy never change
             return result
         if not isinstance(out, Truncated):
             raise TypeError(
@@ -136,29 +116,6 @@ class Truncated:
             except TypeError as mismatch:
                 raise self.unknown(f"{name} with these arguments ({mismatch})") from None
             raise
-
-    __add__, __radd__, __iadd__ = _operator(np.add), _operator(np.add, swapped=True), _in_place(np.add)
-    __sub__, __rsub__ = _operator(np.subtract), _operator(np.subtract, swapped=True)
-    __isub__ = _in_place(np.subtract)
-    __mul__, __rmul__ = _operator(np.multiply), _operator(np.multiply, swapped=True)
-    __imul__ = _in_place(np.multiply)
-    __truediv__, __rtruediv__ = _operator(np.divide), _operator(np.divide, swapped=True)
-    __itruediv__ = _in_place(np.divide)
-    __pow__, __rpow__ = _operator(np.power), _operator(np.power, swapped=True)
-    __ipow__ = _in_place(np.power)
-    __matmul__, __rmatmul__ = _operator(np.matmul), _operator(np.matmul, swapped=True)
-    __lt__, __le__ = _operator(np.less), _operator(np.less_equal)
-    __gt__, __ge__ = _operator(np.greater), _operator(np.greater_equal)
-    __eq__, __ne__ = _operator(np.equal), _operator(np.not_equal)
-
-    def __neg__(self) -> Any:
-        return wrap(-self.c, self.algebra)
-
-    def __pos__(self) -> Any:
-        return self.copy()
-
-    def __abs__(self) -> Any:
-        return self._call(np.absolute, (self,))
 
     @property
     def T(self) -> Any:
@@ -201,9 +158,6 @@ class Truncated:
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
         own = self.OWN
         return self.moved(lambda x: x.transpose(*range(own), *(axis + own for axis in order)))
-
-    sum, mean, prod, squeeze = _method(np.sum), _method(np.mean), _method(np.prod), _method(np.squeeze)
-    cumsum, dot = _method(np.cumsum), _method(np.dot)
 
     # --- not for functions that are evaluated ---------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from attrs import Factory, evolve, field, fields_dict, frozen
 
 from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
 from continuation.arrays import Array
-from continuation.curves.arguments import as_point
+from continuation.curves.beginning import as_point
 from continuation.evaluation.products import sizes
 from continuation.events import Event
 from continuation.metric import Weighted

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.curves.arguments import as_point
+from continuation.curves.beginning import as_point
 from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from problems.orbits.orbit import PeriodicOrbit
 

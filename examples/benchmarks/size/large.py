@@ -80,7 +80,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("row", choices=[*ROWS])
     parser.add_argument("--size", type=int, default=316)
-    parser.add_argument("--way", default="auto", help="superlu, cholmod, amg, pardiso, auto")
+    parser.add_argument("--way", default="auto", help="superlu, cholmod, amg, auto")
     arguments = parser.parse_args()
     for name, value in measured(arguments.row, arguments.size, arguments.way).items():
         print(f"{name}: {value}")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from continuation.linear.factoring import Factoring
-from continuation.linear.look import SYMMETRY_ROUNDING
+from continuation.linear.refine import BACKWARD_ERROR
 from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
@@ -105,7 +105,7 @@ def _smooth(A: Matrix) -> Array:
     d, diagonal = np.ones(A.shape[0]), A.diagonal()
     for _ in range(SMOOTHINGS):
         off = (A @ d) / diagonal
-        if (off >= -SYMMETRY_ROUNDING * d).all():
+        if (off >= -BACKWARD_ERROR * d).all():
             break
         d = np.maximum(d - DAMPING * off, 0.1 * d)
     return d

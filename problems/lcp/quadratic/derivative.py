@@ -46,12 +46,6 @@ def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
     return total + Ends(lower, upper)
 
 
-def at_points(form: Quadratic, u: Array) -> Ends:
-    """H at points, shape (slabs, N)."""
-    alpha, beta, value = (_apply(part, thin(u[:, None])) for part in (form.first, form.second, form.plain))
-    return (value + alpha * beta)[:, 0]
-
-
 @frozen(eq=False)
 class Derivative:
     """H' along the cubic: coefficient k is plain (k = 0) + diag(alpha_k) second + diag(beta_k) first.

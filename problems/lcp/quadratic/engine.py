@@ -37,7 +37,6 @@ class ByProducts:
     exact: ClassVar[bool] = True
     order: ClassVar[int] = 3
     most: ClassVar[int] = 4
-    fine: ClassVar[int] = 1
 
     def together(self, m: int) -> int:
         """See `Engine`."""

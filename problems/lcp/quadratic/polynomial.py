@@ -19,13 +19,10 @@ from continuation.certificate.engine import up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.numbers.ends import EPS, Ends, accumulated, thin
 from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
-from problems.lcp.quadratic.derivative import Derivative, at_points
+from problems.lcp.quadratic.derivative import Derivative
 
 SHARE = 1e-3
 """Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""
-
-LEAST, SPARE = 1e-9, 2.0
-"""At a node: the least box, of the tube's; and how much wider than its contraction asks for."""
 
 TERMS = 6
 """Of the series for the tangent: what is left of it is bounded in the shape of the tube, which is not its own."""
@@ -277,25 +274,3 @@ class Polynomial:
             v = up_by(self._along(2) + self.d * (2.0 * self._turned(drift) + self._pushed(more)), 8)
             again = self._solved(v, radius, tube, TERMS)[:, -1:]
             return first + room, two * second + Ends(-again, again)
-
-    def closed(self, tube: Array) -> tuple[Array, Ends]:
-        """See `Judged.closed`.
-
-        As |I - Y G'| r <= kappa r for the tube's r, it is for q r, q < 1, as well; the test holds for some of them.
-        """
-        cells, one = self.slabs.cells, np.ones((len(self.slabs), 1))
-        with np.errstate(all="ignore"):
-            x = thin(one) - thin(self.slabs.middle[:, None])
-            known = (x.hi <= self.slabs.offset[:, None]) & (x.lo >= 0.0)
-            residual = Ball.of(at_points(self.derivative.form, cells.end)[..., None])
-            image = residual.through(self.Y[:, :, :-1], self.size_Y).size[..., 0]
-            both = np.concatenate([x.hi * image, x.hi**2 * image], axis=1)
-            misfit = up_by(self.d * (image + image_of(self.sizes, both)), 8)
-            kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True)
-            least = (misfit / tube).max(axis=1, keepdims=True)
-            part = np.maximum(SPARE * least / (1.0 - kappa), LEAST) * (1.0 + 16.0 * EPS)
-            good = known & (kappa < 1.0 - 16.0 * EPS) & (part < 1.0)
-            radius = np.where(good, part * tube, np.nan)
-            radius = np.fmin(radius, up_by(misfit + self.spread(radius, radius), 2))
-            room = self._drift(radius, tube, 0)
-            return radius, thin(cells.slope_end) + Ends(-room, room)

@@ -177,10 +177,10 @@ def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
     homotopy, _, proof = corrupted.subjects(3)[0]
     engine = engine_of(homotopy)
     wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
-    assert tubes.check(engine, proof.cells)[0].all()
-    assert not tubes.check(engine, wide)[0].all()
+    assert tubes.check(engine, proof.cells).all()
+    assert not tubes.check(engine, wide).all()
     monkeypatch.setattr(tubes, "contracts", lambda slabs, judged, radius: (judged.misfit < radius).all(axis=1))
-    assert tubes.check(engine, wide)[0].all()
+    assert tubes.check(engine, wide).all()
 
 
 def test_a_branch_point_is_a_gap_with_its_reason():

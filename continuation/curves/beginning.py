@@ -1,4 +1,4 @@
-"""What a curve is asked for: an event, and a point where it begins."""
+"""Where a curve begins: at what event, near which point, and that point brought onto the curve."""
 
 from __future__ import annotations
 
@@ -7,13 +7,26 @@ from typing import Any
 import numpy as np
 
 from continuation.arguments.checks import complain, real_vector
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import sizes
+from continuation.linear.spectrum import nearest_zero
 from continuation.path.steps import LocatedEvent
+from continuation.point.projection import PathSolver
 from continuation.status import Kind
+from continuation.step.start import at_parameter
+from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """What an event can be by its kind alone; of others the function is needed."""
+
+NEAREST = 40
+"""Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
+those of a discretised problem, whose other eigenvalues are far on the stable side."""
+
+NEAR_AXIS = 0.1
+"""The largest real part of a pair, relative to its size, that Newton's method is to bring to the imaginary axis."""
 
 
 def as_event(value: Any) -> Any:
@@ -51,3 +64,26 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
     if found.shape != u.shape or not (found > 0.0).all():
         raise complain(ValueError, "size", f"{u.size} positive numbers", size)
     return found
+
+
+def corrected(homotopy: Any, u: Array) -> Array:
+    """The unknowns at the parameter of a guess u, shape (N + 1,), by Newton's method; the guess where that fails."""
+    try:
+        with np.errstate(all="ignore"):
+            return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance()), u)[:-1]
+    except ArithmeticError:
+        return u[:-1]
+
+
+def frequency_at(H_y: Matrix) -> float:
+    """The imaginary part of the pair.
+
+    `H_y` of shape (N, N). Raises `ValueError` if no pair is near the axis.
+    """
+    values = nearest_zero(H_y, NEAREST)
+    pairs = values[values.imag > 0.0]
+    off = np.abs(pairs.real) / np.abs(pairs)
+    if not pairs.size or off.min() > NEAR_AXIS:
+        found = f"{pairs[int(np.argmin(off))]:.3g}" if pairs.size else "none that is not real"
+        raise ValueError(f"at: expected a pair of eigenvalues of H_y near the imaginary axis, found {found}")
+    return float(pairs[int(np.argmin(off))].imag)
