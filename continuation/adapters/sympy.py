@@ -101,8 +101,8 @@ def from_sympy(
     expanded: dict[str, Any] = {}
 
     def special(one: Any) -> bool:
-        known = not one.func.__module__.startswith("sympy.functions.special")
-        return not known and sum(bool(part.free_symbols) for part in one.args) == 1
+        beyond = one.func.__module__.startswith("sympy.functions.special")
+        return beyond and sum(bool(part.free_symbols) for part in one.args) == 1
 
     def renamed(one: Any) -> Any:
         name, x = f"series_{len(expanded)}", sp.Dummy(real=True)
@@ -126,7 +126,7 @@ def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
 
     @cache
     def derivative(k: int) -> Callable[[Any], Any]:
-        found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k) if k else one, modules=MODULES)
+        found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k), modules=MODULES)
         return found
 
     def value(u: Any) -> Any:
