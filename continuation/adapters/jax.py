@@ -63,7 +63,8 @@ class JaxHomotopy:
             jax.eval_shape(series, u, np.zeros((2, u.size)))
             put("taylor", self._taylor)
         except (KeyError, NotImplementedError, TypeError, ValueError):
-            # A function without a rule in jet: points of the path serve then.
+            # A function without a rule in jet: points of the path serve then. Nested forward derivatives would, too,
+            # but of three unknowns order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
             pass
         if self.kind != "sparse":
             put("jacobian", self._dense if self.kind == "dense" else self._operator)

@@ -1,9 +1,10 @@
-"""A residual in SymPy: its expressions and their derivatives, compiled to numpy with common parts once."""
+"""A residual in SymPy: its expressions and their derivatives, compiled to numpy and scipy with common parts once."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, partial
+from math import factorial
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,9 @@ from continuation.adapters.given import filled, library, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import Pattern, pattern_of
+from continuation.jets import Jet
+
+MODULES = ["scipy", "numpy"]
 
 
 @frozen(eq=False)
@@ -54,7 +58,8 @@ def from_sympy(
 ) -> SympyHomotopy:  # fmt: skip
     """Make a homotopy of expressions of SymPy.
 
-    Its derivative is symbolic; SERIES expands the compiled expressions by `continuation.jets`.
+    Its derivative is symbolic; SERIES expands the compiled expressions by `continuation.jets`, special functions in
+    them by their symbolic derivatives. Symbols are real numbers.
 
     Parameters
     ----------
@@ -85,12 +90,51 @@ def from_sympy(
     if others:
         wanted = "no symbols but the unknowns and the parameter"
         raise complain(ValueError, "expressions", wanted, sorted(map(str, others)))
-    place = {symbol: j for j, symbol in enumerate(symbols)}
-    places = [(i, place[s]) for i, one in enumerate(rows) for s in one.free_symbols if s != parameter]
+    given = rows, symbols, parameter
+    # Of a symbol that may be complex |x| has no derivative.
+    real = [sp.Dummy(str(symbol), real=True) for symbol in (*symbols, parameter)]
+    rows = [one.xreplace(dict(zip((*symbols, parameter), real))) for one in rows]
+    place = {symbol: j for j, symbol in enumerate(real[:-1])}
+    places = [(i, place[s]) for i, one in enumerate(rows) for s in one.free_symbols if s != real[-1]]
     pattern = pattern_of([i for i, _ in places], [j for _, j in places], n)
-    entries = [sp.diff(rows[i], symbols[j]) for i, j in zip(pattern.rows, pattern.columns)]
-    compiled = partial(sp.lambdify, [*symbols, parameter], modules="numpy", cse=True)
-    return SympyHomotopy(
-        (rows, symbols, parameter), compiled(rows), compiled([*entries, *(sp.diff(one, parameter) for one in rows)]),
-        pattern, y0, lam0, target,
-    )  # fmt: skip
+    entries = [_slope(sp, rows[i], real[j]) for i, j in zip(pattern.rows, pattern.columns)]
+    expanded: dict[str, Any] = {}
+
+    def special(one: Any) -> bool:
+        beyond = one.func.__module__.startswith("sympy.functions.special")
+        return beyond and sum(bool(part.free_symbols) for part in one.args) == 1
+
+    def renamed(one: Any) -> Any:
+        name, x = f"series_{len(expanded)}", sp.Dummy(real=True)
+        argument = next(part for part in one.args if part.free_symbols)
+        expanded[name] = _by_derivatives(sp, one.xreplace({argument: x}), x)
+        return sp.Function(name)(argument)
+
+    values = [one.replace(special, renamed) for one in rows]
+    compiled = partial(sp.lambdify, real, modules=[expanded, *MODULES], cse=True)
+    slopes = [*entries, *(_slope(sp, one, real[-1]) for one in rows)]
+    return SympyHomotopy(given, compiled(values), compiled(slopes), pattern, y0, lam0, target)
+
+
+def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
+    """The derivative, at a jump that of either side."""
+    return sp.diff(one, x, order).replace(sp.DiracDelta, lambda *_: sp.Integer(0))
+
+
+def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
+    """A function of one number or jet, whose series comes from its derivatives."""
+
+    @cache
+    def derivative(k: int) -> Callable[[Any], Any]:
+        found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k), modules=MODULES)
+        return found
+
+    def value(u: Any) -> Any:
+        if not isinstance(u, Jet):
+            return derivative(0)(u)
+        at, found = u.coefficient(0), 0.0 * u
+        for k in range(u.order, -1, -1):
+            found = found * (u - at) + derivative(k)(at) / factorial(k)
+        return found
+
+    return value

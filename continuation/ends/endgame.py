@@ -266,8 +266,11 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
         error[-1] = 0.0
         ends.append(SingularLimit(np.append(value[:-1], target), largest(error), w, norm(weights, error)))
-    least = min(end.length for end in ends)
-    return next(end for end in ends if end.length <= EQUALLY_GOOD * least)
+    known = [end for end in ends if np.isfinite(end.length)]
+    if not known:
+        raise EvaluationError("the samples of the endgame overflow")
+    least = min(end.length for end in known)
+    return next(end for end in known if end.length <= EQUALLY_GOOD * least)
 
 
 def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:

@@ -48,6 +48,7 @@ VANISHING_SHARE = 1e-18
 END_CORRECTIONS = 4
 """Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
 
+
 class EndsAt(Enum):
     """What a path may end on."""
 

@@ -109,20 +109,21 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 
 
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
-    """The same for a typical row, and x twice as large: one row or column in twice the units changes next to nothing.
+    """The same for a typical row: one row or column in twice the units changes next to nothing.
 
-    Of 100 paths from random starts of ten Gaussian problems (n = 100) 36 solve with it, 30 with x half as large, 28 by
-    `natural_units`, where rows of 2 to 4 times the length that balancing leaves make x so much smaller.
+    Rows of 2 to 4 times the length that balancing leaves make x by `natural_units` so much smaller. Of 40 piles of
+    bodies (n = 44 to 520) KKT paths from here solve 18 in 34 s, from natural units 17 in 39 s, from twice this 19 in
+    31 s; but 22 monotone problems (n = 20 to 50) take 294, 276 and 335 factorisations.
     """
-    return _units(problem, np.mean, 0.5)
+    return _units(problem, np.mean)
 
 
-def _units(problem: MixedLCP, of_rows: Callable[[Array], Any], share: float = 1.0) -> tuple[float, float]:
+def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, float]:
     most = largest_entries(problem)[1]
     # Squares of what is far from 1 are no floats; over a power of two no digit is another one.
     unit = 1.0 if SQUARED[0] < most < SQUARED[1] else 2.0 ** (math.frexp(most)[1] - 1)
     A = problem.A if unit == 1.0 else problem.A / unit
-    row = share * math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
+    row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w
 
@@ -162,14 +163,14 @@ def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) ->
 
 
 def default_start(problem: MixedLCP) -> Start:
-    """All components of x alike, in natural units; feasible where that is, else relaxed; centred.
+    """All components of x alike, in typical units; feasible where that is, else relaxed; centred.
 
     Parameters
     ----------
     problem : MixedLCP
     """
     require_problem(problem)
-    return relaxed_start(problem, inside_start(problem, natural_units(problem)[0]))
+    return relaxed_start(problem, inside_start(problem, typical_units(problem)[0]))
 
 
 def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
@@ -186,6 +187,9 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """A relaxed start for another try: scale, balance and components random; all products x0 z1 equal, and all w0 z2.
 
+    The scale is a power of ten, in natural units, without bounds in twice those that are typical: of 100 paths of ten
+    Gaussian problems (n = 100) 36 solve so, 30 in these, 28 in natural ones.
+
     Parameters
     ----------
     problem : MixedLCP
@@ -194,10 +198,12 @@ def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
-    x, w = typical_units(problem) if problem.standard else natural_units(problem)
     scale = 10.0 ** generator.uniform(*START_DISTANCES)
     if not problem.standard:
+        x, w = natural_units(problem)
         return _random_inside(problem, generator, scale * x, scale * w)
+    x, w = typical_units(problem)
+    x *= 2.0
     balance = 10.0 ** generator.normal(*BALANCE)
     x0 = scale * x * np.exp(LOG_DEVIATION * generator.standard_normal(problem.n))
     w0 = np.maximum(problem.w(x0), 0.0) + scale * w * np.exp(LOG_DEVIATION * generator.standard_normal(problem.n))

@@ -11,6 +11,7 @@ from continuation.certificate.certifying import engine_of
 from continuation.numbers.ends import thin
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy, YuHomotopy
+from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.quadratic.polynomial import Polynomial
 
 SLACK = 1.0 + 1e-6
@@ -75,7 +76,8 @@ def test_what_is_bounded_is_smaller(Homotopy, n):
 
 def test_the_parameter_moves_along_the_curve_as_is_bounded():
     rng = np.random.default_rng(0)
-    homotopy = KKTHomotopy(LCP(rng.normal(size=(20, 20)), rng.normal(size=20)))
+    problem = LCP(rng.normal(size=(20, 20)), rng.normal(size=20))
+    homotopy = KKTHomotopy(problem, np.full(20, natural_units(problem)[0]))
     path = trace(homotopy)
     proof = certify(path, homotopy)
     slabs = slabs_of(proof.cells)

@@ -29,7 +29,7 @@ def restart(problem, k, **changes):
 
 def test_starts_are_centred_positive_and_at_their_distance():
     problem = planted(1)
-    x, w = typical_units(problem)
+    x, w = 2.0 * typical_units(problem)[0], typical_units(problem)[1]
     for k in range(20):
         start = lcp.random_start(problem, np.random.default_rng(k))
         assert min(a.min() for a in (start.x0, start.z1, start.z2, start.w0)) > 0.0
@@ -76,6 +76,7 @@ def test_one_row_in_other_units_hardly_moves_the_starts():
     other = lcp.LCP(units[:, None] * problem.A, units * problem.q)
     assert natural_units(other)[0] < 0.5 * natural_units(problem)[0]
     assert typical_units(other)[0] > 0.75 * typical_units(problem)[0]
+    assert lcp.default_start(other).x0[0] > 0.75 * lcp.default_start(problem).x0[0]
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
