@@ -7,6 +7,7 @@ from typing import Any
 from continuation.auditing.retrace import Halved
 from continuation.certificate.certifying import certify
 from continuation.certificate.proof import Proof
+from continuation.linear.threads import one_thread
 from continuation.step.options import Options
 from continuation.step.tracer import Tracer
 
@@ -14,10 +15,12 @@ TRACES = 4
 """Traces at most, each with steps half as long as the one before."""
 
 
+@one_thread
 def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
     """Options with which the path is proved, or the part of it that is longest, and the proof.
 
-    A trace is the same each time, so that the one that is recorded afterwards is the one that was proved.
+    A trace is the same each time, on as many threads, so that the one that is recorded afterwards is the one that was
+    proved.
 
     Parameters
     ----------

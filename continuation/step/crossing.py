@@ -146,7 +146,7 @@ class Crossings:
             return None
         if seen is None and flipped and self._derivative(arc.b.u) is None:
             # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
-            seen = self._found(arc, arc.segment.at(0.5))
+            seen, told = self._found(arc, arc.segment.at(0.5)), {}
         if isinstance(seen, _BranchPoint):
             return self._over(arc, attempt, seen, told, flipped, ends)
         return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
