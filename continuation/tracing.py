@@ -14,6 +14,7 @@ from continuation.arguments.checks import check_flag, complain, instance_with, i
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
+from continuation.linear.threads import one_thread
 from continuation.path import Path
 from continuation.point.projection import PathSolver
 from continuation.status import Status
@@ -25,6 +26,7 @@ from continuation.tolerance import Tolerance, as_tolerance
 
 
 @documented
+@one_thread
 def trace(
     homotopy: Any,
     *,
