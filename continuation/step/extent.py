@@ -114,21 +114,30 @@ def initial_extent(
     # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    noise = evaluator.measure_noise(u, (nearest if np.isfinite(nearest) else length) * v, residual)
+    # Terms may vanish at the start, as those of a structure at rest do, and their noise with them: it is measured where
+    # the search begins.
+    ahead = SEARCH_START * length if not u[:-1].any() else 0.0
+    way = (nearest if np.isfinite(nearest) else length) * v
+    try:
+        noise = evaluator.measure_noise(u + ahead * v, way, evaluator.residual(u + ahead * v))
+    except EvaluationError:
+        ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
     # Across the path: first with that component held which is known best beside its motion; one that stands still holds
     # nothing, even where no noise is seen in it.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
-    v = np.where(length * size > UNCERTAIN * blur, v, 0.0)
+    v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
     unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
+    # One component has none there, as it is held or the median in both samples: it has as little as the next.
+    unseen = np.maximum(unseen, size * np.sort(unseen[moving] / size[moving])[:2].max(initial=0.0))
     h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
         try:
-            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen)
+            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)))
         except Exception:
             # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
             d, turned = off, np.inf

@@ -87,7 +87,7 @@ def test_the_first_scales_are_found_in_a_few_looks(n):
     """
     tracer = Tracer(ExponentialCosine(n))
     next(iter(tracer))
-    assert tracer.counts.residuals <= 2 * 8 + 3 + 2 + 3 * 6
+    assert tracer.counts.residuals <= 2 * 8 + 3 + 2 + 3 * 8
 
 
 @every_preset

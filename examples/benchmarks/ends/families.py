@@ -80,6 +80,58 @@ def localised(generator: np.random.Generator) -> Case:
     return Case(residual, (np.array(y), 0.6 + 0.6**3), 2.0)
 
 
+def hysteresis(generator: np.random.Generator) -> Case:
+    """lam = y^3 - d y between its folds, d = 1e-4 to 1, with an unknown that follows and is d times as large."""
+    d = 10.0 ** generator.uniform(-4.0, 0.0)
+    return Case(
+        lambda y, lam: np.stack([y[0] ** 3 - d * y[0] - lam, y[1] - d * y[0] ** 2]),
+        (np.array([-1.5, 2.25 * d]), -(1.5**3) + 1.5 * d), 1.5**3 - 1.5 * d, folds=2,
+    )  # fmt: skip
+
+
+def cells(generator: np.random.Generator) -> Case:
+    """A ring of coupled cells that are alike but for 1e-2 to 1e-14, from beside zero over their pitchfork."""
+    n, eps, c = (
+        int(generator.integers(3, 10)),
+        10.0 ** generator.uniform(-14.0, -2.0),
+        float(generator.uniform(0.5, 2.0)),
+    )
+
+    # All cells alike: lam y - y^3 + eps = 0. What couples them has no part in that.
+    def residual(y: Any, lam: Any) -> Any:
+        return lam * y - y**3 + eps + c * (np.roll(y, 1) + np.roll(y, -1) - 2.0 * y)
+
+    return Case(residual, (np.full(n, eps), -1.0), 1.0)
+
+
+def pattern(generator: np.random.Generator) -> Case:
+    """The trunk of Swift and Hohenberg's equation on a ring, zero by symmetry, over its patterns' branch points."""
+    n, length = int(generator.integers(8, 25)), float(generator.uniform(2.0, 6.0))
+    k = np.fft.fftfreq(n, 1.0 / n) / length
+    L = np.fft.ifft(((1.0 - k**2) ** 2)[:, None] * np.fft.fft(np.eye(n), axis=0), axis=0).real
+    return Case(lambda y, lam: lam * y - L @ y + 1.2 * y**2 - y**3, (np.zeros(n), -1.0), 0.4)
+
+
+def truss(generator: np.random.Generator) -> Case:
+    """A star of bars, at rest, pressed down in its middle: sideways it moves by the rounding of cosines alone."""
+    bars, rise = int(generator.integers(3, 12)), float(generator.uniform(0.5, 1.5))
+    at = float(generator.uniform(0.0, 6.0))
+    feet = np.array([[np.cos(at + a), np.sin(at + a), -rise] for a in 2.0 * np.pi * np.arange(bars) / bars])
+
+    # Energy sum (|bar|^2 - |bar at rest|^2)^2 / 8: forces are polynomials, the load is least at the fold.
+    def residual(y: Any, lam: Any) -> Any:
+        stretch = [((y - foot) * (y - foot)).sum() - 1.0 - rise**2 for foot in feet]
+        force = [0.5 * e * (y - foot) for e, foot in zip(stretch, feet)]
+        total = force[0]
+        for part in force[1:]:
+            total = total + part
+        return total + lam * np.array([0.0, 0.0, 1.0])
+
+    # On the axis the force is bars z' (z'^2 - rise^2) / 2, z' = rise + z: its least value is the fold's load.
+    fold = bars * rise**3 / 27.0**0.5
+    return Case(residual, (np.zeros(3), 0.0), 0.8 * fold)
+
+
 def weak(generator: np.random.Generator) -> Case:
     """A parameter that enters by 1e-3 to 1e-12."""
     small, m = 10.0 ** generator.uniform(-12.0, -3.0), float(generator.uniform(1.0, 3.0))
@@ -113,6 +165,10 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "imperfections": imperfect,
     "zero by symmetry": ring,
     "localised": localised,
+    "hysteresis": hysteresis,
+    "coupled cells": cells,
+    "patterns": pattern,
+    "trusses": truss,
     "weak parameter": weak,
     "poles": pole,
     "logarithms": logarithm,

@@ -45,7 +45,7 @@ def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
 
 def test_a_trace_that_is_resumed_knows_the_noise(tmp_path):
     file = tmp_path / "noisy.h5"
-    cut = trace(cubic(growing), archive=file, budget=Budget(steps=24))
+    cut = trace(cubic(growing), archive=file, budget=Budget(steps=12))
     assert cut.status is Status.BUDGET_EXHAUSTED
     path = resume(file, cubic(growing), budget=Budget())
     assert path.status is Status.REACHED_TARGET
