@@ -139,9 +139,12 @@ class Contents:
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
         self.root = file = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
+        # Single things first: where these are damaged that is an error, and HDF5 1.14 ends the process that lists all.
+        attributes = {name: file.attrs.get(name) for name in ("schema", "library_version")}
+        _ = [name in file for name in ("committed_points", "committed_paths", GROUP)]
         present = names(file)
         self.checked = GROUP in present
-        _check_schema(self.file, file.attrs, present)
+        _check_schema(self.file, attributes, present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
         self.layout = _layout(file, present, self.allowance)
         columns = {"point": self.layout.point_columns, "path": self.layout.path_columns}
