@@ -14,7 +14,6 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.contraction import MONOTONE
-from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.noise import allowed_along
 from continuation.metric import norm
 from continuation.point.arc import Arc
@@ -98,7 +97,8 @@ def degenerate_point(
             before, last, t = t, left, t - order * left
             if not 0.0 < t < FARTHEST:
                 return None
-    except EvaluationError:
+    except ArithmeticError:
+        # No value there, or two looks of the secant method that are one.
         pass
     return None
 
