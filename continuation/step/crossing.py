@@ -5,8 +5,8 @@ of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* 
 from one look to the next, none grows by more than SPAN, and of three looks in a row z at the first and the last add up
 to at most SPAN times that between them, where of a parabola that touches zero it is four times: no branch crosses it,
 and both its ends lie on one branch. An arc *crosses* a branch if one real z(t) goes through zero at a simple branch
-point s about as 1 - t / s does, or at a degenerate one as a power of that (`continuation.step.degenerate`), and no other
-comes to zero. Any other arc is too long, or no part of the path.
+point s about as 1 - t / s does, or at a degenerate one as a power of that (`degenerate_point`), and no other comes to
+zero. Any other arc is too long, or no part of the path.
 """
 
 from __future__ import annotations
