@@ -56,7 +56,8 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         steady |= now
         if steady.all():
             break
-    return np.where(least < np.inf, least, 0.0)
+    # What still shrinks is no noise yet.
+    return np.where(steady & (least < np.inf), least, 0.0)
 
 
 def allowed_along(
