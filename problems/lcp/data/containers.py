@@ -72,7 +72,8 @@ def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _mat(file: str) -> Mapping[str, Any]:
     with warnings.catch_warnings(action="error"):
-        return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
+        held = scipy.io.loadmat(file, spmatrix=False)
+        return {name: value for name, value in held.items() if not name.startswith("__")}
 
 
 def _matrix_market(file: str) -> Mapping[str, Any]:
@@ -94,7 +95,7 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
         raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found.shape}")
     # One thread: a child has room for no other's stack.
     getattr(sys.modules.get("scipy.io._fast_matrix_market"), "__dict__", {})["PARALLELISM"] = 1
-    return {ALONE: scipy.io.mmread(file)}
+    return {ALONE: scipy.io.mmread(file, spmatrix=False)}
 
 
 def _text(file: str) -> Mapping[str, Any]:
