@@ -54,13 +54,19 @@ class Multipliers:
         return int((np.abs(self.values[1:]) > 1.0 + OUTSIDE_CIRCLE).sum())
 
     @property
+    def lost(self) -> bool:
+        """Whether multipliers of moderate size are round-off of another one: 1 is not among them, or by chance."""
+        eps = float(np.finfo(float).eps)
+        return bool(abs(self.values[0] - 1.0) > TRIVIAL_FOUND or eps * np.abs(self.values).max() > 1.0)
+
+    @property
     def doubling(self) -> float:
         """The product of mu + 1 over all but the first, each divided by its size: it changes its sign where one is -1.
 
         The first, 1, is left out, since orbits that are nearly homoclinic have another that is larger than the inverse
         of round-off, beside which it is lost.
         """
-        if abs(self.values[0] - 1.0) > TRIVIAL_FOUND:
+        if self.lost:
             return 1.0
         rest = self.values[1:]
         return float(np.prod((rest + 1.0) / np.hypot(1.0, np.abs(rest))).real)
@@ -68,7 +74,7 @@ class Multipliers:
     @property
     def torus(self) -> float:
         """Of the pair nearest to the unit circle how far outside it lies; -1 where there is no pair."""
-        if abs(self.values[0] - 1.0) > TRIVIAL_FOUND:
+        if self.lost:
             return -1.0
         pairs = self.values[(self.values.imag > 0.0) & (np.angle(self.values) > FOLD_ANGLE)]
         if not pairs.size:
