@@ -72,8 +72,14 @@ class Derivative:
     products: Products
     pattern: Pattern | None = None
     notes: set[str] = field(factory=set)
+    plain: Products = field(init=False)
+    """The products without what is known of noise."""
     agreement: float = field(init=False)
     """What the check asks for: as the products do, or less where round-off within the residual leaves less."""
+
+    @plain.default
+    def _without_noise(self) -> Products:
+        return self.products
 
     @agreement.default
     def _first(self) -> float:
@@ -81,8 +87,8 @@ class Derivative:
 
     def know(self, noise: Array) -> None:
         """Take the residual for uncertain by so much in each equation, shape (N,)."""
-        if isinstance(self.products, ByDifferences):
-            self.products = self.products.over(noise)
+        if isinstance(self.plain, ByDifferences):
+            self.products = self.plain.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at a point, dense or sparse."""

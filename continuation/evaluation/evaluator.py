@@ -237,8 +237,8 @@ class Evaluator:
         Differences, where derivatives are made of these, are taken over steps that are the longer for it.
         """
         self.noise = noise if noise.any() else None
-        if self.noise is not None and isinstance(self._derivative, Derivative):
-            self._derivative.know(self.noise)
+        if noise.size and isinstance(self._derivative, Derivative):
+            self._derivative.know(noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:

@@ -16,12 +16,18 @@ NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
 """Where on a line samples are taken. At even places rounding to a grid leaves one linear function in six linear: of 150
 rings that are zero by symmetry 17 had no noise then, and no scale."""
 
-_FOURTH = np.zeros((5, 9))
-for _k in range(5):
-    _gaps = np.subtract.outer(NOISE_PLACES[_k : _k + 5], NOISE_PLACES[_k : _k + 5]) + np.eye(5)
-    _FOURTH[_k, _k : _k + 5] = 1.0 / _gaps.prod(axis=1)
-_FOURTH /= np.linalg.norm(_FOURTH, axis=1)[:, None]
-"""Five divided differences of fourth order, of unit length: of a smooth function they leave a fourth power."""
+
+def _divided_differences(places: Array, order: int) -> Array:
+    """All of one order on neighbouring places, as rows of unit length; of smooth functions they leave little."""
+    rows = np.zeros((places.size - order, places.size))
+    for k, row in enumerate(rows):
+        some = places[k : k + order + 1]
+        row[k : k + order + 1] = 1.0 / (np.subtract.outer(some, some) + np.eye(order + 1)).prod(axis=1)
+    unit: Array = rows / np.linalg.norm(rows, axis=1)[:, None]
+    return unit
+
+
+_FOURTH = _divided_differences(NOISE_PLACES, 4)
 
 NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 3
 """The samples' distance, in lengths in which a path may turn, and by what it is divided until the differences no longer

@@ -185,15 +185,17 @@ class Advance:
 
     def _noisier(self, point: Linearization, state: State, u: Array) -> State | None:
         """The state with the noise of H at u, where that is more than was known; None where it is not."""
-        evaluator, known = self.solver.evaluator, state.noise
+        evaluator, known = self.solver.evaluator, state.noise if state.noise.size else np.zeros(u.size - 1)
         try:
             evaluator.measure_noise(u, point.tangent, evaluator.residual(u))
-            noise = known if evaluator.noise is None else np.maximum(evaluator.noise, known if known.size else 0.0)
-            evaluator.noisy(noise)
-            if not (noise > NOISE_GROWN * (known if known.size else 0.0)).any():
-                return None
+            noise = known if evaluator.noise is None else np.maximum(evaluator.noise, known)
+            grown = bool((noise > NOISE_GROWN * known).any())
             least = min(max(CLEAR_OF_NOISE * point.blur(noise), state.tolerance), COARSEST)
         except EvaluationError:
+            grown = False
+        # What the evaluator knows is what the state says: a trace that is resumed knows no more.
+        evaluator.noisy(noise if grown else known)
+        if not grown:
             return None
         self.solver.noisy(least)
         return evolve(state, noise=noise, tolerance=least)

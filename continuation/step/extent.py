@@ -114,12 +114,12 @@ def initial_extent(
     # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # Terms may vanish at the start, as those of a structure at rest do, and their noise with them: it is measured where
-    # the search begins.
+    # Zero has no last place: terms that vanish there, as those of a structure at rest do, have no noise, and have it
+    # where the search begins.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
-        noise = evaluator.measure_noise(u + ahead * v, way, evaluator.residual(u + ahead * v))
+        noise = evaluator.measure_noise(u + ahead * v, way, evaluator.residual(u + ahead * v) if ahead else residual)
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
@@ -130,8 +130,6 @@ def initial_extent(
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
     unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
-    # One component has none there, as it is held or the median in both samples: it has as little as the next.
-    unseen = np.maximum(unseen, size * np.sort(unseen[moving] / size[moving])[:2].max(initial=0.0))
     h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)

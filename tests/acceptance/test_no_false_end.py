@@ -34,6 +34,20 @@ def test_families_in_random_units(family, preset):
         assert len(path.turning_points) == case.folds
 
 
+@pytest.mark.parametrize(
+    ("family", "seed"),
+    [("zero by symmetry", [k, 77]) for k in (36, 48, 51, 95)] + [("trusses", [1, k, 7]) for k in (3, 4, 8)],
+)
+@pytest.mark.parametrize("preset", [FAST, CONSERVATIVE], ids=lambda preset: preset.name)
+def test_noise_that_vanishes_at_the_start_or_looks_smooth_on_a_grid(family, seed, preset):
+    """Each of these ended as STEP_TOO_SMALL: scales were those of round-off."""
+    generator = np.random.default_rng(seed)
+    case = families.FAMILIES[family](generator)
+    path = trace(case.homotopy(*10.0 ** generator.uniform(-4.0, 4.0, 3)), preset=preset, budget=Budget(steps=2000))
+    assert path.status is Status.REACHED_TARGET
+    assert list(path.events) == []
+
+
 @every_preset
 @pytest.mark.parametrize("eps", [1e-8, 1e-10, 1e-12, 1e-14])
 def test_an_imperfect_pitchfork_is_no_pole(preset, eps):

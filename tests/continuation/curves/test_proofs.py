@@ -1,5 +1,9 @@
 """Curves that are proved by their equations written out: folds, Hopf points, and what looks at the tangent."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from attrs import evolve
@@ -118,3 +122,19 @@ def test_branch_points_are_not_proved_and_that_is_said():
     path = continuation.trace(curve, box={"lam": (0.5, 2.0)})
     with pytest.raises(TypeError, match="residual of a branch point curve is not plain arithmetic: it takes a factor"):
         certify(path, curve)
+
+
+def test_what_is_proved_is_what_is_recorded_with_threads_too(tmp_path):
+    """The trace that is proved and the one that is recorded run in two functions, each on one thread of BLAS."""
+    program = f"""
+from tests.continuation.curves.test_proofs import CASES
+import continuation
+from continuation.archive import recheck
+curve, box, _ = CASES["Hopf points"]
+path = continuation.trace(curve, box=box, certified=True, archive={str(tmp_path / "hopf.h5")!r})
+assert path.proof.complete and recheck({str(tmp_path / "hopf.h5")!r}, curve)[0].complete
+"""
+    chosen = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
+    environment = {name: value for name, value in os.environ.items() if name not in chosen}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -43,10 +43,21 @@ def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
     assert len(path) < 150  # it took 1,300 steps, and found one fold
 
 
-def test_a_trace_that_is_resumed_knows_the_noise(tmp_path):
-    file = tmp_path / "noisy.h5"
-    cut = trace(cubic(growing), archive=file, budget=Budget(steps=12))
-    assert cut.status is Status.BUDGET_EXHAUSTED
-    path = resume(file, cubic(growing), budget=Budget())
-    assert path.status is Status.REACHED_TARGET
-    assert "noisy" in path.message
+@pytest.mark.parametrize("level", [growing, lambda t: 1e-7, lambda t: 1e-8 * (t > -1.5)], ids=["grows", "is", "begins"])
+@pytest.mark.parametrize("steps", [2, 5, 8, 11])
+def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tmp_path, level, steps):
+    """The same noise at the same point: the points that follow are those of the trace that was not cut, bit for bit."""
+
+    def residual(y, lam):
+        t, lam = float(y[0]), float(lam)
+        exact = np.array([t**3 - 3.0 * t - lam, float(y[1]) - t * t, float(y[2]) - np.sin(t) * float(y[1])])
+        return exact + level(t) * np.sin(1e11 * (np.array([1.0, 2.0, 3.0]) * t + lam))
+
+    t = -2.5
+    homotopy = from_functions(residual, start=([t, t * t, np.sin(t) * t * t], t**3 - 3.0 * t), target=8.125)
+    whole = trace(homotopy)
+    assert whole.status is Status.REACHED_TARGET
+    trace(homotopy, archive=tmp_path / "part.h5", budget=Budget(steps=steps))
+    again = resume(tmp_path / "part.h5", homotopy, budget=Budget())
+    np.testing.assert_array_equal(again.u, whole.u)
+    assert again.message == whole.message

@@ -7,6 +7,7 @@ from continuation.linear import SingularError
 from problems.orbits import PeriodicOrbit
 from problems.orbits.grid import Grid
 from problems.orbits.models import lorenz, normal_form
+from problems.orbits.multipliers import Multipliers
 
 from .util import two_circles
 
@@ -60,3 +61,10 @@ def test_small_multipliers_keep_their_digits_beside_large_ones():
     circle = PeriodicOrbit(f, states, 2.0 * np.pi, 0.0, 20, 4, scale=np.ones(4))
     found = np.sort(circle.multipliers(*circle.start()).values.real)
     assert np.allclose(found, np.exp(2.0 * np.pi * np.array([-2.0, -1.0, 0.0, 1.0])), rtol=1e-6)
+
+
+def test_no_period_doubling_is_seen_where_one_multiplier_swallows_the_others():
+    """Near a homoclinic orbit one is 1e20 and more; of the rest, round-off of that, one may look like 1 by chance."""
+    assert Multipliers(-np.diag([1.0, 3.0, -2.0]), np.eye(3)).doubling < 0.0
+    swallowed = Multipliers(-np.diag([1.001, 1e20, -2.0]), np.eye(3))
+    assert (swallowed.doubling, swallowed.torus) == (1.0, -1.0)
