@@ -16,7 +16,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.linearization import Anchor, Linearization
 from continuation.rejection import Rejected, Rejection
-from continuation.tolerance import Tolerance
+from continuation.tolerance import LEAST_TOLERANCE, Tolerance
 
 
 @frozen(eq=False)
@@ -160,13 +160,14 @@ class _Terms:
     residual: Array
     terms: Array
     twice: bool
+    least: Array
 
     def level(self, r: Array, most: float = np.inf) -> float:
         """That of a residual beside them; one above `most`, as one look shows it, needs no second."""
         found = largest(r / self.terms)
         if not self.twice and RESIDUAL_NOISE < found <= most:
             self.twice = True
-            self.terms = np.maximum(self.terms, self.evaluator.look(self.u, self.residual, -1))
+            self.terms = np.maximum(self.terms, self.evaluator.look(self.u, self.residual, -1, self.least))
             found = largest(r / self.terms)
         return found
 
@@ -216,11 +217,11 @@ def iterate(
             # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. Rounds
             # after the first have factorisations of their own: the one at hand may be of a point where that component
             # was another.
-            before = np.inf
+            before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING_ROUNDS):
                 u = iteration.x
-                terms = evaluator.round_off(u, r) if fresh else evaluator.look(u, r)
-                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0)
+                terms = evaluator.round_off(u, r, least) if fresh else evaluator.look(u, r, 1, least)
+                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0, least=least)
                 # What is far from round-off is polished, what is at round-off needs no second look.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:

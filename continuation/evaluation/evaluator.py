@@ -200,18 +200,21 @@ class Evaluator:
         except EvaluationError:
             return math.nan
 
-    def round_off(self, u: Array, residual: Array) -> Array:
+    def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
         """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
 
         Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
         an equation may cancel in one of them. `residual` is H(u).
         """
-        terms: Array = np.maximum(self.look(u, residual), self.look(u, residual, -1))
+        terms: Array = np.maximum(self.look(u, residual, 1, least), self.look(u, residual, -1, least))
         return terms
 
-    def look(self, u: Array, residual: Array, order: int = 1) -> Array:
-        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
-        change = self.residual(u + np.spacing(np.abs(u)) * LOOK * generic(u.size)[::order])
+    def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
+        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both.
+
+        `least`: What each component is known to at most, whatever its size.
+        """
+        change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual
         dscal(POINT_ULPS / LOOK, change)
         np.abs(change, out=change)

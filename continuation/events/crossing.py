@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg.lapack import dgeev
 
-from continuation.arrays import Array, dot, generic_vector
+from continuation.arrays import Array, dot
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
@@ -46,13 +46,12 @@ def changes(
     border: Array,
     most: float,
     least: float,
+    start: Array,
     accuracy: float = EIGENVALUE_ACCURACY,
-    turned: int = 0,
-) -> list[float]:
-    """The real eigenvalues of C = I - M_a^{-1} M above `most` or below `least`, in order.
+) -> tuple[list[float], Array]:
+    """The real eigenvalues of C = I - M_a^{-1} M above `most` or below `least`, in order, and their eigenvectors.
 
-    Arnoldi's method with a vector in general position, until these are known. Each dimension takes a product with M
-    and a solve at a.
+    Arnoldi's method until these are known. Each dimension takes a product with M and a solve at a.
 
     Parameters
     ----------
@@ -62,17 +61,20 @@ def changes(
     border : ndarray, shape (N + 1,)
         The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
     most, least : float
+    start : ndarray, shape (N + 1,)
+        The first vector, in the metric: what has no part in it is not found.
     accuracy : float
         Of the eigenvalues, relative.
-    turned : int
-        Another one for another vector: one in a thousand has next to no part along an eigenvector.
+
+    Returns
+    -------
+    values : list of float
+    vectors : ndarray, shape (N + 1, number of values)
+        Of unit length in the metric, as columns.
     """
-    start = generic_vector(a.u.size)
-    if turned:
-        place = turned % start.size
-        start = np.concatenate((start[-place:], start[:-place])) if place else start
-    values, _ = _eigenvalues(a, apply, border, most, least, start, accuracy)
-    return sorted(values.tolist())
+    values, vectors = _eigenvalues(a, apply, border, most, least, start, accuracy)
+    order = np.argsort(values)
+    return values[order].tolist(), vectors[:, order]
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
@@ -92,12 +94,10 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
         values, vectors = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
         near = [i for i, value in enumerate(values) if abs(value * place - 1.0) < SAME]
-        if not near:
-            break
-        found.append(vectors[:, near[0]])
-        sizes = np.linalg.svd(np.array(found), compute_uv=False)
-        if sizes[-1] < INDEPENDENT:
-            return k
+        # A vector may have next to no part along an eigenvector: another one has.
+        found += [vectors[:, near[0]]] if near else []
+        if found and np.linalg.svd(np.array(found), compute_uv=False)[-1] < INDEPENDENT:
+            return len(found) - 1
     return len(found)
 
 

@@ -24,7 +24,7 @@ from continuation.point.projection import PathSolver, arc_on_path
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Kind
-from continuation.step.crossing import Crossed, Crossings
+from continuation.step.crossing import Crossed, on_arc
 from continuation.step.guard import objection
 from continuation.step.settings import Settings
 from continuation.step.state import State
@@ -59,12 +59,7 @@ class Examiner:
     settings: Settings
     target: Target
     pieces: Pieces | None = None
-    crossings: Crossings = field(init=False)
     branch_index: int | None = field(init=False)
-
-    @crossings.default
-    def _crossings(self) -> Crossings:
-        return Crossings(self.solver)
 
     @branch_index.default
     def _branch_index(self) -> int | None:
@@ -112,7 +107,7 @@ class Examiner:
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
-                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, state.index)
+                seen = on_arc(self.solver, part, attempt, prediction, changed, ends, state.index)
                 if isinstance(seen, Rejected):
                     return seen
                 branch = seen

@@ -28,6 +28,7 @@ from continuation.predictors import Knot, Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.acceptance import Accepted, Examiner
 from continuation.step.capabilities import interior_fraction
+from continuation.step.crossing import between
 from continuation.step.record import StepRecorder
 from continuation.step.settings import Settings
 from continuation.step.start import CLEAR_OF_NOISE, COARSEST
@@ -151,9 +152,8 @@ class Advance:
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
-                if found.reason is Rejection.MIDPOINT:
-                    # What was seen before the target would lie in a longer step, too, where less shows it.
-                    h = min(h, found.factor * landing.h)
+                # What was seen before the target would lie in a longer step, too, where less shows it.
+                h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
         while True:
@@ -210,7 +210,7 @@ class Advance:
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
             # It is one of the piece beyond its border.
             limit = None
-        if limit is not None and point.orientation == 0 and self.examiner.crossings.between(point, limit.u):
+        if limit is not None and point.orientation == 0 and between(self.solver, point, limit.u):
             # No determinant's sign says that it lies on another branch.
             limit = None
         return limit, state

@@ -15,9 +15,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import define, evolve, field, frozen
 
-from continuation.arrays import Array, generic_vector, largest
+from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
 from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
@@ -72,14 +72,11 @@ BEST = 4.0 / 3.0
 here the first is least beside the second."""
 
 SMALLEST = 2.0**-6
-"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row."""
+"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row; and
+the least factor of a step, since a place next to the beginning may be round-off, and would end the path at once."""
 
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
-
-SHORTEST = 0.1
-"""The least factor of a step: a place next to the arc's beginning may be round-off, and would end the path at once."""
-
 
 @frozen(eq=False)
 class Crossed:
@@ -116,120 +113,166 @@ class _BranchPoint:
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
 
-@frozen(eq=False)
-class Crossings:
-    """Looks for them, with the parts it needs."""
+def on_arc(
+    solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
+) -> Crossed | Rejected | None:
+    """The branch point on an arc; None where none is; or why the arc does not count, and which step to try.
+
+    Parameters
+    ----------
+    solver : PathSolver
+    arc : Arc
+    attempt : Arrival
+        Where the arc, or the one of which it is a part, ends.
+    prediction : Prediction
+        Of the arc.
+    flipped : bool
+        Whether the determinant's sign changes from its beginning to its end.
+    ends : bool
+        Whether the path ends where the arc does: what lies beyond does not count.
+    index : int
+        Of the step: each looks at H' with another first vector.
+    """
+    looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
+    seen = looks.first()
+    if isinstance(seen, Rejected) and not flipped and looks.blurred():
+        return None
+    if seen is None and flipped and _differential(solver, arc.b.u) is None:
+        # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
+        seen = looks.simple(arc.segment.at(0.5))
+        looks.told.clear()
+    if isinstance(seen, _BranchPoint):
+        return looks.over(seen)
+    return looks.rejected(Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
+
+
+def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
+    """Whether H' has an eigenvalue of another sign at u than at a point."""
+    apply, start = _differential(solver, u), generic_vector(u.size)
+    if apply is None:
+        return False
+    values, _ = changes(point, apply, point.border, 1.0 + EIGENVALUE_ACCURACY, -np.inf, start)
+    return bool(values)
+
+
+def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | None:
+    """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
+    try:
+        return solver.evaluator.differential(u)
+    except EvaluationError:
+        return None
+
+
+@define(eq=False)
+class _Looks:
+    """Looks at H' along one arc.
+
+    `told`: By place, the real 1 - z that are not as on a regular arc, in order. `along`: The sum of the eigenvectors of
+    the last look that told any: the next one begins with these, and cannot overlook where their eigenvalues have gone.
+    """
 
     solver: PathSolver
+    arc: Arc
+    attempt: Arrival
+    prediction: Prediction
+    flipped: bool
+    ends: bool
+    index: int
+    told: dict[float, list[float]] = field(factory=dict, init=False)
+    along: Array = field(init=False)
 
-    def on_arc(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
-    ) -> Crossed | Rejected | None:
-        """The branch point on an arc; None where none is; or why the arc does not count, and which step to try.
+    @along.default
+    def _none(self) -> Array:
+        return np.zeros(self.arc.a.u.size)
 
-        Parameters
-        ----------
-        arc : Arc
-        attempt : Arrival
-            Where the arc, or the one of which it is a part, ends.
-        prediction : Prediction
-            Of the arc.
-        flipped : bool
-            Whether the determinant's sign changes from its beginning to its end.
-        ends : bool
-            Whether the path ends where the arc does: what lies beyond does not count.
-        index : int
-            Of the step: each looks at H' with another first vector.
-        """
-        told: dict[float, list[float]] = {}
-        seen = self._seen(arc, attempt, prediction, told, flipped, ends, index)
-        if isinstance(seen, Rejected) and not flipped and self._blurred(arc, index):
-            return None
-        if seen is None and flipped and self._derivative(arc.b.u) is None:
-            # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
-            seen, told = self._found(arc, arc.segment.at(0.5)), {}
-        if isinstance(seen, _BranchPoint):
-            return self._over(arc, attempt, seen, told, flipped, ends)
-        return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
+    def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
+        """What is told at a point, which lies about at t; nothing where H' is not to be had."""
+        apply, size = _differential(self.solver, u), u.size
+        if apply is None:
+            return []
+        whole, first = generic_vector(size), (self.index + len(self.told)) % size
+        # Each look with another first vector: one in a thousand has next to no part along an eigenvector.
+        start = np.concatenate((whole[first:], whole[:first]))
+        start = start / math.sqrt(dot(start, start)) + self.along
+        values, vectors = changes(self.arc.a, apply, self._border(t), TOLD, LOWEST, start, accuracy)
+        if values:
+            self.along = vectors.sum(axis=1)
+        return values
 
-    def _seen(
-        self,
-        arc: Arc,
-        attempt: Arrival,
-        prediction: Prediction,
-        told: dict[float, list[float]],
-        flipped: bool,
-        ends: bool,
-        index: int,
-    ) -> _BranchPoint | Rejected | None:
-        """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
+    def _border(self, t: float) -> Array:
+        """The arc's tangent at t, in the dual metric."""
+        tangent, weights = self.arc.segment.derivative(t), self.arc.a.weights
+        border: Array = weights * tangent / norm(weights, tangent)
+        return border
+
+    def _point(self, t: float) -> Array:
+        return self.prediction(t * self.arc.length)
+
+    def first(self) -> _BranchPoint | Rejected | None:
+        """The first branch point that the eigenvalues along the arc lead to; None on a regular arc."""
+        arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
-        for k, t in enumerate(HALF if cubic else EIGHTHS):
-            told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t, index + k)
+        for t in HALF if cubic else EIGHTHS:
+            told[t] = there = self.look(self._point(t) if t < 1.0 else arc.b.u, t)
             left.append(1.0 - max([0.0, *there]))
             # Where the path ends with the arc, only what lies on it counts.
-            least = 0.0 if ends and t == 1.0 else left[-2] / SPAN
+            least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
-                found = self._branch_point(arc, prediction, told, t, t / there[-1], index)
+                found = self._branch_point(t, t / there[-1])
                 # What comes near to singular at the end, and goes straight, may do so behind it.
-                if found is None and (t < 1.0 or there[-1] >= 1.0):
+                if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
-                    return _rejected(attempt, Rejection.ORIENTATION, max(before, shorter))
+                    return self.rejected(Rejection.ORIENTATION, max(before, shorter))
             before = t
+        nearer = self._nearer()
         if found is None and any(told.values()):
-            if (near := self._passed(arc, prediction, told, index)) is not None:
-                return _rejected(attempt, Rejection.CROSSINGS, near)
+            if near := [place for place in nearer if told[place] and told[place][-1] > MOST]:
+                t = near[0]
+                return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
                 # What a series is made of is seen on it already.
-                onward = self._told(arc, arc.segment.at(1.0 + ONWARD), 1.0, index)
+                onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
-                    return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+                    return self.rejected(Rejection.ORIENTATION, 0.5)
             threes = zip(told, left, left[1:], left[2:])
             for t in [t for t, first, between, last in threes if first + last > SPAN * between][:1]:
-                found = self._branch_point(arc, prediction, told, t, t, index)
+                found = self._branch_point(t, t)
         return found
 
-    def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
-        """Where near its beginning H' is nearly singular on an arc along which it becomes more regular, if anywhere.
+    def _nearer(self) -> list[float]:
+        """Looks nearer to the beginning of an arc along which H' becomes more regular; their places.
 
         A pair of crossings there leaves the eigenvalue larger than SPAN farther on: each half of the arc is looked at
         as a whole one would be, until it is not larger any more.
         """
-        t = 1.0
+        t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
             t *= 0.5
             for place in (t, 0.5 * t):
                 if place not in told:
-                    told[place] = self._told(arc, prediction(place * arc.length), place, index)
-                if told[place] and told[place][-1] > MOST:
-                    return place
-        return None
+                    told[place] = self.look(self._point(place), place)
+                places.append(place)
+        return places
 
-    def _over(
-        self,
-        arc: Arc,
-        attempt: Arrival,
-        seen: _BranchPoint,
-        told: dict[float, list[float]],
-        flipped: bool,
-        ends: bool,
-    ) -> Crossed | Rejected | None:
+    def over(self, seen: _BranchPoint) -> Crossed | Rejected | None:
         """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
+        arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
-        if ends and 1.0 < s <= 1.0 + AT_END:
+        if self.ends and 1.0 < s <= 1.0 + AT_END:
             return None
-        if not ends and abs(s - 1.0) < NEAR_CROSSING:
-            return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
-        if flipped != (s < 1.0 and seen.odd):
+        if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
+            return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
+        if self.flipped != (s < 1.0 and seen.odd):
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
             over = BEST * s
-            return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
+            return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not all(_as_expected(there, seen.expected(t, s)) for t, there in told.items()):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
-            # Where another eigenvalue has grown too much the arc is only too long.
-            nearest = min(others, default=1.0 if any(there and there[0] < LOWEST for there in told.values()) else 0.0)
-            return _rejected(attempt, Rejection.CROSSINGS, min(0.5 * (s + nearest), STEP_BACK))
+            # Another eigenvalue may fall so far, and no farther, where the arc is to end behind this crossing.
+            behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
+            step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
+            return self.rejected(Rejection.CROSSINGS, min(step, STEP_BACK))
         if s > 1.0:
             return None
         tangent = arc.segment.derivative(s)
@@ -237,71 +280,54 @@ class Crossings:
         onward = tangent / norm(arc.a.weights, tangent) if rays is None else rays[1]
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
-    def _blurred(self, arc: Arc, index: int) -> bool:
+    def rejected(self, reason: Rejection, factor: float) -> Rejected:
+        """An arc that does not count; the next attempt goes a factor of its length, which may be part of a step."""
+        attempt = self.attempt
+        factor = max(factor * self.arc.length / attempt.h, SMALLEST)
+        return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
+
+    def blurred(self) -> bool:
         """Whether no z can be told: within the tolerance of the arc's beginning, where all are one, some are not.
 
         So it is on the way to a pole, where components vanish beside the others.
         """
-        blur = self.solver.tolerance.relative / np.sqrt(arc.a.weights)
-        return bool(self._told(arc, arc.a.u + blur * generic_vector(arc.a.u.size), 0.0, index))
+        a = self.arc.a
+        blur = self.solver.tolerance.relative / np.sqrt(a.weights)
+        return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
-    def between(self, point: Linearization, u: Array) -> bool:
-        """Whether H' has an eigenvalue of another sign at u than at a point."""
-        apply = self._derivative(u)
-        return apply is not None and bool(changes(point, apply, point.border, 1.0 + EIGENVALUE_ACCURACY, -np.inf))
-
-    def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
-        """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
-        try:
-            return self.solver.evaluator.differential(u)
-        except EvaluationError:
-            return None
-
-    def _told(self, arc: Arc, u: Array, t: float, index: int, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
-        apply = self._derivative(u)
-        return [] if apply is None else changes(arc.a, apply, self._border(arc, t), TOLD, LOWEST, accuracy, index)
-
-    def _border(self, arc: Arc, t: float) -> Array:
-        """The arc's tangent at t, in the dual metric."""
-        tangent, weights = arc.segment.derivative(t), arc.a.weights
-        border: Array = weights * tangent / norm(weights, tangent)
-        return border
-
-    def _branch_point(
-        self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], t: float, place: float, index: int
-    ) -> _BranchPoint | None:
+    def _branch_point(self, t: float, place: float) -> _BranchPoint | None:
         """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
-        u, lost = prediction(t * arc.length), 1
-        if (apply := self._derivative(u)) is not None and (exactly := self._told(arc, u, t, index, Z_ROUND_OFF)):
-            lost = max(multiplicity(arc.a, apply, self._border(arc, t), 1.0 / exactly[-1]), 1)
-        found = self._found(arc, prediction(place * arc.length)) if lost == 1 else None
+        solver, arc, u, lost = self.solver, self.arc, self._point(t), 1
+        if (apply := _differential(solver, u)) is not None and (exactly := self.look(u, t, Z_ROUND_OFF)):
+            lost = max(multiplicity(arc.a, apply, self._border(t), 1.0 / exactly[-1]), 1)
+        found = self.simple(self._point(place)) if lost == 1 else None
         if found is None:
 
             def z_at(there: float, v: Array) -> float:
-                seen = self._told(arc, v, min(there, 1.0), index, Z_ROUND_OFF)
+                seen = self.look(v, min(there, 1.0), Z_ROUND_OFF)
                 return 1.0 - min(seen, key=lambda mu: abs(mu - 1.0), default=np.nan)
 
-            at = degenerate_point(self.solver, arc, prediction, t, z_at, lost)
-            if at is None or not self._vanishes(at[0], self._rows(arc)):
+            at = degenerate_point(solver, arc, self.prediction, t, z_at, lost)
+            if at is None or not self._vanishes(at[0], self._rows()):
                 return None
             found = _BranchPoint(at[0], order=at[1], odd=bool(round(at[1]) * lost % 2))
         return found
 
-    def _rows(self, arc: Arc) -> Array:
+    def _rows(self) -> Array:
         """What the rows of H' are made of over the arc."""
-        return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(arc.a.weights), (arc.a.u, arc.b.u))
+        a, b = self.arc.a, self.arc.b
+        return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
         """Whether H at a point is no more than round-off."""
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
-    def _found(self, arc: Arc, guess: Array) -> _BranchPoint | None:
+    def simple(self, guess: Array) -> _BranchPoint | None:
         """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
-        a = arc.a
+        arc, a = self.arc, self.arc.a
         try:
-            rows = self._rows(arc)
+            rows = self._rows()
             found = branch_point_near(self.solver.evaluator, guess, arc.b.u - a.u, a.weights, rows)
             if found is None or not self._vanishes(found.u, rows):
                 return None
@@ -316,9 +342,5 @@ class Crossings:
 def _as_expected(told: list[float], expected: float) -> bool:
     """Whether the changes told at a place are that of one eigenvalue, as it is expected, and no other."""
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
-    others = [mu for mu in told if mu != nearest and not LOWEST < mu < 1.0 - NEAR_CROSSING]
+    others = [mu for mu in told if mu != nearest and mu >= 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
-
-
-def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
-    return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=max(factor, SHORTEST))

@@ -14,6 +14,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.contraction import MONOTONE
+from continuation.correctors.base import ROOT_OF_ROUND_OFF
 from continuation.evaluation.noise import allowed_along
 from continuation.metric import norm
 from continuation.point.arc import Arc
@@ -73,12 +74,16 @@ def degenerate_point(
         return solver.project(arc.a, u, arc.a.border)[0]
 
     try:
-        _, left = _left(beside, t, FIRST_ORDER)
+        z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
+        if ahead <= 0.0 > z:
+            # Far behind the point: it lies about where a straight line from 1 at the arc's beginning is zero.
+            ahead = 0.5 * (t + t / (1.0 - z))
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        order = (ahead - t) / (beyond - left)
+        # A smooth z has a zero of the first order at least.
+        order = max((ahead - t) / (beyond - left), 1.0)
         if not (order > SIMPLE_ORDER or lost > 1):
             return None
         # From here on the path: beside a degenerate point a place on it may cost factorisations.
@@ -89,9 +94,10 @@ def degenerate_point(
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                return None
+                # Where M_a is itself nearly singular its round-off is what is left of z.
+                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
             if before:
-                order = (t - before) / (left - last)
+                order = max((t - before) / (left - last), 1.0)
             if before and not (order > SIMPLE_ORDER or lost > 1):
                 return None
             before, last, t = t, left, t - order * left
@@ -104,11 +110,11 @@ def degenerate_point(
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """The pair of z at a place and z over its slope there, by a difference towards the beginning."""
+    """The pair of z at a place and z over its slope there, by a difference towards the beginning; 0 if that is none."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
-    return z, z * step / change if change else np.inf
+    return z, z * step / change if change else 0.0
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:

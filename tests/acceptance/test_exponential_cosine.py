@@ -13,7 +13,6 @@ from continuation.controllers import Bounds, Geometric
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
-from continuation.step.crossing import Crossings
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
@@ -73,7 +72,7 @@ def test_the_audit_agrees(n, backwards):
 def unguarded(monkeypatch):
     """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""
     monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance, history: arc)
-    monkeypatch.setattr(Crossings, "on_arc", lambda *_: None)
+    monkeypatch.setattr(acceptance, "on_arc", lambda *_: None)
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
