@@ -20,8 +20,8 @@ from attrs import define, evolve, field, frozen
 from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
-from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
-from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
+from continuation.events.crossing import EIGENVALUE_ACCURACY, SAME, changes, multiplicity
+from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
@@ -29,7 +29,7 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
-from continuation.step.degenerate import Z_ROUND_OFF, degenerate_point
+from continuation.step.degenerate import SIMPLE_ORDER, Z_ROUND_OFF, BranchPointOnArc, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
@@ -78,6 +78,7 @@ the least factor of a step, since a place next to the beginning may be round-off
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
 
+
 @frozen(eq=False)
 class Crossed:
     """A branch point on an arc.
@@ -93,24 +94,6 @@ class Crossed:
 
     point: Linearization
     rays: Array | None
-
-
-@frozen(eq=False)
-class _BranchPoint:
-    """A branch point on an arc or ahead of it.
-
-    `simple`: None for a degenerate one. `order`: Of the zero of z. `odd`: Whether the determinant's sign changes there.
-    """
-
-    u: Array
-    simple: SimpleBranchPoint | None = None
-    order: float = 1.0
-    odd: bool = True
-
-    def expected(self, t: float, s: float) -> float:
-        """What is told at t of an eigenvalue that vanishes at s."""
-        left = 1.0 - t / s
-        return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
 
 def on_arc(
@@ -141,7 +124,7 @@ def on_arc(
         # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
         seen = looks.simple(arc.segment.at(0.5))
         looks.told.clear()
-    if isinstance(seen, _BranchPoint):
+    if isinstance(seen, BranchPointOnArc):
         return looks.over(seen)
     return looks.rejected(Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
 
@@ -208,7 +191,7 @@ class _Looks:
     def _point(self, t: float) -> Array:
         return self.prediction(t * self.arc.length)
 
-    def first(self) -> _BranchPoint | Rejected | None:
+    def first(self) -> BranchPointOnArc | Rejected | None:
         """The first branch point that the eigenvalues along the arc lead to; None on a regular arc."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
@@ -255,7 +238,7 @@ class _Looks:
                 places.append(place)
         return places
 
-    def over(self, seen: _BranchPoint) -> Crossed | Rejected | None:
+    def over(self, seen: BranchPointOnArc) -> Crossed | Rejected | None:
         """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
@@ -267,7 +250,7 @@ class _Looks:
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
-        if not all(_as_expected(there, seen.expected(t, s)) for t, there in told.items()):
+        if not (seen.alone and all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items())):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
             # Another eigenvalue may fall so far, and no farther, where the arc is to end behind this crossing.
             behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
@@ -295,11 +278,10 @@ class _Looks:
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
-    def _branch_point(self, t: float, place: float) -> _BranchPoint | None:
+    def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
         """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
-        solver, arc, u, lost = self.solver, self.arc, self._point(t), 1
-        if (apply := _differential(solver, u)) is not None and (exactly := self.look(u, t, Z_ROUND_OFF)):
-            lost = max(multiplicity(arc.a, apply, self._border(t), 1.0 / exactly[-1]), 1)
+        solver, arc = self.solver, self.arc
+        lost = self._lost(self._point(t), t)
         found = self.simple(self._point(place)) if lost == 1 else None
         if found is None:
 
@@ -310,8 +292,21 @@ class _Looks:
             at = degenerate_point(solver, arc, self.prediction, t, z_at, lost)
             if at is None or not self._vanishes(at[0], self._rows()):
                 return None
-            found = _BranchPoint(at[0], order=at[1], odd=bool(round(at[1]) * lost % 2))
+            u, order = at
+            t = min(position(arc, u) / arc.length, 1.0)
+            if lost == 1 and order <= SIMPLE_ORDER and (lost := self._lost(u, t)) == 1:
+                return None
+            others = [mu for mu in self.look(u, t, Z_ROUND_OFF) if abs(mu - 1.0) > SAME] if lost > 1 else []
+            alone = not any(abs(mu - 1.0) <= NEAR_CROSSING for mu in others)
+            found = BranchPointOnArc(u, order=order, lost=lost, alone=alone)
         return found
+
+    def _lost(self, u: Array, t: float) -> int:
+        """How many eigenvalues are as the smallest z that is told at a point about t."""
+        apply, told = _differential(self.solver, u), self.look(u, t, Z_ROUND_OFF)
+        if apply is None or not told:
+            return 1
+        return max(multiplicity(self.arc.a, apply, self._border(t), 1.0 / told[-1]), 1)
 
     def _rows(self) -> Array:
         """What the rows of H' are made of over the arc."""
@@ -323,7 +318,7 @@ class _Looks:
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
-    def simple(self, guess: Array) -> _BranchPoint | None:
+    def simple(self, guess: Array) -> BranchPointOnArc | None:
         """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
         arc, a = self.arc, self.arc.a
         try:
@@ -336,11 +331,16 @@ class _Looks:
         length = norm(a.weights, arc.b.u - a.u)
         at = position(arc, found.u) / arc.length
         off = norm(a.weights, found.u - arc.segment.at(at))
-        return _BranchPoint(found.u, found) if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length else None
+        return (
+            BranchPointOnArc(found.u, found)
+            if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length
+            else None
+        )
 
 
-def _as_expected(told: list[float], expected: float) -> bool:
-    """Whether the changes told at a place are that of one eigenvalue, as it is expected, and no other."""
-    nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
-    others = [mu for mu in told if mu != nearest and mu >= 1.0 - NEAR_CROSSING]
-    return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
+def _as_expected(told: list[float], expected: float, lost: int) -> bool:
+    """Whether the changes told at a place are those of eigenvalues that vanish together as expected, and no other."""
+    first, *others = sorted(told, key=lambda mu: abs(mu - expected)) or [min(expected, TOLD)]
+    others = [mu for k, mu in enumerate(others, 1) if k >= lost or abs(mu - first) > NEAR_CROSSING * abs(first)]
+    near = abs(first - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
+    return near and all(mu < 1.0 - NEAR_CROSSING for mu in others)

@@ -7,15 +7,18 @@ there: the secant method finds both. The path goes straight on, as it does along
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.contraction import MONOTONE
 from continuation.correctors.base import ROOT_OF_ROUND_OFF
 from continuation.evaluation.noise import allowed_along
+from continuation.events.singularity import SimpleBranchPoint
 from continuation.metric import norm
 from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
@@ -36,10 +39,38 @@ FARTHEST = 3.0
 """So far ahead, in arcs, it is looked for."""
 
 
+@frozen(eq=False)
+class BranchPointOnArc:
+    """A branch point on an arc or ahead of it.
+
+    `simple`: None for a degenerate one. `order`: Of the zero of z. `lost`: How many ranks H' loses there. `alone`:
+    Whether no other branch point lies so near that its eigenvalue may be taken for one of these.
+    """
+
+    u: Array
+    simple: SimpleBranchPoint | None = None
+    order: float = 1.0
+    lost: int = 1
+    alone: bool = True
+
+    @property
+    def odd(self) -> bool:
+        """Whether the determinant's sign changes there."""
+        return bool(round(self.order) * self.lost % 2)
+
+    def expected(self, t: float, s: float) -> float:
+        """What is told at t of an eigenvalue that vanishes at s."""
+        left = 1.0 - t / s
+        return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
+
+
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point to which a look at t leads; None where there is none, as at a simple branch point.
+    """The degenerate branch point to which a look at t leads; None where there is none.
+
+    Eigenvalues that vanish together may come to zero at different rates: that H' loses several ranks may be told at the
+    point alone.
 
     Parameters
     ----------
@@ -67,12 +98,13 @@ def degenerate_point(
 
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
-        if lost > 1:
+        if lost > 1 or order <= SIMPLE_ORDER:
             # The symmetry that makes eigenvalues vanish together keeps the prediction from what they would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return solver.project(arc.a, u, arc.a.border)[0]
 
+    order = FIRST_ORDER
     try:
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
@@ -84,8 +116,6 @@ def degenerate_point(
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         # A smooth z has a zero of the first order at least.
         order = max((ahead - t) / (beyond - left), 1.0)
-        if not (order > SIMPLE_ORDER or lost > 1):
-            return None
         # From here on the path: beside a degenerate point a place on it may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
@@ -98,8 +128,6 @@ def degenerate_point(
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
             if before:
                 order = max((t - before) / (left - last), 1.0)
-            if before and not (order > SIMPLE_ORDER or lost > 1):
-                return None
             before, last, t = t, left, t - order * left
             if not 0.0 < t < FARTHEST:
                 return None

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.errors import EvaluationError
@@ -57,6 +59,9 @@ refinement changes by more than the second are."""
 
 UNCERTAIN = 100.0
 """Corrections up to so many times what round-off makes of them, in two samples of its signs, say nothing."""
+
+SWEEPS = 10
+"""Of Sinkhorn's iteration: units are known to a small factor then, which is all that a metric needs."""
 
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
@@ -172,8 +177,32 @@ def initial_extent(
     extent[still] = median(extent[~still])
     extent *= unit
     if still.any() and exactly:
+        extent[:-1] *= np.where(still[:-1], _units(evaluator, u, still[:-1]), 1.0)
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent, blur
+
+
+def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
+    """The units of unknowns that stand still, beside each other: those in which their columns of H_y are of one size.
+
+    Found by Sinkhorn's iteration with the rows of H_y, whose units are unknown too. Ones where H_y is no matrix.
+    """
+    ones = np.ones(still.size)
+    H_y = evaluator.matrix(u) if still.sum() > 1 else None
+    if not (isinstance(H_y, np.ndarray) or sp.issparse(H_y)):
+        return ones
+    squares = np.square(H_y) if isinstance(H_y, np.ndarray) else sp.csr_array(H_y).power(2)
+    columns = still.astype(float)
+    for _ in range(SWEEPS):
+        rows = _inverse(squares @ columns)
+        columns = np.where(still, _inverse(squares.T @ rows), 0.0)
+    sizes = np.sqrt(columns)
+    known = sizes > 0.0
+    return np.where(known, sizes / median(sizes[known]), ones) if known.any() else ones
+
+
+def _inverse(sums: Array) -> Array:
+    return np.divide(1.0, sums, out=np.zeros_like(sums), where=sums > 0.0)
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
