@@ -19,6 +19,7 @@ from importlib import import_module
 from pathlib import Path as File
 from typing import Any
 
+import crossings
 import numpy as np
 import scipy.sparse as sp
 from scipy.stats import ortho_group
@@ -28,8 +29,8 @@ from continuation.arrays import Array
 from continuation.linear import Banded, Symmetric
 from problems import lcp, scenes
 
-sys.path[:0] = [str(File(__file__).parents[2] / "tests" / "behaviour"), str(File(__file__).parent / "crossings")]
-record, crossings = import_module("record"), import_module("run")
+sys.path.insert(0, str(File(__file__).parents[2] / "tests" / "behaviour"))
+record = import_module("record")
 
 PRESETS = record.PRESETS
 AGREED = 1e-8

@@ -16,7 +16,7 @@ from continuation.numbers.series import ELEMENTARY
 
 from ...util import benchmark
 
-EXACT = benchmark("proof/functions.py").ONE
+EXACT = benchmark("functions.py").ONE
 DOMAIN = {
     **dict.fromkeys(("arcsin", "arccos", "arctanh"), (-0.95, 0.95)),
     **dict.fromkeys(("sqrt", "log", "log2", "log10", "cbrt", "reciprocal", "absolute"), (0.05, 4.0)),

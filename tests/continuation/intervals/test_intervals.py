@@ -12,7 +12,7 @@ from continuation.numbers.ends import Ends, thin
 
 from ...util import benchmark
 
-campaign = benchmark("proof/functions.py")
+campaign = benchmark("functions.py")
 RNG = np.random.default_rng(5)
 X = RNG.normal(size=6)
 M = RNG.normal(size=(6, 6))

@@ -1,8 +1,5 @@
 """The cascade of coarser problems: how many factorisations it takes, with bounds, and in any units."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -11,7 +8,9 @@ from continuation.linear.factoring import EXTRAS, Factoring
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
 
-BENCHMARK = runpy.run_path(str(Path(__file__).parents[4] / "examples" / "benchmarks" / "size" / "large.py"))
+from ....util import benchmark
+
+BENCHMARK = vars(benchmark("large.py"))
 BY_NAME = {one.name: one for one in EXTRAS}
 
 

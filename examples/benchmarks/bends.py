@@ -1,21 +1,20 @@
 """S-bends of a thousandth to a tenth of the path's extent: how many of their turning points are missed.
 
-    python examples/benchmarks/units/bends.py [NUMBER] [SEED]
+    python examples/benchmarks/bends.py [NUMBER] [SEED] ["KIND WIDTH" ...]
 
 lam = g(y) - a s((y - y0) / w) for y from 0 to 1, with a smooth step s of width w, on a straight and on a curved path.
 """
 
 import sys
-from collections import Counter
 from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from campaign import WRONG, Campaign, Cases, Verdict
 
 import continuation
 from continuation.arrays import Array
 
-PRESETS = (continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE, continuation.SERIES)
 WIDTHS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3)
 
 Function = Callable[[Array], Array]
@@ -57,22 +56,21 @@ def bend(kind: str, width: float, seed: int) -> tuple[object, int]:
     return homotopy, turns
 
 
-def missed(preset: continuation.Preset, width: float, number: int, first: int = 0) -> Counter[str]:
-    """How `number` paths of each kind came out, with seeds from `first` on."""
-    found: Counter[str] = Counter()
-    for kind in KINDS:
-        for seed in range(first, first + number):
-            homotopy, turns = bend(kind, width, seed)
-            path = continuation.trace(homotopy, preset=preset, budget=continuation.Budget(steps=3000))
-            right = path.status is continuation.Status.REACHED_TARGET and len(path.turning_points) == turns
-            found["right" if right else f"{path.status.name}, {turns - len(path.turning_points)} missed"] += 1
-            found["factorizations"] += path.counts.factorizations
-    return found
+def cases(kind: str, width: float) -> Cases:
+    """So many bends, of seeds from one on."""
+    return lambda number, first: (bend(kind, width, seed) for seed in range(first, first + number))
 
+
+def judge(case: tuple[object, int], preset: continuation.Preset) -> Verdict:
+    """How many turning points are missed, and the number of factorisations."""
+    homotopy, turns = case
+    path = continuation.trace(homotopy, preset=preset, budget=continuation.Budget(steps=3000))
+    missed = turns - len(path.turning_points)
+    right = path.status is continuation.Status.REACHED_TARGET and not missed
+    return "" if right else f"{WRONG}: {path.status.name}, {missed} missed", path.counts.factorizations
+
+
+CAMPAIGN = Campaign({f"{kind} {width:g}": cases(kind, width) for width in WIDTHS for kind in KINDS}, judge)
 
 if __name__ == "__main__":
-    arguments = [int(value) for value in sys.argv[1:]]
-    number, seed = arguments + [100, 0][len(arguments) :]
-    for preset in PRESETS:
-        for width in WIDTHS:
-            print(preset.name, width, dict(missed(preset, width, number, seed)), flush=True)
+    sys.exit(CAMPAIGN.main(100))

@@ -1,14 +1,14 @@
 """Every function of `continuation.intervals` against mpmath in 200 digits: is a value outside of its interval?
 
-python examples/benchmarks/proof/functions.py 1000000
+python examples/benchmarks/functions.py 1000000
 """
 
-import sys
 from collections.abc import Callable
 from fractions import Fraction
 
 import mpmath
 import numpy as np
+from campaign import asked
 
 from continuation.intervals import Interval, jacobian
 
@@ -127,7 +127,7 @@ def exact_sum(x: np.ndarray) -> Fraction:
 
 
 if __name__ == "__main__":
-    asked = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
+    _, numbers, _ = asked()
     for function in (*ONE, *TWO):
-        outside, said = violations(function, asked)
-        print(f"{function:12} {asked} arguments: {outside} outside, {said:.3f} with a value", flush=True)
+        outside, said = violations(function, *numbers or (10_000,))
+        print(f"{function:12} {outside} outside, {said:.3f} with a value", flush=True)

@@ -1,25 +1,28 @@
 """Few large problems: an obstacle, torsion and a put in two assets, with one of the ways to factor.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/large.py obstacle [--size 316] [--way cholmod]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/large.py obstacle|torsion|put [--size 316] [--way cholmod]
 
 Memory is the most that the process held, with Python, numpy and the problem itself.
 """
 
-import argparse
 import resource
-import sys
-import time
-from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-
-sys.path.insert(0, str(File(__file__).parents[1] / "lcp"))
-from generators import obstacle_2d
+from campaign import asked, timed
 
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
+
+
+def obstacle_2d(m: int) -> LCP:
+    """A membrane over a bump, five-point differences on m x m points."""
+    T = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(m, m), dtype=float)
+    A = sp.kronsum(T, T, format="csr") * (m + 1.0) ** 2
+    t = np.arange(1, m + 1) / (m + 1)
+    obstacle = 0.3 - 3.0 * np.add.outer((t - 0.5) ** 2, (t - 0.5) ** 2).ravel()
+    return LCP(A, A @ obstacle + 5.0)
 
 
 def torsion(m: int) -> MixedLCP:
@@ -64,9 +67,7 @@ def measured(row: str, m: int, way: str) -> dict[str, Any]:
     problem = ROWS[row](m)
     if way == "amg":
         import pyamg  # noqa: F401
-    began = time.process_time()
-    found = lcp.solve(problem, sparse=way)
-    seconds = time.process_time() - began
+    found, seconds = timed(lambda: lcp.solve(problem, sparse=way))
     assert found.solved, found.message
     end = lcp.certify(problem, found.x)
     said = found.message.partition("Sparse factorisations: ")[2].partition(". In")[0]
@@ -75,16 +76,7 @@ def measured(row: str, m: int, way: str) -> dict[str, Any]:
     return answer | {"memory": memory, "factorisations": found.counts.factorizations, "said": said}
 
 
-def main() -> None:
-    """Print a line for a row and a way."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("row", choices=[*ROWS])
-    parser.add_argument("--size", type=int, default=316)
-    parser.add_argument("--way", default="auto", help="superlu, cholmod, amg, auto")
-    arguments = parser.parse_args()
-    for name, value in measured(arguments.row, arguments.size, arguments.way).items():
-        print(f"{name}: {value}")
-
-
 if __name__ == "__main__":
-    main()
+    rows, _, options = asked(size=316, way="auto")
+    for name, value in measured(rows[0], options.size, options.way).items():
+        print(f"{name}: {value}")

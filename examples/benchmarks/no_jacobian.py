@@ -1,27 +1,25 @@
 """A residual alone beside the same with its Jacobian: Bratu in one and two dimensions, Swift-Hohenberg, and others.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/no_jacobian.py [NAME ...] [--rounds 5] [--preset FAST]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/no_jacobian.py [NAME ...] [--rounds 5] [--preset FAST]
 
-Processor seconds, the least of several rounds in which all take turns. "differences" is the same residual as compiled
-code would give it, which neither jets nor complex numbers pass; "known" has the pattern as `sparsity`.
+Processor seconds, the least of several rounds. "differences" is the same residual as compiled code would give it, which
+neither jets nor complex numbers pass; "known" has the pattern as `sparsity`; "stability" is the own Jacobian, with what
+`Stability` costs.
 """
 
-import argparse
-import sys
-import time
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
+from campaign import asked, timed
+from five import brusselator
+from five import ways as written
 
 import continuation
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.bratu_2d import five_point
-
-sys.path.extend((str(Path(__file__).parents[1] / "stability"), str(Path(__file__).parents[1])))
-from brusselator import Brusselator
 
 UPPER = {Bratu1D: 1.0, Bratu2D: 2.0}
 """Bratu's paths go through the fold, and end where lam falls below this."""
@@ -83,11 +81,16 @@ class AllenCahn:
         return sp.csc_array(five_point(self.m) + sp.diags_array(lam * h2 * (1.0 - 3.0 * y * y))), h2 * (y - y**3)
 
 
+def diffusing(n):
+    """The Brusselator of `five.py`."""
+    return written(brusselator(n))["numpy"]()
+
+
 PROBLEMS = {
     "bratu-1d-100": (Bratu1D, 100), "bratu-1d-1000": (Bratu1D, 1000), "bratu-1d-10000": (Bratu1D, 10_000),
     "bratu-2d-20": (Bratu2D, 20), "bratu-2d-50": (Bratu2D, 50), "bratu-2d-200": (Bratu2D, 200),
     "swift-hohenberg-300": (SwiftHohenberg, 300), "swift-hohenberg-3000": (SwiftHohenberg, 3000),
-    "allen-cahn-40": (AllenCahn, 40), "brusselator-64": (Brusselator, 64), "brusselator-1000": (Brusselator, 1000),
+    "allen-cahn-40": (AllenCahn, 40), "brusselator-64": (diffusing, 64), "brusselator-1000": (diffusing, 1000),
 }  # fmt: skip
 
 
@@ -125,7 +128,7 @@ def options(homotopy, preset):
 
 
 def ways(homotopy):
-    """By name: with its Jacobian, and without."""
+    """By name: with its Jacobian, and without; and with it and the eigenvalues along the path."""
     slope = homotopy.jacobian(*homotopy.start())[0]
     pattern = slope.tosparse() if isinstance(slope, Banded) else slope
     return {
@@ -133,6 +136,7 @@ def ways(homotopy):
         "alone": Plain(homotopy),
         "known": Plain(homotopy, sparsity=pattern != 0),
         "differences": Plain(homotopy, compiled=True),
+        "stability": homotopy,
     }
 
 
@@ -140,13 +144,10 @@ def measured(name, rounds, preset="FAST", which=None):
     """By way: the path, and its processor seconds."""
     kind, size = PROBLEMS[name]
     homotopy = kind(size)
-    found = dict.fromkeys(which or ways(homotopy), (None, np.inf))
-    for _ in range(rounds):
-        for way in found:
-            one, given = ways(homotopy)[way], options(homotopy, preset)
-            began = time.process_time()
-            path = continuation.trace(one, **given)
-            found[way] = path, min(found[way][1], time.process_time() - began)
+    given, forms, found = options(homotopy, preset), ways(homotopy), {}
+    for way in which or forms:
+        more = {"observers": [continuation.Stability()]} if way == "stability" else {}
+        found[way] = timed(partial(continuation.trace, forms[way], **given, **more), rounds)
     return found
 
 
@@ -156,25 +157,11 @@ def folds_apart(path, other):
     return np.inf if one.shape != two.shape else float((np.abs(one - two) / np.abs(one + two)).max(initial=0.0))
 
 
-def main():
-    """Print a line a problem and way."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", default=list(PROBLEMS))
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--preset", default="FAST")
-    parser.add_argument("--ways", nargs="*")
-    arguments = parser.parse_args()
-    for name in arguments.names:
-        found = measured(name, arguments.rounds, arguments.preset, arguments.ways)
+if __name__ == "__main__":
+    names, _, given = asked(rounds=5, preset="FAST")
+    for name in names or PROBLEMS:
+        found = measured(name, given.rounds, given.preset)
         own, least = found["own"]
         for way, (path, seconds) in found.items():
-            print(
-                f"{name:22} {way:12} {1e3 * seconds:9.1f} ms {seconds / least:7.2f}  {path.status.name}, "
-                f"{len(path)} points, {len(path.events)} events, folds apart {folds_apart(path, own):.0e}, "
-                f"{path.counts}",
-                flush=True,
-            )
-
-
-if __name__ == "__main__":
-    main()
+            print(f"{name:22} {way:12} {1e3 * seconds:9.1f} ms {seconds / least:7.2f}  {path.status.name}, {len(path)} "
+                  f"points, folds apart {folds_apart(path, own):.0e}, {path.counts}", flush=True)  # fmt: skip

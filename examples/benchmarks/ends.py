@@ -1,18 +1,30 @@
-"""Paths whose ends are known, and whose numbers mislead: imperfections, symmetry, tails, weak parameters, poles."""
+"""Ends that numbers mislead about, in random units: is each what it is, and at what cost beside textbook scaling?
+
+    python examples/benchmarks/ends.py [NUMBER] [SEED] [FAMILY ...]
+
+Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 10^-UNITS to 10^UNITS.
+One is wrong if its status is none that it may have, or if it has folds that are none. What it costs is compared with
+the same path in its own units under the Euclidean metric, where that ends rightly, too.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from attrs import frozen
+from campaign import WRONG, Campaign, Verdict, drawn
 
 import continuation
 from continuation import Status
 from continuation.arrays import Array
 
 Residual = Callable[[Any, Any], Any]
+
+UNITS = 4.0
+BUDGET = continuation.Budget(steps=2000, factorizations=6000)
 
 
 @frozen
@@ -174,3 +186,35 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "logarithms": logarithm,
     "before folds": before_fold,
 }
+
+
+def in_units(family: Callable[[np.random.Generator], Case]) -> Callable[[np.random.Generator], tuple[Case, Any]]:
+    """A path, and the same in random units."""
+
+    def draw(generator: np.random.Generator) -> tuple[Case, Any]:
+        case = family(generator)
+        return case, case.homotopy(*10.0 ** generator.uniform(-UNITS, UNITS, 3))
+
+    return draw
+
+
+def wrong(path: continuation.Path, case: Case) -> str:
+    """What is wrong with a path; "" if nothing is."""
+    if path.status not in case.ends:
+        return f"{WRONG}: {path.status.name}"
+    return "" if len(path.turning_points) == case.folds else f"{WRONG}: {len(path.turning_points)} folds"
+
+
+def judge(drawn_one: tuple[Case, Any], preset: continuation.Preset) -> Verdict:
+    """What is wrong, and factorisations over those of the Euclidean metric in the path's own units."""
+    case, homotopy = drawn_one
+    path = continuation.trace(homotopy, preset=preset, budget=BUDGET)
+    plain = continuation.trace(case.homotopy(), preset=preset, budget=BUDGET, metric=continuation.Euclidean())
+    ratio = np.nan if wrong(plain, case) else path.counts.factorizations / plain.counts.factorizations
+    return wrong(path, case), ratio
+
+
+CAMPAIGN = Campaign({name: drawn(in_units(f)) for name, f in FAMILIES.items()}, judge, cost="cost")
+
+if __name__ == "__main__":
+    sys.exit(CAMPAIGN.main(100))

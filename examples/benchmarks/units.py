@@ -1,27 +1,25 @@
 """Twelve problems, four presets, random units: the same status, the same events, the same work?
 
-    python examples/benchmarks/units/run.py [NUMBER] [SEED]
+    python examples/benchmarks/units.py [NUMBER] [SEED] [PROBLEM ...]
 
 NUMBER changes of units (default 200) y -> D y + c, lam -> a lam + b, H -> E H for each problem and preset. An event
 agrees if it lies within 1e-8 of the path's extent, by component, from that of the path in its own units.
 """
 
 import sys
-from collections.abc import Callable
-from pathlib import Path as File
+from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
 from attrs import frozen
+from campaign import WRONG, Campaign, Cases, Verdict
+from rescaled import Rescaled, plain, rescaled
 
 import continuation
 from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Circle, Cusp, ExponentialCosine, FreudensteinRoth
 from problems.nonlinear import brown, fixed_point
 
-sys.path.insert(0, str(File(__file__).parent))
-from rescaled import Rescaled, plain, rescaled
-
-PRESETS = (continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE, continuation.SERIES)
 AGREEMENT = 1e-8
 
 
@@ -77,37 +75,32 @@ def extent_of(path: continuation.Path) -> Any:
     return np.where(extent > 0.0, extent, 1.0)
 
 
-def compare(name: str, preset: continuation.Preset, number: int, seed: int) -> tuple[list[str], list[float], int]:
-    """The differences, the factorisations of the others relative to those in the problem's units, and those."""
-    problem, generator = PROBLEMS[name], np.random.default_rng([seed, len(name)])
-    homotopy = problem.make()
-    reference = problem.trace(plain(homotopy), preset)
-    wrong, ratios = [], []
-    for _ in range(number):
-        units = rescaled(homotopy, extent_of(reference), generator)
-        path = problem.trace(units, preset)
-        found = difference(path, reference, units)
-        if found:
-            wrong.append(found)
-        else:
-            ratios.append(path.counts.factorizations / reference.counts.factorizations)
-    return wrong, ratios, reference.counts.factorizations
+@cache
+def reference(name: str, preset: continuation.Preset) -> continuation.Path:
+    """The path in the problem's own units."""
+    return PROBLEMS[name].trace(plain(PROBLEMS[name].make()), preset)
 
 
-def main(number: int, seed: int) -> int:
-    """Print a line a problem and preset; how many paths differ."""
-    total = 0
-    for name in PROBLEMS:
-        for preset in PRESETS:
-            wrong, ratios, work = compare(name, preset, number, seed)
-            total += len(wrong)
-            spread = f"{min(ratios):.2f} to {max(ratios):.2f}" if ratios else "-"
-            print(f"{name:22s} {preset.name:13s} {work:5d} factorisations, ratio {spread}; "
-                  f"{len(wrong)} of {number} differ {sorted(set(wrong))[:3]}", flush=True)  # fmt: skip
-    print(f"{total} of {number * len(PROBLEMS) * len(PRESETS)} differ")
-    return total
+def cases(name: str) -> Cases:
+    """A problem in so many random units."""
 
+    def draw(number: int, seed: int) -> Iterator[tuple[str, Rescaled]]:
+        generator, homotopy = np.random.default_rng([seed, len(name)]), PROBLEMS[name].make()
+        extent = extent_of(reference(name, continuation.DEFAULT))
+        return ((name, rescaled(homotopy, extent, generator)) for _ in range(number))
+
+    return draw
+
+
+def judge(case: tuple[str, Rescaled], preset: continuation.Preset) -> Verdict:
+    """The difference from the path in the problem's own units, and factorisations over those of that."""
+    name, units = case
+    path, own = PROBLEMS[name].trace(units, preset), reference(name, preset)
+    found = difference(path, own, units)
+    return f"{WRONG}: {found}" if found else "", path.counts.factorizations / own.counts.factorizations
+
+
+CAMPAIGN = Campaign({name: cases(name) for name in PROBLEMS}, judge, cost="factorisations over those in own units")
 
 if __name__ == "__main__":
-    arguments = [int(value) for value in sys.argv[1:]]
-    sys.exit(min(main(*(arguments + [200, 0][len(arguments) :])), 1))
+    sys.exit(CAMPAIGN.main(200))

@@ -1,18 +1,17 @@
 """Pitchforks that leave each other, (lam - k) y_k = y_k^3 for k = 1 to n: all 1 + (3^n - 1) / 2 branches.
 
-    python examples/benchmarks/diagrams/pitchforks.py [n] [processes] [archive]
+    python examples/benchmarks/pitchforks.py [n] [processes] [archive]
 
 With an archive, points stay in the file, and one that is there is gone on with.
 """
 
 import resource
-import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 
 import numpy as np
 from attrs import frozen
+from campaign import asked
 
 import continuation
 
@@ -58,10 +57,9 @@ def run(n, processes=0, archive=None):
 
 
 if __name__ == "__main__":
-    n, processes = (int(x) for x in (*sys.argv[1:3], *("5", "0")[len(sys.argv[1:3]) :]))
-    begin = time.perf_counter()
-    found = run(n, processes, sys.argv[3] if len(sys.argv) > 3 else None)
+    files, numbers, _ = asked()
+    n, processes = numbers + [5, 0][len(numbers) :]
+    found = run(n, processes, *files)
     seconds = sum(resource.getrusage(who).ru_utime for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"{found}, {seconds:.0f} s of processors, {time.perf_counter() - begin:.0f} s, {megabytes:.0f} MB")
-    print(f"{1e3 * seconds / len(found):.1f} ms a branch; {found.counts}")
+    print(f"{found}, {seconds:.0f} s of processors, {1e3 * seconds / len(found):.1f} ms a branch, {megabytes:.0f} MB")

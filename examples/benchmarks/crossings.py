@@ -1,14 +1,14 @@
 """Branch points on random paths: missed, invented, branches switched in silence, paths that stick; each preset.
 
-python examples/benchmarks/crossings/run.py [how many of each] [seed]
+python examples/benchmarks/crossings.py [NUMBER] [SEED] [FAMILY ...]
 """
 
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+from campaign import WRONG, Campaign, Cases, Verdict
 from crossed import Crossed, apart, arm, pairs, pitchfork, transcritical, transversal
 
 import continuation as ct
@@ -22,7 +22,6 @@ FAMILIES: dict[str, Callable[..., Crossed]] = {
     "arm": arm,
     "transcritical": transcritical,
 }
-PRESETS = (ct.FAST, ct.DEFAULT, ct.CONSERVATIVE, ct.SERIES)
 LOCATED = 1e-10
 """Of the path's extent (x_0 and s are of size one)."""
 
@@ -66,26 +65,19 @@ def drawn(name: str, count: int, seed: int) -> Iterator[Crossed]:
         yield FAMILIES[name](rng, n, float(rng.choice([0.0, 2.0, 6.0])))
 
 
-def main(count: int, seed: int) -> None:
-    """Print the counts for each family and preset."""
-    for name in FAMILIES:
-        for preset in PRESETS:
-            wrong: Counter[str] = Counter()
-            worst, factorizations, examples = 0.0, 0, []
-            for k, problem in enumerate(drawn(name, count, seed)):
-                outcome, error, path = judged(problem, name == "arm", preset)
-                factorizations += path.counts.factorizations
-                worst = max(worst, 0.0 if np.isnan(error) else error)
-                if outcome:
-                    wrong[outcome] += 1
-                    examples.append(k)
-            print(
-                f"{name:14s} {preset.name:13s} wrong {sum(wrong.values())}/{count} {dict(wrong)}  worst place"
-                f" {worst:.1e}  factorizations {factorizations}  {examples[:8]}",
-                flush=True,
-            )
+def judge(case: tuple[str, Crossed], preset: ct.Preset) -> Verdict:
+    """What is wrong, and the number of factorisations."""
+    name, problem = case
+    wrong, _, path = judged(problem, name == "arm", preset)
+    return f"{WRONG}: {wrong}" if wrong else "", path.counts.factorizations
 
+
+def cases(name: str) -> Cases:
+    """So many problems of a family, by its name."""
+    return lambda number, seed: ((name, problem) for problem in drawn(name, number, seed))
+
+
+CAMPAIGN = Campaign({name: cases(name) for name in FAMILIES}, judge)
 
 if __name__ == "__main__":
-    count, seed = (*map(int, sys.argv[1:]), 100, 1)[:2] if len(sys.argv) != 2 else (int(sys.argv[1]), 1)
-    main(count, seed)
+    sys.exit(CAMPAIGN.main(100))

@@ -1,17 +1,17 @@
 """One model five times: in numpy with its Jacobian, in JAX, CasADi and SymPy, and as a residual alone.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/adapters/five.py [--rounds 5] [--points 64]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/five.py [WAY ...] [--rounds 5] [--points 64]
 
 The Brusselator with diffusion, 2 x 64 unknowns, and a network of three layers at rest. Processor seconds a path, the
 least of several rounds; "made" is what it takes before, compilation included. What is not installed is left out.
 """
 
-import argparse
-import time
+from functools import partial
 from importlib.util import find_spec
 
 import numpy as np
 import scipy.sparse as sp
+from campaign import asked, timed
 
 import continuation
 
@@ -127,36 +127,20 @@ class Symbolic:
         return np.array([sympy.tanh(value) for value in values])
 
 
-def measured(make, rounds, preset="FAST"):
-    """The path, its processor seconds, and those before."""
-    began = time.process_time()
-    homotopy = make()
-    path = continuation.trace(homotopy, preset=getattr(continuation, preset))
-    first, least = time.process_time() - began, np.inf
-    for _ in range(rounds):
-        began = time.process_time()
-        path = continuation.trace(homotopy, preset=getattr(continuation, preset))
-        least = min(least, time.process_time() - began)
-    return path, least, first - least
-
-
 def main():
     """Print a line a way."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--points", type=int, default=64)
-    arguments = parser.parse_args()
-    models = {f"Brusselator, 2 x {arguments.points}": brusselator(arguments.points), "network": network(4)}
-    for title, model in models.items():
-        for preset in ("FAST", "SERIES"):
+    names, _, options = asked(rounds=5, points=64)
+    for title, model in {"Brusselator": brusselator(options.points), "network": network(4)}.items():
+        for preset in (continuation.FAST, continuation.SERIES):
             for name, make in ways(model).items():
-                path, least, before = measured(make, arguments.rounds, preset)
-                folds = ", ".join(f"{point.lam:.12f}" for point in path.turning_points)
-                print(
-                    f"{title}, {preset} {name:13} {1e3 * least:8.1f} ms, made in {before:5.2f} s, "
-                    f"{path.status.name}, {len(path)} points, folds {folds or 'none'}; {path.counts}",
-                    flush=True,
-                )
+                if names and name not in names:
+                    continue
+                homotopy, made = timed(make)
+                work = partial(continuation.trace, homotopy, preset=preset)
+                _, first = timed(work)
+                path, least = timed(work, options.rounds)
+                print(f"{title}, {preset.name} {name:13} {1e3 * least:8.1f} ms, made in {made + first - least:5.2f} s, "
+                      f"{path.status.name}, {len(path.turning_points)} folds; {path.counts}", flush=True)  # fmt: skip
 
 
 if __name__ == "__main__":

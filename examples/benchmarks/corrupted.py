@@ -1,6 +1,6 @@
 """Corrupted paths by the thousand: is a path that is no path ever proved?
 
-    python examples/benchmarks/proof/corrupted.py 10000 [SEED]
+    python examples/benchmarks/corrupted.py 10000 [SEED]
 
 Each corruption makes of traced paths something that they are not: continued on another sheet, points moved off the
 curve by more than the radius of their tube, their order changed, a loop left out, turned back, turning points dropped
@@ -11,20 +11,20 @@ part of 250.
 """
 
 import sys
-from collections import Counter
-from pathlib import Path as File
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from attrs import evolve
+from campaign import WRONG, Campaign, Verdict
+from subjects import Linear, TwoSheets, subjects
 
 from continuation import Budget, certify, trace
 from continuation.certificate import Proof
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 
-sys.path.insert(0, str(File(__file__).parent))
-from subjects import Linear, TwoSheets, subjects
+PART = 250
 
 DISTANT = 1e-3
 """How far a point is moved at least, in extents of the path."""
@@ -76,20 +76,6 @@ def swapped(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
         sign = rng.choice([-1.0, 1.0])
         steps[i : j + 1] = [evolve(s, tangent=sign * s.tangent) for s in steps[i : j + 1][::-1]]
     return numbered(path, steps, path.events)
-
-
-def shortcut(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
-    """A loop left out: all points around one or two turning points, which the chord cuts off, and their events."""
-    turns = path.turning_points
-    if len(turns) < 2:
-        return None
-    k = int(rng.integers(0, len(turns) - 1))
-    before, after = max(turns[k].step - int(rng.integers(1, 4)), 0), turns[k + 1].step + int(rng.integers(0, 3))
-    if after >= len(path) or after - before < 2:
-        return None
-    steps = [s for s in path.steps if not before < s.index < after]
-    events = [e for e in path.events if not before < e.step <= after]
-    return numbered(path, steps, events)
 
 
 def jumped(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
@@ -255,7 +241,7 @@ def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: An
 
 
 AT_KINKS = (unkinked, misplaced, pushed, renamed, turned_back, straight_on)
-AT_TURNS = (unlisted, misplaced, shortcut)
+AT_TURNS = (unlisted, misplaced)
 ANYWHERE = (moved, swapped, jumped, invented, left_out, turned_back)
 
 
@@ -265,37 +251,36 @@ def faults(homotopy: Any, path: Path) -> list[Any]:
     return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]
 
 
-def campaign(count: int, seed: int = 0) -> Counter:
-    """How many corrupted paths of each kind were refused, and accepted; those with points left out may be proved."""
-    rng, found, tried = np.random.default_rng(seed), Counter(), subjects(seed)
-    while sum(found.values()) < count:
-        homotopy, path, proof = tried[int(rng.integers(len(tried)))]
-        fault = rng.choice(faults(homotopy, path))
-        more = {"homotopy": homotopy} if fault is straight_on and not isinstance(homotopy, Linear) else {}
-        corrupted = fault(path, proof, rng, **more)
-        if corrupted is None:
-            continue
-        verdict = "accepted" if proved(homotopy, corrupted) else "refused"
-        if fault is left_out and verdict == "accepted":
-            kept = {s.u.tobytes() for s in corrupted.steps}
-            gone = [listed(s, Kind.EVENT) for s in path.steps if s.u.tobytes() not in kept]
-            holding = numbered(path, [s for s in path.steps if s.u.tobytes() in kept], [*path.events, *gone])
-            # Rational proofs are of the lines themselves, and take no event that is no kink.
-            verdict = "proved" if isinstance(homotopy, Linear) or proved(homotopy, holding) else "accepted"
-        found[fault.__name__, verdict] += 1
-    return found
+def cases(number: int, seed: int) -> Iterator[tuple[Any, Path, Any, Path]]:
+    """Homotopy, path, fault, and the corrupted path; the paths are others from PART to PART."""
+    for part in range(-(-number // PART)):
+        rng, tried, left = np.random.default_rng(seed + part), subjects(seed + part), min(PART, number - part * PART)
+        while left:
+            homotopy, path, proof = tried[int(rng.integers(len(tried)))]
+            fault = rng.choice(faults(homotopy, path))
+            more = {"homotopy": homotopy} if fault is straight_on and not isinstance(homotopy, Linear) else {}
+            corrupted = fault(path, proof, rng, **more)
+            if corrupted is not None:
+                left -= 1
+                yield homotopy, path, fault, corrupted
 
 
-def by_parts(count: int, first: int = 0, part: int = 250) -> Counter:
-    """A long campaign, of seeds from the first on, which says after each part how far it is."""
-    found: Counter = Counter()
-    for k in range(-(-count // part)):
-        found += campaign(min(part, count - k * part), first + k)
-        accepted = sum(number for (_, verdict), number in found.items() if verdict == "accepted")
-        print(f"{sum(found.values())} corrupted paths, {accepted} accepted", flush=True)
-    return found
+def judge(case: tuple[Any, Path, Any, Path], way: Any) -> Verdict:
+    """Whether a corrupted path is refused; one with points left out may be proved."""
+    homotopy, path, fault, corrupted = case
+    if not proved(homotopy, corrupted):
+        return f"{fault.__name__} refused", np.nan
+    if fault is left_out:
+        kept = {s.u.tobytes() for s in corrupted.steps}
+        gone = [listed(s, Kind.EVENT) for s in path.steps if s.u.tobytes() not in kept]
+        holding = numbered(path, [s for s in path.steps if s.u.tobytes() in kept], [*path.events, *gone])
+        # Rational proofs are of the lines themselves, and take no event that is no kink.
+        if isinstance(homotopy, Linear) or proved(homotopy, holding):
+            return f"{fault.__name__} proved", np.nan
+    return f"{WRONG}: {fault.__name__} accepted", np.nan
 
+
+CAMPAIGN = Campaign({"corrupted paths": cases}, judge, {"": None})
 
 if __name__ == "__main__":
-    for (kind, verdict), number in sorted(by_parts(*map(int, sys.argv[1:] or ["200"])).items()):
-        print(f"{kind:11} {verdict:9} {number}")
+    sys.exit(CAMPAIGN.main(200))

@@ -1,27 +1,27 @@
-"""What must not matter: the units of rows and columns, a common factor, and how far apart the entries are.
+"""What must not matter to `lcp.solve`: the units of rows and columns, a common factor, and how far apart entries are.
 
-    python examples/benchmarks/lcp/units.py units  [NUMBER] [SEED]   each problem again in random units
-    python examples/benchmarks/lcp/units.py factor [NUMBER] [SEED]   LCP(s q, s A) for s = 1e-300 .. 1e300
-    python examples/benchmarks/lcp/units.py truth  [NUMBER] [SEED]   every claim against exact enumeration
+    python examples/benchmarks/claims.py [NUMBER] [SEED] [units] [factor] [truth] [bounds]
 
-Prints what was claimed, and everything that is wrong; the exit status is 1 if anything is. Units that are not powers of
-two round the entries, and so can spoil an exact proof or an exact solution, or give a problem without solution one at
-1e16: such answers are counted by themselves ("decided by rounding"), and powers of two are held to the same outcome.
+"units": each problem again in random units; "factor": LCP(s q, s A) for s = 1e-300 .. 1e300; "truth" and "bounds":
+every claim against exact enumeration. Units that are not powers of two round the entries, and so can spoil an exact
+proof or an exact solution, or give a problem without solution one at 1e16: such answers are counted ("decided
+by rounding"), and powers of two are held to the same outcome.
 """
 
 import math
 import sys
-import time
 import warnings
-from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
+from campaign import WRONG, Campaign, Verdict, timed
 
 from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
+from problems.lcp.reference.enumeration import exhaust
 
 Data = tuple[Array, Array]
 Outcome = lcp.Outcome
@@ -158,61 +158,53 @@ def same_point(one: Array, other: Array) -> bool:
     return bool(np.abs(one - other).max() <= SAME_X * size)
 
 
-def units(number: int, seed: int) -> int:
-    """Each problem and the same in other units, powers of two in every second one."""
-    seen: Counter[str] = Counter()
+def compared(one: lcp.Solution, other: lcp.Solution, exact: bool, E: Array) -> str:
+    """What two answers come to, of which the other is of the same problem with x in units of 1 / E."""
+    said = f"{one.outcome.name} and {other.outcome.name}"
+    if not (same_outcome(one, other, exact) or (not exact and lost_in_rounding(one, other, E))):
+        return f"{WRONG}: {said}"
+    if one.outcome is not other.outcome:
+        return f"decided by rounding: {said}"
+    return "" if not one.solved or same_point(one.x, other.x * E) else "another solution"
+
+
+def in_units(A: Array, q: Array, D: Array, E: Array, exact: bool) -> Verdict:
+    """A problem, and the same in other units, which are perhaps powers of two."""
+    if exact:
+        D, E = np.exp2(np.round(np.log2(D))), np.exp2(np.round(np.log2(E)))
+    return compared(solved(A, q), solved(D[:, None] * A * E, D * q), exact, E), math.nan
+
+
+def units(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
+    """Problems with units for every row and column, powers of two in every second one."""
     for k in range(number):
         r = np.random.default_rng([seed, k])
-        kind = KINDS[k % len(KINDS)]
-        A, q = kind(int(r.integers(2, 13)), r)
-        n = len(q)
-        D, E = 10.0 ** r.uniform(-8, 8, n), 10.0 ** r.uniform(-8, 8, n)
-        exact = bool(k // len(KINDS) % 2)
-        if exact:
-            D, E = np.exp2(np.round(np.log2(D))), np.exp2(np.round(np.log2(E)))
-        name = f"{kind.__name__}, powers of two" if exact else kind.__name__
-        one, other = solved(A, q), solved(D[:, None] * A * E, D * q)
-        seen[one.outcome.name] += 1
-        if not (same_outcome(one, other, exact) or (not exact and lost_in_rounding(one, other, E))):
-            seen[f"DIFFERS: {name}: {one.outcome.name} and {other.outcome.name}"] += 1
-        elif one.outcome is not other.outcome:
-            seen[f"decided by rounding: {name}: {one.outcome.name} and {other.outcome.name}"] += 1
-        elif one.x is not None and other.x is not None and one.solved and not same_point(one.x, other.x * E):
-            seen[f"another solution: {name}"] += 1
-    return report(f"{number} problems in other units, seed {seed}", seen)
+        A, q = KINDS[k % len(KINDS)](int(r.integers(2, 13)), r)
+        yield partial(in_units, A, q, *10.0 ** r.uniform(-8, 8, (2, len(q))), bool(k // len(KINDS) % 2))
 
 
-def factor(number: int, seed: int) -> int:
+def times_factors(A: Array, q: Array) -> Verdict:
     """LCP(s q, s A) has the same solutions for all s.
 
     The power of two next to s rounds nothing, and is to change no digit of the answer. s itself rounds the entries, and
     so may make a singular problem one that is not.
     """
-    seen: Counter[str] = Counter()
+    one, said = solved(A, q), {""}
+    for s in FACTORS:
+        two = 2.0 ** round(math.log2(s))
+        other = solved(two * A, two * q)
+        if one.outcome is not other.outcome or (one.solved and one.x.tobytes() != other.x.tobytes()):
+            return f"{WRONG}: times {two:g} {one.outcome.name} and {other.outcome.name}", math.nan
+        said.add(compared(one, solved(s * A, s * q), False, np.ones(len(q))))
+    return max(said, key=lambda text: (text.startswith(WRONG), text)), math.nan
+
+
+def factor(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
+    """Small problems, and every fifth of some kinds one that is not."""
     for k in range(number):
-        r = np.random.default_rng([seed, k])
-        kind = KINDS[k % len(KINDS)]
+        r, kind = np.random.default_rng([seed, k]), KINDS[k % len(KINDS)]
         large = kind in QUICK and k // len(KINDS) % 5 == 4
-        A, q = kind(int(r.integers(*(LARGE if large else (1, 6)))), r)
-        one = solved(A, q)
-        seen[one.outcome.name] += 1
-        for s in FACTORS:
-            two = 2.0 ** round(math.log2(s))
-            other = solved(two * A, two * q)
-            if one.outcome is not other.outcome or (one.solved and one.x.tobytes() != other.x.tobytes()):
-                seen[f"DIFFERS: {two:g}: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
-            else:
-                seen["the same to the last digit, times a power of two"] += 1
-            other = solved(s * A, s * q)
-            if not same_outcome(one, other, exact=False):
-                seen[f"DIFFERS: {s:g}: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
-            elif one.outcome is not other.outcome:
-                seen[f"decided by rounding: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
-            elif one.solved and not same_point(one.x, other.x):
-                seen[f"another point: {kind.__name__}"] += 1
-            else:
-                seen["the same, times a power of ten"] += 1
-    return report(f"{number} problems times {len(FACTORS)} factors, seed {seed}", seen)
+        yield partial(times_factors, *kind(int(r.integers(*(LARGE if large else (1, 6)))), r))
 
 
 def hostile(k: int, r: np.random.Generator) -> Data:
@@ -247,51 +239,64 @@ def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
     return min(y) >= 0 and below and sum(Fraction(a) * b for a, b in zip(q.tolist(), y)) < 0
 
 
-def truth(number: int, seed: int) -> int:
+def judged(A: Array, q: Array) -> Verdict:
     """SOLVED and UNSOLVABLE against enumeration; no exception, no warning, nothing slow."""
-    seen: Counter[str] = Counter()
-    slowest = 0.0
-    for k in range(number):
-        A, q = hostile(k, np.random.default_rng([seed, k]))
-        began = time.process_time()
-        try:
-            found = solved(A, q)
-        except Exception as error:
-            seen[f"DIFFERS: {type(error).__name__}"] += 1
-            print(f"{type(error).__name__} at {k}: {error}")
-            continue
-        seconds = time.process_time() - began
-        slowest = max(slowest, seconds)
-        if seconds > SLOW:
-            seen["DIFFERS: slow"] += 1
-            print(f"{seconds:.1f} s at {k}")
-        seen[found.outcome.name] += 1
-        exists = lcp.solve_by_enumeration(lcp.LCP(A, q)).solvable
-        if found.outcome in (Outcome.SOLVED, Outcome.UNSOLVABLE) and exists is not found.solved:
-            seen["DIFFERS: false claim"] += 1
-            print(f"FALSE {found.outcome.name} at {k}, off by {found.relative_residual:.1e}: {found.message}")
-        if found.solved and exactly_off(A, q, found.x) > FARTHEST:
-            seen["DIFFERS: x is no solution"] += 1
-            print(f"OFF by {exactly_off(A, q, found.x):.1e} at {k}: {found.message}")
-        if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None:
-            seen["Farkas vectors, exact" if proves(A, q, found.farkas.y) else "DIFFERS: no Farkas vector"] += 1
-        if found.outcome not in (Outcome.SOLVED, Outcome.UNSOLVABLE):
-            seen[f"undecided, solvable: {exists}: {found.outcome.name}"] += 1
-    return report(f"{number} small problems against enumeration, seed {seed}, slowest {slowest:.1f} s", seen)
+    try:
+        found, seconds = timed(lambda: solved(A, q))
+    except Exception as error:
+        return f"{WRONG}: {type(error).__name__}: {error}", math.nan
+    exists = lcp.solve_by_enumeration(lcp.LCP(A, q)).solvable
+    said = found.outcome.name
+    if found.outcome not in (Outcome.SOLVED, Outcome.UNSOLVABLE):
+        said += f", {'solvable' if exists else 'not solvable'}"
+    elif exists is not found.solved:
+        said = f"{WRONG}: {said} is false"
+    if found.solved and exactly_off(A, q, found.x) > FARTHEST:
+        said = f"{WRONG}: {said}, x is no solution"
+    if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None and not proves(A, q, found.farkas.y):
+        said = f"{WRONG}: {said}, no Farkas vector"
+    return said if seconds <= SLOW else f"{WRONG}: slow", seconds
 
 
-def report(title: str, seen: Counter[str]) -> int:
-    """Print; whether anything differs."""
-    print(title)
-    for name, count in sorted(seen.items()):
-        print(f"{count:8} {name}")
-    return sum(count for name, count in seen.items() if name.startswith("DIFFERS"))
+def truth(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
+    """Small problems, hostile ones among them."""
+    return (partial(judged, *hostile(k, np.random.default_rng([seed, k]))) for k in range(number))
 
 
-MODES = {"units": (units, 2000), "factor": (factor, 1000), "truth": (truth, 100_000)}
+def random_problem(rng: np.random.Generator) -> lcp.MixedLCP:
+    """Integers, n <= 6, bounds of all kinds mixed; singular and infeasible problems among them."""
+    n = int(rng.integers(1, 7))
+    A, q = rng.integers(-3, 4, (n, n)).astype(float), rng.integers(-4, 5, n).astype(float)
+    change = rng.random(4) < 0.3
+    if change[0]:
+        A[rng.integers(n)] = A[rng.integers(n)]
+    if change[1]:
+        A[:, rng.integers(n)] = 0.0
+    if change[2]:
+        A = A + A.T
+    if change[3]:
+        A = A @ A.T
+    kind = rng.integers(0, 6, n)  # lower, box, upper, free, lower, fixed
+    lower = np.where(np.isin(kind, [0, 1, 4, 5]), rng.integers(-2, 3, n), -np.inf)
+    width = np.where(kind == 5, 0, rng.integers(0, 4, n))
+    upper = np.where(np.isin(kind, [1, 5]), lower + width, np.where(kind == 2, rng.integers(-2, 3, n), np.inf))
+    return lcp.MixedLCP(A, q, lower, upper)
 
+
+def within(problem: lcp.MixedLCP) -> Verdict:
+    """The outcome against all pieces in exact arithmetic."""
+    (found, seconds), solvable = timed(lambda: lcp.solve(problem)), exhaust(problem).solvable
+    false = found.success != solvable or (found.outcome is Outcome.UNSOLVABLE and solvable)
+    return f"{WRONG}: {found.outcome.name} of {problem!r}" if false else found.outcome.name, seconds
+
+
+def bounds(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
+    """Problems with bounds."""
+    return (partial(within, random_problem(np.random.default_rng([seed, k]))) for k in range(number))
+
+
+FAMILIES = {family.__name__: family for family in (units, factor, truth, bounds)}
+CAMPAIGN = Campaign(FAMILIES, lambda case, way: case(), {"": None}, "seconds")
 
 if __name__ == "__main__":
-    run, default = MODES[sys.argv[1]]
-    numbers = [int(a) for a in sys.argv[2:]]
-    sys.exit(min(run(*(numbers + [default, 0][len(numbers) :])), 1))
+    sys.exit(CAMPAIGN.main(1000))
