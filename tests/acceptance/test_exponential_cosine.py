@@ -15,7 +15,7 @@ from continuation.predictors import Tangent
 from continuation.step import acceptance
 from continuation.step.crossing import Crossings
 from problems.bifurcation import ExponentialCosine
-from problems.bifurcation.truth import exponential_cosine
+from tests.truth import exponential_cosine
 
 from ..util import every_preset
 

@@ -16,8 +16,8 @@ from problems.bifurcation import (
     ExponentialCosine,
     FreudensteinRoth,
     Pitchfork,
-    truth,
 )
+from tests import truth
 
 PROBLEMS = [
     Circle(), Cusp(), Cusp(splitting=-0.7), Pitchfork(), Pitchfork(imperfection=0.1), Pitchfork(imperfection=-2.0),

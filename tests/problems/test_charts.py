@@ -57,13 +57,6 @@ def test_the_families_are_what_they_are_called():
         families.planted("none", 2, 0)
 
 
-def test_the_truths_agree_with_an_accurate_trace():
-    problem = subjects.freudenstein()
-    reference = chart.reference(problem.subject)
-    np.testing.assert_allclose(problem.truth.end, reference.end, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(problem.truth.turning_points, reference.turning_points, rtol=0, atol=1e-9)
-
-
 def test_the_plain_loop_arrives_and_is_counted():
     study = chart.Study(
         name="loop",

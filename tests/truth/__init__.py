@@ -3,6 +3,6 @@
 One module a problem. Points are rows (y_1, ..., y_N, lam).
 """
 
-from problems.bifurcation.truth import aircraft, bratu, circle, cusp, exponential_cosine, freudenstein_roth, pitchfork
+from tests.truth import aircraft, bratu, circle, cusp, exponential_cosine, freudenstein_roth, pitchfork
 
 __all__ = ["aircraft", "bratu", "circle", "cusp", "exponential_cosine", "freudenstein_roth", "pitchfork"]
