@@ -10,6 +10,7 @@ from pathlib import Path as File
 from attrs import asdict, field, frozen
 
 import continuation
+from continuation.chart.table import Cell, Table
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES, Registered
 from problems.lcp.proof.certificate import certify
@@ -97,16 +98,7 @@ METHODS: Mapping[str, Method] = {
 
 
 def compare(examples: Iterable[Example], names: Sequence[str]) -> list[Result]:
-    """Every named method on every example.
-
-    Raises
-    ------
-    ValueError
-        For a name that is none of `METHODS`.
-    """
-    unknown = [name for name in names if name not in METHODS]
-    if unknown:
-        raise ValueError(f"methods: expected some of {', '.join(METHODS)}, found {unknown[0]!r}")
+    """Every named method on every example; the names are of `METHODS`."""
     return [METHODS[name](example) for example in examples for name in names]
 
 
@@ -115,13 +107,8 @@ def matrix(results: Sequence[Result]) -> str:
     numbers = sorted({result.example for result in results})
     names = list(dict.fromkeys(result.method for result in results))
     cell = {(result.method, result.example): _cell(result) for result in results}
-    first = max(len("example"), *map(len, names))
-    widths = {number: max(len(str(number)), *(len(cell[name, number]) for name in names)) for number in numbers}
-    lines = ["example".ljust(first) + "".join(f"  {number:>{widths[number]}}" for number in numbers)]
-    lines += [
-        name.ljust(first) + "".join(f"  {cell[name, number]:>{widths[number]}}" for number in numbers) for name in names
-    ]
-    return "\n".join(lines)
+    lines = [(name, *(cell[name, number] for number in numbers)) for name in names]
+    return Table(("example", *map(str, numbers)), lines).text()
 
 
 _SHORT = {
@@ -135,8 +122,8 @@ LEGEND = (
 )
 
 
-def _cell(result: Result) -> str:
-    return str(result.work) if result.solved else _SHORT.get(result.outcome, result.outcome.lower())
+def _cell(result: Result) -> Cell:
+    return result.work if result.solved else _SHORT.get(result.outcome, result.outcome.lower())
 
 
 def write_csv(results: Iterable[Result], file: str | PathLike[str]) -> None:
