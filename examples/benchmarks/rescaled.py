@@ -16,6 +16,13 @@ SHIFTS = -2.0, 6.0
 """Zero lies 10 to one of these powers of the path's extent away."""
 
 
+def dense(H_y: Any) -> Array:
+    """A Jacobian in whatever structure as an array."""
+    H_y = H_y.matrix if isinstance(H_y, Symmetric) else H_y
+    H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
+    return H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
+
+
 @frozen(eq=False)
 class Rescaled:
     """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
@@ -46,12 +53,7 @@ class Rescaled:
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """Dense, whatever the homotopy's is."""
         H_y, H_lam = self.homotopy.jacobian((y - self.c) / self.D, (lam - self.b) / self.a)
-        if isinstance(H_y, Symmetric):
-            H_y = H_y.matrix
-        if isinstance(H_y, Banded):
-            H_y = H_y.tosparse()
-        dense = H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
-        return self.E[:, None] * dense / self.D, self.E * np.asarray(H_lam) / self.a
+        return self.E[:, None] * dense(H_y) / self.D, self.E * np.asarray(H_lam) / self.a
 
     def original(self, u: Array) -> Array:
         """A point (y, lam) in the units of the homotopy."""

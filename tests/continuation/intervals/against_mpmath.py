@@ -1,14 +1,9 @@
-"""Every function of `continuation.intervals` against mpmath in 200 digits: is a value outside of its interval?
-
-python examples/benchmarks/functions.py 1000000
-"""
+"""Every function of `continuation.intervals` against mpmath in 200 digits: is a value outside of its interval?"""
 
 from collections.abc import Callable
-from fractions import Fraction
 
 import mpmath
 import numpy as np
-from campaign import asked
 
 from continuation.intervals import Interval, jacobian
 
@@ -119,15 +114,3 @@ def slopes_outside(name: str, count: int, seed: int = 0) -> int:
     lo, hi = (np.concatenate([np.diagonal(getattr(block, end)) for block in blocks]) for end in ("lo", "hi"))
     with mpmath.workdps(DIGITS):
         return _outside(lo, hi, [mpmath.diff(f, mpmath.mpf(v), h=mpmath.mpf(10) ** -60) for v in x.tolist()])
-
-
-def exact_sum(x: np.ndarray) -> Fraction:
-    """Of floats."""
-    return sum(map(Fraction, x.tolist()), Fraction(0))
-
-
-if __name__ == "__main__":
-    _, numbers, _ = asked()
-    for function in (*ONE, *TWO):
-        outside, said = violations(function, *numbers or (10_000,))
-        print(f"{function:12} {outside} outside, {said:.3f} with a value", flush=True)
