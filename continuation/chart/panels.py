@@ -32,7 +32,7 @@ def some(kind: str, wanted: Sequence[str] | None, known: Sequence[str]) -> Seque
     return wanted
 
 
-def look_of(k: int, outside: bool = False) -> dict[str, Any]:
+def _look(k: int, outside: bool) -> dict[str, Any]:
     """Colour, marker and style of the k-th line."""
     colours = GREYS if outside else COLOURS
     return {
@@ -49,12 +49,10 @@ def look_of(k: int, outside: bool = False) -> dict[str, Any]:
 def looks_of(results: Results, methods: Sequence[str]) -> dict[str, dict[str, Any]]:
     """By method: the k-th of ours, or of the others."""
     outside = {row.method: row.outside for row in results.rows}
-    return {m: look_of([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
+    return {m: _look([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
 
 
-def panels(
-    count: int, across: int, title: str, height: float = 3.0, width: float = 7.4
-) -> tuple[Figure, list[Axes]]:
+def panels(count: int, across: int, title: str, height: float = 3.0, width: float = 7.4) -> tuple[Figure, list[Axes]]:
     """A figure as wide as a page, with `count` panels, `across` of them in a row."""
     require_matplotlib()
     from matplotlib.figure import Figure as Canvas

@@ -40,7 +40,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         for problem in study.problems
         for method in study.methods
         if method.applies(problem)
-        for rung in (study.ladder.rungs if method.laddered else study.ladder.rungs[:1])
+        for rung in (study.ladder if method.laddered else study.ladder[:1])
     ]
     rows: list[Row] = []
     for problem, method, rung in cases:
@@ -51,7 +51,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     return Results(
         study=study.name,
         title=study.title,
-        ladder=study.ladder.name,
+        ladder=study.ladder[0].name,
         errors={error.name: error.label for error in study.errors},
         work=study.work,
         rows=rows,

@@ -146,7 +146,7 @@ def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
     assert ours.errors["answer"] <= 1e-15
     problem = chart.Problem("cournot", scenes.make("cournot"), options={"true": {"price": 50.0}})
     wrong = scenes._method("wrong", False, lambda scene: {"price": 40.0})
-    answer = wrong.run(problem, chart.tolerances(1.0).rungs[0])
+    answer = wrong.run(problem, chart.tolerances(1.0)[0])
     assert (answer.failure, answer.message) == ("wrong end", "the answer is off by 2.0e-01")
 
 
