@@ -131,7 +131,8 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
 
 def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
     if not path.success:
-        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else Failure.STOPPED, path.message
+        ended = path.status.name.lower().replace("_", " ")
+        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else ended, path.message
     true, turns = problem.truth.turning_points, len(path.turning_points)
     if true is not None and turns != len(true):
         return Failure.JUMP, f"{turns} turning points, the path has {len(true)}"
