@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from continuation.chart import Answer, Failure, Method, Problem, Results, Row, Rung, Study, run, tolerances
 from continuation.chart.table import Cell, Table
 from continuation.counts import Counts
-from problems.charts.lcp import DIRECT, RESIDUAL, direct, judged, path
+from problems.charts.lcp import DIRECT, RESIDUAL, direct, path
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.literal import run_literally
 from problems.paper import Example
@@ -16,10 +16,9 @@ from problems.paper import Example
 def _literal(problem: Problem, rung: Rung) -> Answer:
     x0, z = problem.options["x0"], problem.options["z"]
     done = run_literally(problem.subject, x0, z, z)
-    counts = Counts(accepted=done.iterations)
-    if not done.claims_solution:
-        return Answer(counts, failure=Failure.STOPPED, message=done.ended_by)
-    return judged(problem.subject, done.x, counts, message=done.ended_by)
+    failure = Failure.NONE if done.solved else Failure.WRONG_END if done.claims_solution else Failure.STOPPED
+    observed = {"natural_residual": done.residual}
+    return Answer(Counts(accepted=done.iterations), observed=observed, failure=failure, message=done.ended_by)
 
 
 METHODS: Mapping[str, Method] = {
