@@ -249,8 +249,9 @@ class Dumbbell:
                 axes.annotate(rows[1].method, placed[1], (7 * side, 0), textcoords="offset points", **where)
             axes.annotate(said, (1.01, -k), xycoords=("axes fraction", "data"), va="center", fontsize="small")
         axes.set_xscale("log")
-        # The names of the best take up to a fifth of the panel, at either side.
-        axes.margins(x=0.06 if self.every else 0.35)
+        # At either side a name of the best may stand: a letter takes nine thousandths of the panel.
+        side = 0.05 if self.every else 0.03 + 0.009 * max((len(rows[-1].method) for _, rows, _ in lines if rows))
+        axes.margins(x=side / (1.0 - 2.0 * side))
         axes.set_ylim(0.6 - len(lines), 0.6)
         axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
         for label, (_, rows, said) in zip(axes.get_yticklabels(), lines):
