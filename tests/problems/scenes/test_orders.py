@@ -144,7 +144,7 @@ def test_the_price_of_exercise_falls_from_the_strike_with_the_time_left():
 
 
 def test_values_that_no_float_holds_stop_no_time_step():
-    """On this mesh they fall to subnormal numbers in the second step, of which no row is right relative to its terms."""
+    """On this mesh they fall to subnormal numbers in the second step: no row is right relative to its terms."""
     scene = AmericanPut(n=800, steps=200)
     found = solve(scene)
     assert found.success
