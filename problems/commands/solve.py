@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from pathlib import Path
 from typing import Any
 
 from continuation.arrays import Array
@@ -69,7 +68,10 @@ def run(arguments: argparse.Namespace) -> int:
         return scene.run(arguments)
     if arguments.scene:
         raise UsageError("unrecognized arguments", " ".join(arguments.scene))
-    _check_outputs(arguments)
+    if arguments.plot is not None:
+        from continuation.cli.figures import check_picture
+
+        check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"), named(_ARGUMENTS), file_of(arguments.file) as file:
         program = read_program(file) if arguments.q is None else None
         problem = read_problem(file, arguments.q) if program is None else program.problem
@@ -99,19 +101,6 @@ def _tolerance(text: str) -> float:
 
 def _counted(text: str) -> int:
     return parsed(text, int, lambda value: value >= 0, "an integer, at least 0")
-
-
-def _check_outputs(arguments: argparse.Namespace) -> None:
-    """Complain before the work is done rather than after."""
-    for option, file in (("--archive", arguments.archive), ("--plot", arguments.plot)):
-        if file is not None and not Path(file).parent.is_dir():
-            raise UsageError(option, f"expected a file in an existing directory, found {str(file)!r}")
-    if arguments.archive is not None and Path(arguments.archive).exists():
-        raise UsageError("--archive", f"expected a new file, found an existing one, {arguments.archive!r}")
-    if arguments.plot is not None:
-        from continuation.cli.figures import check_picture
-
-        check_picture("--plot", arguments.plot)
 
 
 def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
