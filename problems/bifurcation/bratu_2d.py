@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -53,7 +53,7 @@ class Bratu2D:
     references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     @cached_property
-    def _pattern(self) -> tuple[Matrix, Array]:
+    def _pattern(self) -> tuple[Matrix, Any]:
         """The Laplacian, and where its diagonal is stored: H_y alters nothing else along the path."""
         laplacian = five_point(self.m)
         columns = np.repeat(np.arange(self.m**2), np.diff(laplacian.indptr))

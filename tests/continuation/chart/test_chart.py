@@ -203,14 +203,15 @@ def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio
         made("even", "quick", 1e-4, 20, outside=True), made("lost", "ours", 1e-15, 10),
         made("lost", "quick", 1e-15, 5, outside=True), made("won", "ours", 1e-15, 10),
         made("won", "slow", 1e-15, 99, outside=True), made("won", "quick", 1.0, 1, outside=True, failure="wrong end"),
-        made("alone", "ours", 1e-15, 10),
+        made("alone", "ours", 1e-15, 10), made("failed", "ours", 1.0, 1, failure="wrong end"),
+        made("failed", "quick", 1e-15, 5, outside=True),
     ]  # fmt: skip
     results = chart.Results("s", "t", "mesh", {"e": "error"}, ["factorizations"], rows)
     (panel,) = chart.Dumbbell("e", "factorizations").draw(results).axes
-    assert [label.get_text() for label in panel.get_yticklabels()] == ["won", "even", "lost", "alone"]
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["won", "even", "lost", "alone", "failed"]
     said = [text.get_text() for text in panel.texts]
-    assert [each for each in said if "×" in each or each == "no rival"] == [
-        "9.9× quicker", "2.0× quicker", "2.0× slower", "no rival"
+    assert [each for each in said if "×" in each or each in ("no rival", "ours failed")] == [
+        "9.9× quicker", "2.0× quicker", "2.0× slower", "no rival", "ours failed"
     ]  # fmt: skip
     assert [each for each in said if each in ("quick", "slow")] == ["slow", "quick", "quick"]
     panel.figure.draw_without_rendering()
