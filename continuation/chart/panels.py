@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -86,19 +85,13 @@ def plain_ticks(axis: Any) -> None:
 
 
 def to_round_off(axes: Axes) -> None:
-    """Errors fall to the right; round-off is named where it is near."""
-    from matplotlib.ticker import FuncFormatter, NullLocator
-
+    """Errors fall to the right, where round-off has a line if it is near."""
     least, largest = axes.get_xlim()
-    # Three decades at least, and round-off where no more than those lie between.
-    least = 0.4 * ERROR_FLOOR if least < 1e3 * ERROR_FLOOR else least
-    largest = max(largest, 1e3 * least)
-    axes.set_xlim(largest, least)
-    stride = 3 if largest > 1e7 * least else 1
-    first, last = round(math.log10(ERROR_FLOOR)), math.floor(math.log10(largest))
-    axes.set_xticks([10.0**k for k in range(first, last + 1, stride) if 10.0**k > least])
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda e, _: "round-off" if e < 2.0 * ERROR_FLOOR else f"{e:.0e}"))
-    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlim(max(largest, 1e3 * least), least)
+    if least < 1e3 * ERROR_FLOOR:
+        axes.axvline(ERROR_FLOOR, color="0.7", linewidth=0.8, zorder=0)
+        where = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": "x-small", "color": "0.5"}
+        axes.annotate("round-off", (ERROR_FLOOR, 0.94), (-3, 0), textcoords="offset points", **where)
 
 
 def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None:
