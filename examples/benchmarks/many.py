@@ -12,6 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
+import claims
 import numpy as np
 from campaign import WRONG, Campaign, Cases, Verdict, asked, timed
 
@@ -23,59 +24,27 @@ Stack = tuple[Array, Array]
 Kind = Callable[[int, int, np.random.Generator], Stack]
 
 
-def p_matrices(k: int, n: int, r: np.random.Generator) -> Stack:
-    """Positive definite, not symmetric."""
-    G, S = r.normal(size=(2, k, n, n))
-    return G @ G.transpose(0, 2, 1) / n + 0.1 * np.eye(n) + 0.5 * (S - S.transpose(0, 2, 1)), r.normal(size=(k, n))
+def stacked(kind: Callable[[int, np.random.Generator], claims.Data], units: float = 0.0) -> Kind:
+    """So many problems of a kind of `claims.py`, with rows and columns in units of 10^-units to 10^units."""
+
+    def draw(k: int, n: int, r: np.random.Generator) -> Stack:
+        A, q = (np.array(part) for part in zip(*(kind(n, r) for _ in range(k))))
+        rows, columns = 10.0 ** r.uniform(-units, units, (2, k, n))
+        return rows[:, :, None] * A * columns[:, None, :], rows * q
+
+    return draw
 
 
-def p0_matrices(k: int, n: int, r: np.random.Generator) -> Stack:
-    """Semidefinite of half the rank plus skew, with a planted solution."""
-    G, S = r.normal(size=(k, n, (n + 1) // 2)), r.normal(size=(k, n, n))
-    A = G @ G.transpose(0, 2, 1) + (S - S.transpose(0, 2, 1)) * (r.random((k, 1, 1)) < 0.5)
-    return planted(A, r)
-
-
-def indefinite(k: int, n: int, r: np.random.Generator) -> Stack:
-    """Gaussian with a planted solution, or without one."""
-    A = r.normal(size=(k, n, n))
-    return A, np.where(r.random((k, 1)) < 0.5, planted(A, r)[1], r.normal(size=(k, n)))
-
-
-def unsolvable(k: int, n: int, r: np.random.Generator) -> Stack:
-    """Gaussian with a row of negative entries and a negative q."""
-    A, q = r.normal(size=(k, n, n)), r.normal(size=(k, n))
-    i = np.arange(k), r.integers(0, n, k)
-    A[i], q[i] = -np.abs(A[i]), -np.abs(q[i])
-    return A, q
-
-
-def degenerate(k: int, n: int, r: np.random.Generator) -> Stack:
-    """Of small integers, with ties."""
-    return r.integers(-2, 3, (k, n, n)).astype(float), r.integers(-2, 3, (k, n)).astype(float)
-
-
-def badly_scaled(k: int, n: int, r: np.random.Generator) -> Stack:
-    """P-matrices in units 10^-6 to 10^6 for each row and column."""
-    A, q = p_matrices(k, n, r)
-    rows, columns = 10.0 ** r.uniform(-6, 6, (2, k, n))
-    return rows[:, :, None] * A * columns[:, None, :], rows * q
-
-
-def planted(A: Array, r: np.random.Generator) -> Stack:
-    """With a solution of which half is zero."""
-    k, n = A.shape[:2]
-    x, w, on = r.uniform(0.5, 2.0, (k, n)), r.uniform(0.5, 2.0, (k, n)), r.random((k, n)) < 0.5
-    x *= on
-    return A, np.where(on, 0.0, w) - (A @ x[:, :, None])[:, :, 0]
-
-
-KINDS = p_matrices, p0_matrices, indefinite, unsolvable, degenerate, badly_scaled
+KINDS: dict[str, Kind] = {
+    "p_matrices": stacked(claims.monotone), "semidefinite": stacked(claims.semidefinite),
+    "indefinite": stacked(claims.nonmonotone), "unsolvable": stacked(claims.infeasible),
+    "degenerate": stacked(claims.integer), "badly_scaled": stacked(claims.monotone, 6.0),
+}  # fmt: skip
 
 
 def together(n: int, k: int) -> str:
     """Microseconds each, certified, beside a loop over quantecon's Lemke, which certifies nothing."""
-    A, q = p_matrices(k, n, np.random.default_rng(n))
+    A, q = KINDS["p_matrices"](k, n, np.random.default_rng(n))
     found, ours = timed(lambda: lcp.solve_many(A, q))
     line = f"n = {n}, {k} problems: {1e6 * ours / k:.1f} us each, {found.solved.sum()} certified, "
     line += f"{found.singly.size} one by one, relative residual {found.relative_residual.max():.0e}"
@@ -106,7 +75,7 @@ def judge(case: tuple[LCP, Outcome], way: Any) -> Verdict:
     return outcome.name if one is outcome else f"{WRONG}: {outcome.name}, `solve` {one.name}", math.nan
 
 
-CAMPAIGN = Campaign({kind.__name__: agreeing(kind) for kind in KINDS}, judge, {"": None})
+CAMPAIGN = Campaign({name: agreeing(kind) for name, kind in KINDS.items()}, judge, {"": None})
 
 if __name__ == "__main__":
     names, numbers, _ = asked()
