@@ -77,9 +77,6 @@ ELEVATORS = tuple(_FALLING)
 def limit_points(elevator: float, aileron: Literal["falling", "rising"] = "falling") -> Array:
     """Rows (x1, ..., x5, aileron) where the aileron is stationary, in the order of the path, shape (k, 6).
 
-    `elevator`: One of `ELEVATORS`. `aileron`: The direction in which the path leaves the start. Raises `ValueError` if
-    there is no table for this elevator.
+    `elevator`: One of `ELEVATORS`. `aileron`: The direction in which the path leaves the start.
     """
-    if elevator not in _FALLING:
-        raise ValueError(f"elevator: expected one of {ELEVATORS}, found {elevator!r}")
     return np.array((_FALLING if aileron == "falling" else _RISING)[elevator])

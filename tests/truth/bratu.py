@@ -18,17 +18,11 @@ FOLD_1D = {
 }
 """n: (lam, max u) at the fold of `problems.bifurcation.Bratu1D`."""
 
-FOLD_ERROR_1D = 1.8281
-"""lam* - lam*_n = 1.8281 h^2 + O(h^4), h = 1/(n + 1)."""
-
 FOLD_2D = {10: 6.795336259705, 20: 6.804690882680, 30: 6.806555879189, 50: 6.807546291652, 100: 6.807977170015}
 """m: lam at the fold of `problems.bifurcation.Bratu2D`."""
 
 FOLD_MAX_2D = {50: 1.390069754724, 100: 1.391255352067}
 """m: max u at the fold of `problems.bifurcation.Bratu2D`."""
-
-CONTINUUM_FOLD_2D = 6.8081244226
-"""lam at the fold of the differential equation on the unit square."""
 
 
 def parameter_1d(theta: Array) -> Array:

@@ -6,9 +6,6 @@ import numpy as np
 
 from continuation.arrays import Array
 
-ARCLENGTH = 2.0 * np.pi
-"""One turn, in the Euclidean metric."""
-
 
 def curve(angle: Array) -> Array:
     """Points (u, lam) at `angle` from the start (1, 0), shape (..., 2)."""
