@@ -152,8 +152,6 @@ class Problem:
         Size, for scaling; by default the subject's own.
     family : str
         Problems of one family differ in size or seed alone; by default the name.
-    seed : int
-        -1 where nothing is random.
     """
 
     name: str
@@ -162,7 +160,6 @@ class Problem:
     options: Mapping[str, Any] = field(factory=dict)
     n: int = field()
     family: str = field(default=Factory(lambda problem: problem.name, takes_self=True))
-    seed: int = -1
 
     @n.default
     def _size(self) -> int:

@@ -84,7 +84,6 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
         problem=problem.name,
         family=problem.family,
         n=problem.n,
-        seed=problem.seed,
         method=method.name,
         outside=method.outside,
         rung=rung.value if method.laddered else math.nan,
@@ -94,7 +93,6 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
         counts=answer.counts,
         turns=0 if answer.path is None else len(answer.path.turning_points),
         seconds=min(again, default=seconds),
-        repeats=repeats,
     )
 
 

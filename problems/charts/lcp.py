@@ -160,4 +160,4 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
 def problem(family: str, n: int, seed: int) -> Problem:
     """A generated problem of a study."""
     subject = planted(family, n, seed)
-    return Problem(f"{family}, n = {n}, seed {seed}", subject, family=family, seed=seed)
+    return Problem(f"{family}, n = {n}, seed {seed}", subject, family=family)

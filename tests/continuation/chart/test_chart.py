@@ -194,7 +194,7 @@ def test_names_do_not_overlap_however_near_their_lines_are():
 
 def made(problem, method, error, work, *, outside=False, failure="", rung=1.0, n=1):
     counts = Counts(factorizations=work)
-    return chart.Row(problem, "f", n, -1, method, outside, rung, failure, "", {"e": error}, counts, 0, 1.0, 1)
+    return chart.Row(problem, "f", n, method, outside, rung, failure, "", {"e": error}, counts, 0, 1.0)
 
 
 def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio():
