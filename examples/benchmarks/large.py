@@ -65,8 +65,6 @@ ROWS = {"obstacle": obstacle_2d, "torsion": torsion, "put": put}
 def measured(row: str, m: int, way: str) -> dict[str, Any]:
     """One solve in numbers."""
     problem = ROWS[row](m)
-    if way == "amg":
-        import pyamg  # noqa: F401
     found, seconds = timed(lambda: lcp.solve(problem, sparse=way))
     assert found.solved, found.message
     end = lcp.certify(problem, found.x)

@@ -11,7 +11,9 @@ from continuation.status import Kind, Status
 from problems.lcp import LCP, MixedLCP, along, solve
 from problems.lcp.parametric.natural import NaturalMap
 
-from .util import all_rays, integer_design, integer_problem, lasso, mairal_yu, murty
+from . import util as known
+
+lasso, murty = known.lasso, known.murty
 
 ENDS = (Status.REACHED_TARGET, Status.DIVERGED, Status.CLOSED, Status.DEAD_END)
 """What a path may end as; that no other ray leaves a dead end is among what is compared."""
@@ -27,17 +29,17 @@ def test_murtys_example_has_all_its_kinks(n):
 
 @pytest.mark.parametrize("p", [1, 3, 5, 6])
 def test_the_lasso_path_of_mairal_and_yu_has_all_its_kinks(p):
-    assert len(lasso(*mairal_yu(p)).kinks) == (3**p - 1) // 2
+    assert len(lasso(*known.mairal_yu(p)).kinks) == (3**p - 1) // 2
 
 
 def test_a_thousand_kinks_down_to_rounding():
-    assert len(lasso(*mairal_yu(7)).kinks) == 1093
+    assert len(lasso(*known.mairal_yu(7)).kinks) == 1093
 
 
 def test_random_paths_with_ties_are_those_of_all_pieces():
     kinks = degenerate = branching = 0
     for seed in range(150):
-        problem, d = integer_problem(seed)
+        problem, d = known.integer_problem(seed)
         path = along(problem, d, (np.inf, -np.inf))
         assert path.status in ENDS or "goes round" in path.message
         # Between its points a path of solutions is straight: whatever is not zero all the way is nowhere zero inside.
@@ -45,7 +47,7 @@ def test_random_paths_with_ties_are_those_of_all_pieces():
             there = LCP(problem.A, problem.q + u[-1] * d)
             assert there.natural_residual(u[:-1]) <= 1e-12 * (1.0 + np.abs(u).max())
         for kink in path.kinks:
-            rays = all_rays(problem, d, kink.u)
+            rays = known.all_rays(problem, d, kink.u)
             if rays is not None:
                 assert len(rays) == len(kink.rays)
                 assert all(np.abs(kink.rays - ray).max(axis=1).min() <= 1e-8 for ray in rays)
@@ -100,7 +102,7 @@ def test_two_correlations_that_tie_all_the_way():
 
 def test_integer_designs_with_ties_and_columns_that_are_alike():
     for seed in (*range(40), 152, 244, 472, 823):
-        X, y = integer_design(seed)
+        X, y = known.integer_design(seed)
         path = lasso(X, y)
         assert path.success, seed
         for u in (*path.u, *(0.5 * (path.u[1:] + path.u[:-1]))):
@@ -158,7 +160,7 @@ def test_crossings_of_a_value():
 
 
 def test_an_archive_holds_the_path_its_kinks_and_their_rays(tmp_path):
-    problem, d = integer_problem(9)
+    problem, d = known.integer_problem(9)
     path = along(problem, d, (np.inf, -np.inf), archive=tmp_path / "path.h5")
     with open_archive(tmp_path / "path.h5") as archive:
         again = archive[0]
@@ -170,7 +172,7 @@ def test_an_archive_holds_the_path_its_kinks_and_their_rays(tmp_path):
 
 
 def test_a_path_that_comes_back_to_a_branching_kink_ends_there():
-    problem, d = integer_problem(922)
+    problem, d = known.integer_problem(922)
     path = along(problem, d, (np.inf, -np.inf))
     assert path.status is Status.UNRESOLVED_KINK
     assert "goes round from here" in path.message

@@ -10,11 +10,11 @@ from attrs import evolve
 
 from problems.lcp import LCP, MixedLCP, UnprovenError, along, prove_path
 
-from .util import integer_problem, mairal_yu, murty
+from . import util as known
 
 
 def test_murtys_path_is_proved_and_is_the_only_one():
-    problem = murty(5)
+    problem = known.murty(5)
     path = along(problem, np.ones(5), (np.inf, 0.0))
     exact = prove_path(problem, np.ones(5), path)
     assert exact.single
@@ -24,7 +24,7 @@ def test_murtys_path_is_proved_and_is_the_only_one():
 
 
 def test_a_penalised_regression_is_proved():
-    X, y = mairal_yu(4)
+    X, y = known.mairal_yu(4)
     problem = MixedLCP(X.T @ X, -X.T @ y)
     path = along(problem, np.zeros(4), (np.inf, 0.0), level=1.0)
     exact = prove_path(problem, np.zeros(4), path, level=1.0)
@@ -36,7 +36,7 @@ def test_a_penalised_regression_is_proved():
 def test_paths_with_ties_and_paths_between_bounds_are_proved():
     ties = 0
     for seed in range(60):
-        problem, d = integer_problem(seed)
+        problem, d = known.integer_problem(seed)
         path = along(problem, d, (np.inf, 0.0))
         exact = prove_path(problem, d, path)
         assert exact.u == pytest.approx(path.u, abs=1e-12)
@@ -55,7 +55,7 @@ def test_paths_with_ties_and_paths_between_bounds_are_proved():
 
 
 def test_a_path_of_another_problem_is_not_proved():
-    problem = murty(3)
+    problem = known.murty(3)
     path = along(problem, np.ones(3), (np.inf, 0.0))
     with pytest.raises(UnprovenError, match="path: "):
         prove_path(LCP(problem.A, problem.q - [0.0, 0.0, 1.0]), np.ones(3), path)
