@@ -12,6 +12,7 @@ from attrs import frozen
 import continuation
 from continuation.archive import PathLog
 from continuation.arrays import Array
+from continuation.chart.table import Cell, Table
 from continuation.path import Path
 from continuation.step.tracer import Observer
 from problems.lcp.homotopies import KKTHomotopy
@@ -84,29 +85,21 @@ def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> No
 def table(rows: Sequence[Row]) -> str:
     """The rows as text: example, class, end, work, and the two iteration counts."""
     head = ("#", "class", "x at the end", "residual", "steps", "factor.", "turns", "paper", "literal", "status")
-    cells = [head, *(_cells(row) for row in rows)]
-    widths = [max(len(line[k]) for line in cells) for k in range(len(head))]
-    right = {0, 3, 4, 5, 6, 7, 8}
-    aligned = [
-        [cell.rjust(width) if k in right else cell.ljust(width) for k, (cell, width) in enumerate(zip(line, widths))]
-        for line in cells
-    ]
-    lines = ["  ".join(line).rstrip() for line in aligned]
-    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])
+    return Table(head, [_cells(row) for row in rows]).text()
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: Row) -> Sequence[Cell]:
     path, literal = row.path, row.literal
     return (
-        str(row.example.number),
+        row.example.number,
         row.example.stated_class,
         show(row.x),
         f"{row.residual:.1e}",
-        str(path.counts.accepted),
-        str(path.counts.factorizations),
-        str(len(path.turning_points)),
-        str(row.example.printed_iterations),
-        f"{literal.iterations}{'' if _true(literal) else '*'}",
+        path.counts.accepted,
+        path.counts.factorizations,
+        len(path.turning_points),
+        row.example.printed_iterations,
+        literal.iterations if _true(literal) else f"{literal.iterations}*",
         f"{path.status.name}{'' if row.solved else ', not a solution'}",
     )
 

@@ -20,7 +20,6 @@ A plug-in author charts a homotopy of their own in ten lines::
 from continuation.chart.model import (
     Answer,
     Failure,
-    Ladder,
     Method,
     Problem,
     Rung,
@@ -37,8 +36,8 @@ from continuation.chart.study import CURVE_DISTANCE, END_POINT, TURNING_POINTS, 
 from continuation.chart.table import Table, profile, runs, scaling, summary
 
 __all__ = [
-    "CURVE_DISTANCE", "END_POINT", "TURNING_POINTS", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Ladder",
-    "Lines", "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "exponents",
+    "CURVE_DISTANCE", "END_POINT", "TURNING_POINTS", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Lines",
+    "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "exponents",
     "longest_steps", "observed", "profile", "ratios", "read", "reference", "run", "runs", "scaling", "summary",
     "tolerances", "traced", "write",
 ]  # fmt: skip

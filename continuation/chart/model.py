@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Any, Unpack
 
 import numpy as np
-from attrs import Attribute, Factory, evolve, field, frozen
+from attrs import Factory, evolve, field, frozen
 
-from continuation.arguments.checks import POSITIVE
+from continuation.arguments.checks import POSITIVE, POSITIVE_FINITE
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.path import Path
@@ -20,41 +19,23 @@ from continuation.tracing import trace
 # -- what is varied -----------------------------------------------------------------------------------------------
 
 
-def _positive(instance: Any, attribute: Attribute[Any], values: tuple[Any, ...]) -> None:
-    if not values or not all(isinstance(value, (int, float)) and 0.0 < value < math.inf for value in values):
-        raise ValueError(f"values: expected positive numbers, at least one, found {values}")
-
-
 @frozen
-class Ladder:
-    """The values of one setting, and how a value enters the options of a trace.
+class Rung:
+    """One value of the setting that a study varies; a ladder is a sequence of them.
 
     Attributes
     ----------
     name : str
         What is varied, as axes and tables call it.
-    values : tuple of float
+    value : float
         Positive.
     change : callable
-        (options, value) to new options.
+        (options, value) to new options; by default the setting is none of a trace's.
     """
 
     name: str
-    values: tuple[float, ...] = field(validator=_positive)
-    change: Callable[[dict[str, Any], float], dict[str, Any]]
-
-    @property
-    def rungs(self) -> tuple[Rung, ...]:
-        """The values one by one."""
-        return tuple(Rung(self, value) for value in self.values)
-
-
-@frozen
-class Rung:
-    """One value of a ladder."""
-
-    ladder: Ladder
-    value: float
+    value: float = field(validator=POSITIVE_FINITE)
+    change: Callable[[dict[str, Any], float], dict[str, Any]] = lambda options, value: options
 
     def apply(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """The options of a trace with this value set.
@@ -64,10 +45,10 @@ class Rung:
         options : mapping
             For `continuation.trace`.
         """
-        return self.ladder.change(dict(options), self.value)
+        return self.change(dict(options), self.value)
 
 
-def tolerances(*values: float) -> Ladder:
+def tolerances(*values: float) -> tuple[Rung, ...]:
     """The tolerance of the trace.
 
     Parameters
@@ -75,10 +56,10 @@ def tolerances(*values: float) -> Ladder:
     *values : float
         Positive.
     """
-    return Ladder("tolerance", values, lambda options, value: {**options, "tolerance": value})
+    return tuple(Rung("tolerance", value, lambda options, value: {**options, "tolerance": value}) for value in values)
 
 
-def longest_steps(*values: float) -> Ladder:
+def longest_steps(*values: float) -> tuple[Rung, ...]:
     """The longest step that the controller may take, in arclength of the metric; the first step is no longer.
 
     Parameters
@@ -86,7 +67,7 @@ def longest_steps(*values: float) -> Ladder:
     *values : float
         Positive.
     """
-    return Ladder("longest step", values, _limited)
+    return tuple(Rung("longest step", value, _limited) for value in values)
 
 
 def _limited(options: dict[str, Any], value: float) -> dict[str, Any]:
@@ -171,8 +152,6 @@ class Problem:
         Size, for scaling; by default the subject's own.
     family : str
         Problems of one family differ in size or seed alone; by default the name.
-    seed : int
-        -1 where nothing is random.
     """
 
     name: str
@@ -181,7 +160,6 @@ class Problem:
     options: Mapping[str, Any] = field(factory=dict)
     n: int = field()
     family: str = field(default=Factory(lambda problem: problem.name, takes_self=True))
-    seed: int = -1
 
     @n.default
     def _size(self) -> int:

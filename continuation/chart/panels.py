@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +31,7 @@ def some(kind: str, wanted: Sequence[str] | None, known: Sequence[str]) -> Seque
     return wanted
 
 
-def look_of(k: int, outside: bool = False) -> dict[str, Any]:
+def _look(k: int, outside: bool) -> dict[str, Any]:
     """Colour, marker and style of the k-th line."""
     colours = GREYS if outside else COLOURS
     return {
@@ -49,12 +48,10 @@ def look_of(k: int, outside: bool = False) -> dict[str, Any]:
 def looks_of(results: Results, methods: Sequence[str]) -> dict[str, dict[str, Any]]:
     """By method: the k-th of ours, or of the others."""
     outside = {row.method: row.outside for row in results.rows}
-    return {m: look_of([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
+    return {m: _look([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
 
 
-def panels(
-    count: int, across: int, title: str, height: float = 3.0, width: float = 7.4
-) -> tuple[Figure, list[Axes]]:
+def panels(count: int, across: int, title: str, height: float = 3.0, width: float = 7.4) -> tuple[Figure, list[Axes]]:
     """A figure as wide as a page, with `count` panels, `across` of them in a row."""
     require_matplotlib()
     from matplotlib.figure import Figure as Canvas
@@ -88,19 +85,13 @@ def plain_ticks(axis: Any) -> None:
 
 
 def to_round_off(axes: Axes) -> None:
-    """Errors fall to the right; round-off is named where it is near."""
-    from matplotlib.ticker import FuncFormatter, NullLocator
-
+    """Errors fall to the right, where round-off has a line if it is near."""
     least, largest = axes.get_xlim()
-    # Three decades at least, and round-off where no more than those lie between.
-    least = 0.4 * ERROR_FLOOR if least < 1e3 * ERROR_FLOOR else least
-    largest = max(largest, 1e3 * least)
-    axes.set_xlim(largest, least)
-    stride = 3 if largest > 1e7 * least else 1
-    first, last = round(math.log10(ERROR_FLOOR)), math.floor(math.log10(largest))
-    axes.set_xticks([10.0**k for k in range(first, last + 1, stride) if 10.0**k > least])
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda e, _: "round-off" if e < 2.0 * ERROR_FLOOR else f"{e:.0e}"))
-    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlim(max(largest, 1e3 * least), least)
+    if least < 1e3 * ERROR_FLOOR:
+        axes.axvline(ERROR_FLOOR, color="0.7", linewidth=0.8, zorder=0)
+        where = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": "x-small", "color": "0.5"}
+        axes.annotate("round-off", (ERROR_FLOOR, 0.94), (-3, 0), textcoords="offset points", **where)
 
 
 def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None:

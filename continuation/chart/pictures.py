@@ -249,8 +249,10 @@ class Dumbbell:
                 axes.annotate(rows[1].method, placed[1], (7 * side, 0), textcoords="offset points", **where)
             axes.annotate(said, (1.01, -k), xycoords=("axes fraction", "data"), va="center", fontsize="small")
         axes.set_xscale("log")
-        # The names of the best take up to a fifth of the panel, at either side.
-        axes.margins(x=0.06 if self.every else 0.35)
+        # At either side a name of the best may stand: a letter takes nine thousandths of the panel.
+        letters = 0 if self.every else max((len(rows[-1].method) for _, rows, _ in lines if rows), default=0)
+        beside = min(0.04 + 0.009 * letters, 0.4)
+        axes.margins(x=beside / (1.0 - 2.0 * beside))
         axes.set_ylim(0.6 - len(lines), 0.6)
         axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
         for label, (_, rows, said) in zip(axes.get_yticklabels(), lines):
@@ -276,7 +278,8 @@ class Dumbbell:
             best = sorted((row for row in rows if row.outside), key=lambda row: row.work(self.work))[:1]
             ratio = best[0].work(self.work) / ours[0].work(self.work) if best and ours else math.nan
             much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
-            said = f"{much} quicker" if ratio >= 1.0 else f"{much} slower" if ratio < 1.0 else "no rival"
+            alone = "no rival" if ours else "ours failed"
+            said = f"{much} quicker" if ratio >= 1.0 else f"{much} slower" if ratio < 1.0 else alone
             found.append((math.inf if math.isnan(ratio) else -ratio, (problem, ours + best, said)))
         return [line for _, line in sorted(found, key=lambda pair: pair[0])]
 

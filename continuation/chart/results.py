@@ -28,7 +28,7 @@ class Row:
     Attributes
     ----------
     problem, family : str
-    n, seed : int
+    n : int
     method : str
     outside : bool
         Whether the method is another package's, or the textbooks'.
@@ -43,14 +43,11 @@ class Row:
         Turning points found.
     seconds : float
         Processor time, the least of the repeated runs.
-    repeats : int
-        How many runs were timed after the first; 0 if the first took too long to be repeated.
     """
 
     problem: str
     family: str
     n: int
-    seed: int
     method: str
     outside: bool
     rung: float
@@ -60,7 +57,6 @@ class Row:
     counts: Counts
     turns: int
     seconds: float
-    repeats: int
 
     @property
     def failed(self) -> bool:

@@ -40,7 +40,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         for problem in study.problems
         for method in study.methods
         if method.applies(problem)
-        for rung in (study.ladder.rungs if method.laddered else study.ladder.rungs[:1])
+        for rung in (study.ladder if method.laddered else study.ladder[:1])
     ]
     rows: list[Row] = []
     for problem, method, rung in cases:
@@ -51,7 +51,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     return Results(
         study=study.name,
         title=study.title,
-        ladder=study.ladder.name,
+        ladder=study.ladder[0].name,
         errors={error.name: error.label for error in study.errors},
         work=study.work,
         rows=rows,
@@ -84,7 +84,6 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
         problem=problem.name,
         family=problem.family,
         n=problem.n,
-        seed=problem.seed,
         method=method.name,
         outside=method.outside,
         rung=rung.value if method.laddered else math.nan,
@@ -94,7 +93,6 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
         counts=answer.counts,
         turns=0 if answer.path is None else len(answer.path.turning_points),
         seconds=min(again, default=seconds),
-        repeats=repeats,
     )
 
 
@@ -131,7 +129,8 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
 
 def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
     if not path.success:
-        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else Failure.STOPPED, path.message
+        ended = path.status.name.lower().replace("_", " ")
+        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else ended, path.message
     true, turns = problem.truth.turning_points, len(path.turning_points)
     if true is not None and turns != len(true):
         return Failure.JUMP, f"{turns} turning points, the path has {len(true)}"

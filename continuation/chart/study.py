@@ -9,10 +9,11 @@ from typing import Any, Literal
 
 import numpy as np
 from attrs import Attribute, Factory, field, frozen
+from attrs.validators import min_len
 
 from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
-from continuation.chart.model import Answer, Ladder, Method, Problem, tolerances
+from continuation.chart.model import Answer, Method, Problem, Rung, tolerances
 from continuation.chart.results import WORK, Results
 from continuation.chart.table import Table
 from continuation.correctors import MoorePenrose
@@ -137,8 +138,8 @@ class Study:
     problems : sequence of Problem
     methods : sequence of Method
         See `traced` for the usual ones.
-    ladder : Ladder
-        By default tolerances from 1e-4 to 1e-10.
+    ladder : sequence of Rung
+        See `tolerances`, `longest_steps`; by default tolerances from 1e-4 to 1e-10.
     errors : sequence of Error
         The first one counts where a table has room for one.
     work : sequence of str
@@ -167,7 +168,7 @@ class Study:
     name: str
     problems: Sequence[Problem] = field(validator=_named_once)
     methods: Sequence[Method] = field(validator=_named_once)
-    ladder: Ladder = field(factory=lambda: tolerances(1e-4, 1e-6, 1e-8, 1e-10))
+    ladder: Sequence[Rung] = field(factory=lambda: tolerances(1e-4, 1e-6, 1e-8, 1e-10), validator=min_len(1))
     errors: Sequence[Error] = field(validator=_named_once)
     work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known)
     figures: Sequence[Any] = ()

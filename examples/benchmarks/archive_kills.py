@@ -1,21 +1,28 @@
 """Kills by the thousand: whatever is written, what was committed stays, and a final name means a whole file.
 
-python examples/benchmarks/archive_benchmark.py --kills 500
+    python examples/benchmarks/archive_kills.py [NUMBER] [SEED] [WORK ...]
+
+NUMBER processes at each work (trace, resume, recover, merge, export, sweep, pool), each killed at a random moment.
 """
 
 import os
+import pickle
 import random
 import select
 import shutil
 import signal
+import sys
+import tempfile
 import time
-from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from attrs import frozen
+from campaign import WRONG, Campaign, Verdict
 
 from continuation import Budget, Tracer, trace
 from continuation.archive import (
@@ -38,157 +45,171 @@ SWEEP = [Cusp(splitting) for splitting in np.linspace(0.3, 2.0, 6)]
 SHORT = {"budget": Budget(steps=12)}
 
 
-class Campaign:
+@frozen
+class Child:
+    """What became of a process: its answer, whether it ended by itself in time, its status, and what it used."""
+
+    answer: Any
+    ended: bool
+    status: int
+    usage: Any
+
+
+def child(work: Callable[[], object], seconds: float | None = None) -> Child:
+    """Do it in a process of its own, with its children; killed after so many seconds if it is not done by then."""
+    ours, theirs = os.pipe()
+    process = os.fork()
+    if not process:
+        os.setpgid(0, 0)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        try:
+            os.write(theirs, pickle.dumps(work()))
+        finally:
+            os._exit(0)
+    os.close(theirs)
+    pidfd = os.pidfd_open(process)
+    # An answer comes before the end; a process that was killed by a signal gives none.
+    ended = bool(select.select([ours, pidfd], [], [], seconds)[0])
+    if not ended:
+        try:
+            os.killpg(process, signal.SIGKILL)
+        except ProcessLookupError:
+            os.kill(process, signal.SIGKILL)
+    _, status, usage = os.wait4(process, 0)
+    os.close(pidfd)
+    with os.fdopen(ours, "rb") as pipe:
+        raw = pipe.read()
+    return Child(pickle.loads(raw) if raw else None, ended, status, usage)
+
+
+def left_by_a_kill(file: Path, steps: int, rows: int, **options: Any) -> None:
+    """An archive whose writer was killed after so many steps."""
+
+    def work() -> None:
+        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=rows)),), **options):
+            if step.index == steps:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    child(work)
+
+
+def _nothing(_: object) -> None:
+    """No answer: it would be sent to the parent."""
+
+
+def pooled(file: Path) -> None:
+    """A sweep by two processes."""
+    with ProcessPoolExecutor(2, mp_context=get_context("fork")) as executor:
+        trace_many(SWEEP, executor, file, **SHORT)
+
+
+class Kills:
     """The files to begin with, how long each work takes, and what is right."""
 
-    def __init__(self, folder: Path, seed: int) -> None:
-        self.folder, self.generator, self.tally = folder, random.Random(seed), Counter()
+    def __init__(self, folder: Path, seed: int = 0) -> None:
+        self.folder, self.generator = folder, random.Random(seed)
         self.path = trace(HOMOTOPY, **OPTIONS)
         self.sweep = [trace(homotopy, **SHORT) for homotopy in SWEEP]
         self.half, self.left, self.whole = (folder / name for name in ("half.h5", "left.h5", "whole.h5"))
         steps = len(self.path) // 2
         trace(HOMOTOPY, archive=self.half, budget=Budget(steps=steps), **OPTIONS)
         trace(HOMOTOPY, archive=self.whole, **OPTIONS)
-        process = os.fork()
-        if not process:
-            for step in Tracer(HOMOTOPY, observers=(PathLog(self.left, limits=Limits(rows=9)),), **OPTIONS):
-                if step.index == steps:
-                    os.kill(os.getpid(), signal.SIGKILL)
-        os.waitpid(process, 0)
+        left_by_a_kill(self.left, steps, 9, **OPTIONS)
         self.seconds: dict[str, float] = {}
+        # The file to begin with, and how many of its rows may be missing afterwards: none but those of a block.
+        self.begin = {"resume": (self.half, steps), "recover": (self.left, steps - 9), "merge": (self.whole, 0),
+                      "export": (self.whole, 0)}  # fmt: skip
 
-    def works(self, file: Path, target: Path) -> dict[str, tuple[Path | None, Callable[[], object]]]:
-        """What to begin with, and what to do."""
+    def works(self, file: Path, target: Path) -> dict[str, Callable[[], None]]:
+        """What is done to the file."""
         rows = self.generator.choice([1, 4, 30])
         return {
-            "trace": (None, lambda: trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)),
-            "resume": (self.half, lambda: resume(file, budget=Budget())),
-            "recover": (self.left, lambda: recover(file)),
-            "merge": (self.whole, lambda: merge([file], target)),
-            "export": (self.whole, lambda: export(file, target)),
-            "sweep": (None, lambda: trace_many(SWEEP, archive=file, **SHORT)),
-            "pool": (None, lambda: _pooled(file)),
+            "trace": lambda: _nothing(trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)),
+            "resume": lambda: _nothing(resume(file, budget=Budget())),
+            "recover": lambda: _nothing(recover(file)),
+            "merge": lambda: _nothing(merge([file], target)),
+            "export": lambda: _nothing(export(file, target)),
+            "sweep": lambda: _nothing(trace_many(SWEEP, archive=file, **SHORT)),
+            "pool": lambda: pooled(file),
         }
 
-    def kill(self, name: str) -> None:
-        """One kill, at a random moment of the work, and what is found then."""
+    def judge(self, name: str, way: Any) -> Verdict:
+        """One kill, at a random moment of the work, and what is found then; the first time it may end."""
         place = self.folder / "case"
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         file, target = place / "run.h5", place / "new.nc"
-        begin, work = self.works(file, target)[name]
-        if begin is not None:
-            shutil.copy(begin, file)
-        if name not in self.seconds:
-            # Once to its end, for its length.
-            start = time.monotonic()
-            _in_child(work, None)
-            self.seconds[name] = time.monotonic() - start
-            self._note(name, "to its end", self._judge(name, file, target))
-            return self.kill(name)
-        start = time.monotonic()
-        killed = _in_child(work, self.generator.uniform(0.0, 1.1 * self.seconds[name]))
+        if name in self.begin:
+            shutil.copy(self.begin[name][0], file)
+        known, start = self.seconds.get(name), time.monotonic()
+        within = None if known is None else self.generator.uniform(0.0, 1.1 * known)
+        ended = child(self.works(file, target)[name], within).ended
         # How long it takes changes with what else the machine does.
-        self.seconds[name] = 1.02 * self.seconds[name] if killed else time.monotonic() - start
-        self._note(name, "killed" if killed else "ended before", self._judge(name, file, target))
-        return None
-
-    def _note(self, name: str, what: str, verdict: str) -> None:
-        self.tally[name, what, verdict] += 1
-        if verdict.isupper():
-            print(f"  {name}: {verdict}", flush=True)
-
-    def _judge(self, name: str, file: Path, target: Path) -> str:
+        self.seconds[name] = time.monotonic() - start if ended else 1.02 * known
         try:
-            return self._found(name, file, target)
+            found = self.found(name, file, target)
         except ArchiveError as error:
-            return f"UNREADABLE: {error}".upper()
+            found = f"{WRONG}: unreadable: {error}"
+        return found if found.startswith(WRONG) else f"{'ended' if ended else 'killed'}, {found}", np.nan
 
-    def _found(self, name: str, file: Path, target: Path) -> str:
+    def found(self, name: str, file: Path, target: Path) -> str:
+        """What is in the file, and what becomes of it."""
         if name in ("merge", "export"):
-            return self._copied(file, target)
+            return self.copied(file, target)
         if name in ("sweep", "pool"):
-            return self._swept(file)
+            return self.swept(file)
         if not file.exists():
-            return "no file" if name == "trace" else "LOST"
+            return "no file" if name == "trace" else f"{WRONG}: lost"
         with open_archive(file) as archive:
             before = len(archive.path(0)) if len(archive) else 0
-            if before and not self._same(archive.path(0)):
-                return "WRONG ROWS"
-        least = {"resume": len(self.path) // 2, "recover": len(self.path) // 2 - 9, "trace": 0}
-        if before < least[name]:
-            return "LOST ROWS"
+            if before and not self.same(archive.path(0)):
+                return f"{WRONG}: rows"
+        if name in self.begin and before < self.begin[name][1]:
+            return f"{WRONG}: lost rows"
         recover(file)
         if not before:
             return "whole without rows"
         with open_archive(file) as archive:
             if archive.path(0).status is self.path.status:
                 return "complete"
-        again = resume(file, budget=Budget())
-        return "resumed to the same path" if self._same(again, whole=True) else "RESUMED TO ANOTHER PATH"
+        again = self.same(resume(file, budget=Budget()), whole=True)
+        return "resumed to the same path" if again else f"{WRONG}: resumed to another path"
 
-    def _copied(self, file: Path, target: Path) -> str:
+    def copied(self, file: Path, target: Path) -> str:
+        """The source is as it was, and the copy whole, or not there."""
         if file.read_bytes() != self.whole.read_bytes():
-            return "SOURCE CHANGED"
+            return f"{WRONG}: source changed"
         if not target.exists():
             return "no new file"
         with open_archive(target) as archive:
-            whole = archive.closed_by_writer and all(self._same(path, whole=True) for path in archive)
-        return "complete" if whole else "HALF-WRITTEN"
+            whole = archive.closed_by_writer and all(self.same(path, whole=True) for path in archive)
+        return "complete" if whole else f"{WRONG}: half-written"
 
-    def _same(self, found, *, whole: bool = False) -> bool:
-        path = self.path
-        return found.u.tobytes() == path.u[: len(found)].tobytes() and (not whole or found.counts == path.counts)
+    def same(self, found: Any, *, whole: bool = False) -> bool:
+        """Whether a path is the first rows of the right one, or all of it."""
+        return _starts(found, self.path) and (not whole or found.counts == self.path.counts)
 
-    def _swept(self, file: Path) -> str:
+    def swept(self, file: Path) -> str:
+        """Every part has right rows, and the sweep runs again."""
         for part in (*file.parent.glob(file.name), *file.parent.glob("run.sweep-*.h5")):
             with open_archive(part) as archive:
-                for member, path in zip(archive.paths["member"], archive):
-                    if path.u.tobytes() != self.sweep[member].u[: len(path)].tobytes():
-                        return "WRONG ROWS"
+                if not all(_starts(path, self.sweep[k]) for k, path in zip(archive.paths["member"], archive)):
+                    return f"{WRONG}: rows"
         file.unlink(missing_ok=True)
         with trace_many(SWEEP, archive=file, **SHORT) as archive:
-            same = all(a.u.tobytes() == b.u.tobytes() for a, b in zip(archive, self.sweep))
-            return "ran again" if same and len(archive) == len(SWEEP) else "RAN AGAIN OTHERWISE"
+            same = len(archive) == len(SWEEP) and all(map(_starts, archive, self.sweep))
+        return "ran again" if same else f"{WRONG}: ran again otherwise"
+
+    def campaign(self) -> Campaign:
+        """A family for each work."""
+        names = self.works(self.folder, self.folder)
+        return Campaign({name: lambda number, _, name=name: [name] * number for name in names}, self.judge, {"": None})
 
 
-def _pooled(file: Path) -> None:
-    with ProcessPoolExecutor(2, mp_context=get_context("fork")) as executor:
-        trace_many(SWEEP, executor, file, **SHORT)
+def _starts(found: Any, path: Any) -> bool:
+    return bool(found.u.tobytes() == path.u[: len(found)].tobytes())
 
 
-def _in_child(work: Callable[[], object], seconds: float | None) -> bool:
-    """Do it in a process of its own, with its children; killed after so many seconds if it is not done by then."""
-    process = os.fork()
-    if not process:
-        os.setpgid(0, 0)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        try:
-            work()
-        finally:
-            os._exit(0)
-    ended = os.pidfd_open(process)
-    try:
-        if select.select([ended], [], [], seconds)[0]:
-            os.waitpid(process, 0)
-            return False
-    finally:
-        os.close(ended)
-    try:
-        os.killpg(process, signal.SIGKILL)
-    except ProcessLookupError:
-        os.kill(process, signal.SIGKILL)
-    os.waitpid(process, 0)
-    return True
-
-
-def kill(folder: Path, count: int, seed: int = 0) -> bool:
-    """The campaign; True if nothing went wrong."""
-    campaign = Campaign(folder, seed)
-    names = list(campaign.works(folder, folder))
-    for k in range(count):
-        campaign.kill(names[k % len(names)])
-    print(f"{count} kills:")
-    for (name, what, verdict), number in sorted(campaign.tally.items()):
-        print(f"  {name:<8} {number:6} {what}: {verdict}")
-    return not any(verdict.isupper() for _, _, verdict in campaign.tally)
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        sys.exit(Kills(Path(place)).campaign().main(72))

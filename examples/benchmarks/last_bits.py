@@ -1,17 +1,15 @@
 """Answers must not depend on the last bits of a sum: the same runs under other kernels of OpenBLAS and in other orders.
 
-python examples/benchmarks/last_bits.py [--share 0.1] [--mixings 20] [--kernels Prescott,Haswell,SkylakeX]
+    OPENBLAS_CORETYPE=Haswell python examples/benchmarks/last_bits.py FILE [--share 0.1] [--mixings 20]
+    OPENBLAS_CORETYPE=Prescott python examples/benchmarks/last_bits.py FILE [--share 0.1] [--mixings 0]
 
-A run is a path (the acceptance problems, the ten examples, paths through crossings) under a preset, a random LCP, or
-a scene. It is repeated under each kernel, and with its equations mixed by random rotations (a path) or its unknowns in
-another order (an LCP), which reorder all sums. What must agree: status, number and kinds of events, the end and the
-events, and the number of factorisations to a tenth.
+The first writes its runs to a file, with which those of the second are compared. A run is a path (the acceptance
+problems, the ten examples, paths through crossings) under a preset, a random LCP, or a scene. It is repeated with its
+equations mixed by random rotations (a path) or its unknowns in another order (an LCP), which reorder all sums. What
+must agree: status, number and kinds of events, the end and the events, and the number of factorisations to a tenth.
 """
 
-import argparse
 import json
-import os
-import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -19,17 +17,18 @@ from importlib import import_module
 from pathlib import Path as File
 from typing import Any
 
+import crossings
 import numpy as np
-import scipy.sparse as sp
+from campaign import asked
+from rescaled import dense
 from scipy.stats import ortho_group
 
 import continuation as ct
 from continuation.arrays import Array
-from continuation.linear import Banded, Symmetric
 from problems import lcp, scenes
 
-sys.path[:0] = [str(File(__file__).parents[2] / "tests" / "behaviour"), str(File(__file__).parent / "crossings")]
-record, crossings = import_module("record"), import_module("run")
+sys.path.insert(0, str(File(__file__).parents[2] / "tests" / "behaviour"))
+record = import_module("record")
 
 PRESETS = record.PRESETS
 AGREED = 1e-8
@@ -62,12 +61,7 @@ class Mixed:
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """Q H', dense."""
         H_y, H_lam = self.homotopy.jacobian(y, lam)
-        if isinstance(H_y, Symmetric):
-            H_y = H_y.matrix
-        if isinstance(H_y, Banded):
-            H_y = H_y.tosparse()
-        dense = H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
-        return self.Q @ dense, self.Q @ np.asarray(H_lam)
+        return self.Q @ dense(H_y), self.Q @ np.asarray(H_lam)
 
 
 def _path(homotopy: Any, seed: int | None, **options: Any) -> dict[str, Any]:
@@ -148,7 +142,7 @@ def differences(found: dict[str, Any], expected: dict[str, Any], unique: bool) -
 
 
 def computed(share: float, mixings: int) -> dict[str, dict[str, Any]]:
-    """All runs of this process by name; mixed ones have " ~seed" behind it."""
+    """All runs by name; mixed ones have " ~seed" behind it."""
     found = {}
     for name, run, mixable in runs(share):
         for seed in (None, *range(mixings if mixable else 0)):
@@ -157,32 +151,18 @@ def computed(share: float, mixings: int) -> dict[str, dict[str, Any]]:
 
 
 def main() -> int:
-    """Print each difference, and a table: runs and differences of each kind by surrounding."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--share", type=float, default=0.1, help="of 20 crossings of a family and 2,000 LCPs")
-    parser.add_argument("--mixings", type=int, default=3)
-    parser.add_argument("--kernels", default="Prescott,Sandybridge,Haswell,SkylakeX")
-    parser.add_argument("--print", action="store_true", help="only print this process's runs as JSON")
-    options = parser.parse_args()
-    if options.print:
-        print(json.dumps(computed(options.share, options.mixings)))
-        return 0
-    here = computed(options.share, options.mixings)
-    table = {"mixed": ({k: v for k, v in here.items() if "~" in k}, Counter[str]())}
-    for kernel in options.kernels.split(","):
-        command = [sys.executable, __file__, "--print", "--share", str(options.share), "--mixings", "0"]
-        environment = {**os.environ, "OPENBLAS_CORETYPE": kernel}
-        output = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
-        table[kernel] = (json.loads(output), Counter())
-    for surrounding, (found, kinds) in table.items():
-        for name, one in found.items():
-            for words in differences(one, here[name.split(" ~")[0]], not name.startswith("lcp")):
-                kinds[words.split()[0]] += 1
-                print(f"{surrounding}: {name}: {words}")
-    print("surrounding | runs | differ in")
-    for surrounding, (found, kinds) in table.items():
-        print(f"{surrounding} | {len(found)} | {dict(kinds) or 'nothing'}")
-    return int(any(kinds for _, kinds in table.values()))
+    """Print each difference, and how many runs of each kind differ."""
+    files, _, options = asked(share=0.1, mixings=3)
+    here, kinds = computed(options.share, options.mixings), Counter[str]()
+    before = json.loads(File(files[0]).read_text()) if files and File(files[0]).exists() else here
+    if files and before is here:
+        File(files[0]).write_text(json.dumps({name: run for name, run in here.items() if "~" not in name}))
+    for name, one in here.items():
+        for words in differences(one, before[name.split(" ~")[0]], not name.startswith("lcp")):
+            kinds[words.split()[0]] += 1
+            print(f"{name}: {words}")
+    print(f"{len(here)} runs differ in {dict(kinds) or 'nothing'}")
+    return int(bool(kinds))
 
 
 if __name__ == "__main__":

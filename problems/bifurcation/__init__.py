@@ -1,6 +1,5 @@
-"""Bifurcation problems with known answers: homotopies, and their truths in `problems.bifurcation.truth`."""
+"""Bifurcation problems with known answers, as homotopies."""
 
-from problems.bifurcation import truth
 from problems.bifurcation.aircraft import Aircraft
 from problems.bifurcation.bratu_1d import Bratu1D
 from problems.bifurcation.bratu_2d import Bratu2D
@@ -11,5 +10,5 @@ from problems.bifurcation.freudenstein_roth import FreudensteinRoth
 from problems.bifurcation.pitchfork import Pitchfork
 
 __all__ = [
-    "Aircraft", "Bratu1D", "Bratu2D", "Circle", "Cusp", "ExponentialCosine", "FreudensteinRoth", "Pitchfork", "truth",
+    "Aircraft", "Bratu1D", "Bratu2D", "Circle", "Cusp", "ExponentialCosine", "FreudensteinRoth", "Pitchfork",
 ]  # fmt: skip

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, fields, frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.events.box import Box
@@ -50,25 +51,13 @@ class Bratu2D:
     parameter_name: ClassVar[str] = "lambda"
     problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
     references: ClassVar[tuple[str, ...]] = (BRATU,)
-    # The sparsity never changes along the path: it is worked out once, and H_y alters the diagonal's values alone.
-    _laplacian: Any = field(init=False, repr=False)
-    _diagonal: Any = field(init=False, repr=False)
-    _has_left: Any = field(init=False, repr=False)
 
-    @_laplacian.default
-    def _five_point_laplacian(self) -> Matrix:
-        # Attrs runs validators after defaults, and this default needs a good m.
-        positive_integer(self, fields(Bratu2D).m, self.m)
-        return five_point(self.m)
-
-    @_diagonal.default
-    def _positions_of_the_diagonal(self) -> Any:
-        columns = np.repeat(np.arange(self.m**2), np.diff(self._laplacian.indptr))
-        return np.flatnonzero(self._laplacian.indices == columns)
-
-    @_has_left.default
-    def _points_with_a_left_neighbour(self) -> Any:
-        return (np.arange(self.m**2) % self.m > 0).astype(float)
+    @cached_property
+    def _pattern(self) -> tuple[Matrix, Any]:
+        """The Laplacian, and where its diagonal is stored: H_y alters nothing else along the path."""
+        laplacian = five_point(self.m)
+        columns = np.repeat(np.arange(self.m**2), np.diff(laplacian.indptr))
+        return laplacian, np.flatnonzero(laplacian.indices == columns)
 
     def start(self) -> tuple[Array, float]:
         """The trivial solution at lam = 0."""
@@ -78,19 +67,18 @@ class Bratu2D:
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (m^2,); inf or nan where e^u overflows."""
         # Shifts instead of the sparse product: they let complex numbers and jets pass through numpy.
-        row, point = np.zeros(self.m), np.zeros(1)
-        vertical = np.concatenate((row, y[: -self.m])) + np.concatenate((y[self.m :], row))
-        left = np.concatenate((point, y[:-1])) * self._has_left
-        right = np.concatenate((y[1:] * self._has_left[1:], point))
-        equations: Array = vertical + left + right - 4.0 * y + self._square * lam * np.exp(y)
+        u = np.pad(y.reshape(self.m, self.m), 1)
+        around = u[:-2, 1:-1] + u[2:, 1:-1] + u[1:-1, :-2] + u[1:-1, 2:]
+        equations: Array = around.ravel() - 4.0 * y + self._square * lam * np.exp(y)
         return equations
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam): CSC of order m^2, and shape (m^2,)."""
         slope = self._square * np.exp(y)
-        matrix = self._laplacian.copy()
-        matrix.data[self._diagonal] += lam * slope
+        laplacian, diagonal = self._pattern
+        matrix = laplacian.copy()
+        matrix.data[diagonal] += lam * slope
         return matrix, slope
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:

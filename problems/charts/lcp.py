@@ -16,12 +16,11 @@ from continuation.counts import Counts
 from problems import lcp
 from problems.charts import rivals
 from problems.charts.families import planted
-from problems.charts.rivals import notes
 from problems.lcp import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
-from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
+from problems.lcp.reference import min_newton, modulus
 from problems.paper import EXAMPLES
-from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon
+from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon, by_reference, by_tables
 
 SOLVED_TO = 1e-6
 """What `Certificate.solves` is asked of an end before the run counts as a success."""
@@ -65,66 +64,52 @@ def solver(name: str, **options: Any) -> Method:
     return Method(name, run, laddered=False)
 
 
-def direct(name: str, solve: Callable[[LCP], tuple[Array | None, Counts, str]]) -> Method:
-    """A solver that the ladder does not concern: to x (None where it disowns it), what that cost, and a message."""
+def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], Counts]) -> Method:
+    """A solver that the ladder does not concern; `cost` is what so many of its iterations come to, for n unknowns."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
-        x, counts, message = solve(problem.subject)
-        if x is None:
-            return Answer(counts, failure=Failure.STOPPED, message=message)
-        return judged(problem.subject, x, counts, message=message)
+        try:
+            x, iterations = solve(problem.subject)
+        except ArithmeticError as error:
+            return Answer(Counts(), failure=Failure.STOPPED, message=str(error))
+        return judged(problem.subject, x, cost(iterations, problem.n))
 
     return Method(name, run, laddered=False, outside=True)
 
 
-def references() -> list[Method]:
-    """Lemke, modulus and min-Newton."""
-
-    def counted(solve: Callable[[LCP], ReferenceResult]) -> Callable[[LCP], tuple[Array | None, Counts, str]]:
-        def run(problem: LCP) -> tuple[Array | None, Counts, str]:
-            result = solve(problem)
-            work = pivots(result.iterations, problem.n) if solve is lemke else result.factorizations
-            return result.x, Counts(0, 0, work, result.iterations, result.iterations), result.message
-
-        return run
-
-    return [direct(name, counted(solve)) for name, solve in
-            (("Lemke", lemke), ("modulus", modulus), ("min-Newton", min_newton))]  # fmt: skip
+def pivots(k: int, n: int) -> Counts:
+    """Of Lemke's tableau, 4 n^2 operations each: as many factorisations as take that long."""
+    return Counts(factorizations=-(-6 * k // n), solves=k, accepted=k)
 
 
-def pivots(count: int, n: int) -> int:
-    """Factorisations that take as long as so many pivots of Lemke's tableau, 4 n^2 operations each."""
-    return -(-6 * count // n)
+def interior(k: int, n: int) -> Counts:
+    """An iteration of an interior-point method is one factorisation, a solve to predict and one to correct."""
+    return Counts(factorizations=k, solves=2 * k, accepted=k)
 
 
-OUTSIDE = {
-    "quantecon": ("quantecon Lemke", by_quantecon), "piqp": ("PIQP", by_piqp), "clarabel": ("Clarabel", by_clarabel),
-}  # fmt: skip
-"""Name and adapter by module."""
+DIRECT = {
+    "Lemke": ("", by_tables, pivots),
+    "modulus": ("", by_reference(modulus), lambda k, n: Counts(factorizations=1, solves=k, accepted=k)),
+    "min-Newton": ("", by_reference(min_newton), lambda k, n: Counts(factorizations=k, solves=k, accepted=k)),
+    "quantecon Lemke": ("quantecon", by_quantecon, pivots),
+    "PIQP": ("piqp", by_piqp, interior),
+    "Clarabel": ("clarabel", by_clarabel, interior),
+}
+"""By name: the module that it needs, how it solves, what an iteration costs."""
 
 
-def outside(compare: bool) -> list[Method]:
-    """The installed solvers of other packages, if they are asked for.
-
-    An iteration of an interior-point method is one factorisation, a solve to predict and one to correct.
-    """
-
-    def counted(solve: Callable[[Any], Found]) -> Callable[[LCP], tuple[Array | None, Counts, str]]:
-        def run(problem: LCP) -> tuple[Array | None, Counts, str]:
-            try:
-                x, k = solve(problem)
-            except ArithmeticError as error:
-                return None, Counts(), str(error)
-            tables = solve is by_quantecon
-            return x, Counts(0, 0, pivots(k, problem.n) if tables else k, k if tables else 2 * k, k), ""
-
-        return run
-
-    taken = [pair for module, pair in OUTSIDE.items() if compare and rivals.installed(module)]
-    for _, solve in taken:
+def direct_methods(compare: bool) -> list[Method]:
+    """The references, and the installed solvers of other packages if they are asked for."""
+    taken = {name: one for name, one in DIRECT.items() if not one[0] or (compare and rivals.installed(one[0]))}
+    for _, solve, _ in taken.values():
         # Once beforehand, for a library that compiles itself at its first call.
         solve(LCP(np.eye(1), -np.ones(1)))
-    return [direct(name, counted(solve)) for name, solve in taken]
+    return [direct(name, solve, cost) for name, (_, solve, cost) in taken.items()]
+
+
+def notes(compare: bool) -> list[str]:
+    """Which packages take part, and which are left out."""
+    return rivals.notes([module for module, _, _ in DIRECT.values() if module], compare)
 
 
 def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
@@ -153,12 +138,12 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     series = [path(f"{one.title}, series", one.make, preset=continuation.SERIES) for one in quick]
     whole = [solver("KKT, finish", homotopy="kkt"), solver("solve, auto")]
     common: dict[str, Any] = {
-        "methods": [*homotopies, *series, *whole, *references(), *outside(compare)],
+        "methods": [*homotopies, *series, *whole, *direct_methods(compare)],
         "ladder": tolerances(*rungs),
         "errors": (RESIDUAL,),
         "work": WORK if size == "full" else WORK[:2],
         "repeats": 3 if size == "full" else 0,
-        "notes": notes(OUTSIDE, compare),
+        "notes": notes(compare),
     }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
     paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]
@@ -175,4 +160,4 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
 def problem(family: str, n: int, seed: int) -> Problem:
     """A generated problem of a study."""
     subject = planted(family, n, seed)
-    return Problem(f"{family}, n = {n}, seed {seed}", subject, family=family, seed=seed)
+    return Problem(f"{family}, n = {n}, seed {seed}", subject, family=family)

@@ -8,8 +8,7 @@ import continuation
 from continuation.chart import Profile, Study, profile, tolerances
 from continuation.chart.study import Size
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import OUTSIDE, RESIDUAL, WORK, outside, path, problem, references, solver
-from problems.charts.rivals import notes
+from problems.charts.lcp import RESIDUAL, WORK, direct_methods, notes, path, problem, solver
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
@@ -23,8 +22,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         *((path("KKT, series", HOMOTOPIES["kkt"].make, preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),
-        *references(),
-        *outside(compare),
+        *direct_methods(compare),
     ]
     return [
         Study(
@@ -38,6 +36,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             figures=[Profile("factorizations")],
             tables={"By family": profile},
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
-            notes=notes(OUTSIDE, compare),
+            notes=notes(compare),
         )
     ]

@@ -10,8 +10,7 @@ from continuation.chart import scaling as table
 from continuation.chart.study import Size
 from continuation.correctors import Broyden
 from problems import lcp
-from problems.charts.lcp import OUTSIDE, RESIDUAL, outside, path, problem, references, solver
-from problems.charts.rivals import notes
+from problems.charts.lcp import RESIDUAL, direct_methods, notes, path, problem, solver
 from problems.charts.subjects import bratu, bratu_square, chandrasekhar
 
 
@@ -42,8 +41,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         path("Wang", lcp.WangHomotopy),
         path("Wang, series", lcp.WangHomotopy, preset=continuation.SERIES),
         solver("solve, auto"),
-        *references(),
-        *outside(compare),
+        *direct_methods(compare),
     ]
     complementarity = Study(
         name="scaling-lcp",
@@ -57,7 +55,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         tables={"Factorisations": table},
         repeats=repeats,
         give_up=True,
-        notes=notes(OUTSIDE, compare),
+        notes=notes(compare),
     )
     return [curves, complementarity]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from attrs import asdict
 
-from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
+from continuation.chart import Answer, Dumbbell, Error, Failure, Method, Problem, Rung, Study, observed
 from continuation.chart.study import Size
 from continuation.counts import Counts
 from problems.charts.rivals import notes
@@ -64,7 +64,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         "figures": [Dumbbell("answer", "seconds", every=every) for every in (False, True)],
         "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
     }  # fmt: skip
-    ladder = Ladder("mesh", factors, lambda options, value: options)
+    ladder = tuple(Rung("mesh", factor) for factor in factors)
     return [
         Study(name="scenes-meshes", title="Scenes with a mesh", problems=meshes, ladder=ladder,
               methods=_methods(meshes, True, compare), notes=_notes(meshes, compare), **common),

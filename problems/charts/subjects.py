@@ -1,33 +1,29 @@
-"""The bifurcation problems as problems of a study, with their truths."""
+"""The bifurcation problems as problems of a study; the truths are references, exact but for round-off."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from continuation.chart import Problem, Truth, reference
+from continuation.chart import Problem, reference
 from continuation.events import TargetValue
 from problems.bifurcation import Bratu1D, Bratu2D, ExponentialCosine, FreudensteinRoth
-from problems.bifurcation.truth import exponential_cosine, freudenstein_roth
 from problems.charts.chandrasekhar import Chandrasekhar
 
 
 def freudenstein() -> Problem:
     """Freudenstein and Roth's path to (5, 4)."""
-    truth = Truth(np.array([5.0, 4.0, 1.0]), freudenstein_roth.turning_points())
-    return Problem("Freudenstein-Roth", FreudensteinRoth(), truth)
+    subject = FreudensteinRoth()
+    return Problem("Freudenstein-Roth", subject, reference(subject))
 
 
 def cosine(n: int) -> Problem:
     """The exponential-cosine path."""
-    end = exponential_cosine.curve(n, np.array(exponential_cosine.end(n)))
-    truth = Truth(end, exponential_cosine.turning_points(n))
-    return Problem(f"exponential-cosine, n = {n}", ExponentialCosine(n), truth, family="exponential-cosine")
+    subject = ExponentialCosine(n)
+    return Problem(f"exponential-cosine, n = {n}", subject, reference(subject), family="exponential-cosine")
 
 
 def bratu(n: int) -> Problem:
-    """Bratu's problem on an interval, through the fold to lam = 1 on the upper branch; the truth is a reference."""
+    """Bratu's problem on an interval, through the fold to lam = 1 on the upper branch."""
     return _round_the_fold(Bratu1D(n), 1.0, f"Bratu 1D, n = {n}", n, "Bratu 1D (banded)")
 
 

@@ -47,12 +47,12 @@ def run(arguments: argparse.Namespace) -> int:
     (folder / "table.txt").write_text(f"{text}\n", encoding="utf-8")
     written = [archive, folder / "table.txt"]
     if methods:
-        from problems.paper_methods import LEGEND, compare, matrix, write_csv
+        from continuation.chart import write
+        from problems.paper_methods import LEGEND, compare, matrix
 
         results = compare(EXAMPLES, methods)
         print(f"\n{matrix(results)}\n{LEGEND}")
-        written.append(folder / "methods.csv")
-        write_csv(results, written[-1])
+        written.append(write(results, folder / "methods.json"))
     figure = _figure(folder, rows)
     print(f"\nWritten: {', '.join(map(str, written))}{figure}")
     return SUCCESS if all(row.solved for row in rows) else FAILURE

@@ -5,10 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
@@ -16,7 +13,6 @@ from continuation.cli.archives import complaints
 from continuation.cli.parser import above_zero, paint, parsed
 from problems.commands import scene
 from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
-from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
@@ -42,8 +38,7 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {scene.WORD}: which, its parameters")
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
     parser.add_argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto")
-    parser.add_argument("--x0", metavar="FILE", help="the start: x0 > 0 with A x0 + q > 0, as in the paper")
-    parser.add_argument("--relaxed", action="store_true", help="take any x0 > 0; what A x0 + q lacks is relaxed away")
+    parser.add_argument("--x0", metavar="FILE", help="the start, x0 > 0; what A x0 + q lacks is relaxed away")
     parser.add_argument("--path", action="store_true", help="trace a path even where none is needed")
     parser.add_argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path")
@@ -73,13 +68,14 @@ def run(arguments: argparse.Namespace) -> int:
         return scene.run(arguments)
     if arguments.scene:
         raise UsageError("unrecognized arguments", " ".join(arguments.scene))
-    _check_outputs(arguments)
+    if arguments.plot is not None:
+        from continuation.cli.figures import check_picture
+
+        check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"), named(_ARGUMENTS), file_of(arguments.file) as file:
         program = read_program(file) if arguments.q is None else None
         problem = read_problem(file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
-        if x0 is not None and problem.standard and not arguments.relaxed:
-            _check_start(problem, x0)
         budget = None if arguments.seconds is None else Budget(math.inf, arguments.seconds)
         solution = lcp.solve(
             problem if program is None else program,
@@ -105,28 +101,6 @@ def _tolerance(text: str) -> float:
 
 def _counted(text: str) -> int:
     return parsed(text, int, lambda value: value >= 0, "an integer, at least 0")
-
-
-def _check_start(problem: MixedLCP, x0: Array) -> None:
-    """The paper's homotopy starts inside {x > 0, A x + q > 0}; a start outside is asked for by --relaxed."""
-    for name, values in (("x0", x0), ("A x0 + q", problem.w(x0))):
-        i = int(np.argmin(values))
-        if values[i] <= 0.0:
-            found = f"found {values[i]:g} in {name} at index {i}"
-            raise UsageError("--x0", f"expected a strictly feasible start (or --relaxed), {found}")
-
-
-def _check_outputs(arguments: argparse.Namespace) -> None:
-    """Complain before the work is done rather than after."""
-    for option, file in (("--archive", arguments.archive), ("--plot", arguments.plot)):
-        if file is not None and not Path(file).parent.is_dir():
-            raise UsageError(option, f"expected a file in an existing directory, found {str(file)!r}")
-    if arguments.archive is not None and Path(arguments.archive).exists():
-        raise UsageError("--archive", f"expected a new file, found an existing one, {arguments.archive!r}")
-    if arguments.plot is not None:
-        from continuation.cli.figures import check_picture
-
-        check_picture("--plot", arguments.plot)
 
 
 def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:

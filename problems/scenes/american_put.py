@@ -114,7 +114,8 @@ def AmericanPut(
             well = bool(found.success) and found.x is not None
             if not well:
                 break
-            values[1:-1] = payoff[1:-1] + found.x
+            # To the digits of the strike: far from it values fall to numbers that no float holds with all its digits.
+            values[1:-1] = (strike + payoff[1:-1] + found.x) - strike
             # With more time left it is exercised at no higher price; in the first steps the mesh is too coarse to tell.
             edges.append(min(edge(found.x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)

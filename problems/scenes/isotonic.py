@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Annotated, Any
 
 import numpy as np
@@ -56,17 +55,12 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
             xlabel="sample", ylabel="response",
         )  # fmt: skip
 
-    def sklearn(scene: Any) -> Quantities:
-        regression = import_module("sklearn.isotonic").IsotonicRegression()
-        return {"fit": regression.fit_transform(np.arange(samples), data)}
-
     return Scene(
         units={"fit": "", "steps": ""},
         # The fit is the data moved by these, so no value of the curve is an unknown.
         unknowns=(Unknown("forces between neighbours", n, "which samples are pooled"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("IsotonicRegression (sklearn)", "sklearn", sklearn),
-                Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
+        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import pytest
 from continuation import Status, TurningPoint, trace
 from continuation.auditing import audit
 from problems.bifurcation import Aircraft
-from problems.bifurcation.truth import aircraft
+from tests.truth import aircraft
 
 from ..util import every_preset
 

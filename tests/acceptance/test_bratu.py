@@ -6,7 +6,7 @@ import pytest
 from continuation import FAST, Status, TargetValue, trace
 from continuation.auditing import audit
 from problems.bifurcation import Bratu1D, Bratu2D
-from problems.bifurcation.truth import bratu
+from tests.truth import bratu
 
 from ..util import every_preset
 

@@ -14,7 +14,7 @@ from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
-from problems.bifurcation.truth import exponential_cosine
+from tests.truth import exponential_cosine
 
 from ..util import every_preset
 

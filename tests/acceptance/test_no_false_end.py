@@ -1,10 +1,7 @@
 """No false end: what round-off, noise and small numbers make of a path is neither an end nor a refusal.
 
-The campaign is `examples/benchmarks/ends/run.py`; a few paths of each family are traced here.
+The campaign is `examples/benchmarks/ends.py`; a few paths of each family are traced here.
 """
-
-import sys
-from pathlib import Path as File
 
 import numpy as np
 import pytest
@@ -15,9 +12,9 @@ from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Status, fr
 from continuation.metric import Euclidean
 from continuation.step.tracer import Tracer
 
-sys.path.insert(0, str(File(__file__).parents[2] / "examples" / "benchmarks" / "ends"))
-import families
+from ..util import benchmark
 
+families = benchmark("ends.py")
 PRESETS = (FAST, DEFAULT, CONSERVATIVE, SERIES)
 without_series = pytest.mark.parametrize("preset", PRESETS[:3], ids=[preset.name for preset in PRESETS[:3]])
 every_preset = pytest.mark.parametrize("preset", PRESETS, ids=[preset.name for preset in PRESETS])

@@ -11,7 +11,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Symmetric, factor_bordered
 
-from ..util import benchmark, every_preset
+from ..util import every_preset
 
 
 def hopf_points(path):
@@ -198,14 +198,6 @@ def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(pre
     for event in found:
         values = np.linalg.eigvals(Evaluator(homotopy, Counts()).derivative(event.y, event.lam)[0])
         assert np.abs(values.real).min() < 1e-10
-
-
-def test_the_benchmark_runs(capsys):
-    benchmark("stability/brusselator.py").main(20, 1)
-    *compared, first, second, third = capsys.readouterr().out.splitlines()
-    assert [line.split(",")[1] for line in compared] == [" 0 Hopf points", " 2 Hopf points", " 2 Hopf points"]
-    for line in (first, second, third):
-        assert float(line.split("off by ")[1].split(",")[0]) < 1e-10
 
 
 # -- what a count shows ---------------------------------------------------------------------------------------

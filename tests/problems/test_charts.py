@@ -57,13 +57,6 @@ def test_the_families_are_what_they_are_called():
         families.planted("none", 2, 0)
 
 
-def test_the_truths_agree_with_an_accurate_trace():
-    problem = subjects.freudenstein()
-    reference = chart.reference(problem.subject)
-    np.testing.assert_allclose(problem.truth.end, reference.end, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(problem.truth.turning_points, reference.turning_points, rtol=0, atol=1e-9)
-
-
 def test_the_plain_loop_arrives_and_is_counted():
     study = chart.Study(
         name="loop",
@@ -88,58 +81,60 @@ def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
     assert module.studies("smoke", False)[-1].notes == []
 
 
-def test_an_outside_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
+def test_a_direct_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
     def gives_up(problem):
         if problem.n > 1:
             raise ArithmeticError("a ray")
         return np.ones(1), 1
 
-    answers = {"numpy": ("right", lambda problem: (np.zeros(problem.n), 2)), "math": ("gives up", gives_up)}
-    monkeypatch.setattr(lcp_charts, "OUTSIDE", answers)
+    answers = {
+        "right": ("numpy", lambda problem: (np.linalg.solve(problem.A, -problem.q), 2), lcp_charts.interior),
+        "wrong": ("", lambda problem: (np.zeros(problem.n), 2), lcp_charts.interior),
+        "gives up": ("math", gives_up, lcp_charts.pivots),
+    }
+    monkeypatch.setattr(lcp_charts, "DIRECT", answers)
     study = chart.Study(
         name="outside",
-        problems=[chart.Problem("one", lcp.LCP(np.eye(5), np.ones(5)))],
-        methods=lcp_charts.outside(True),
+        problems=[chart.Problem("one", lcp.LCP(np.eye(5), -np.ones(5)))],
+        methods=lcp_charts.direct_methods(True),
         errors=[lcp_charts.RESIDUAL],
         repeats=0,
     )
     rows = chart.run(study).rows
-    assert [(row.failure, row.counts.factorizations) for row in rows] == [("", 2), ("stopped", 0)]
+    assert [(row.failure, row.counts.factorizations) for row in rows] == [("", 2), ("wrong end", 2), ("stopped", 0)]
+    assert rows[2].message == "a ray"
     for name in ("lcp", "robustness", "scaling"):
         compared = [method.name for method in plugins.find(name, plugins.STUDIES)("smoke", True)[-1].methods]
         assert {"right", "gives up"} < set(compared)
 
 
-@pytest.mark.parametrize("name", ["quantecon", "piqp", "clarabel"])
+@pytest.mark.parametrize("name", ["quantecon Lemke", "PIQP", "Clarabel"])
 def test_the_adapters_of_installed_solvers_work(name):
-    pytest.importorskip(name)
+    module, solve, _ = lcp_charts.DIRECT[name]
+    pytest.importorskip(module)
     problem = lcp_charts.problem("semidefinite", 5, 0).subject
-    x, iterations = lcp_charts.OUTSIDE[name][1](problem)
+    x, iterations = solve(problem)
     assert lcp.certify(problem, x).solves(1e-6)
     assert iterations > 0
 
 
 def test_methods_for_the_lcp_are_judged_by_the_certificate():
     problem = lcp_charts.problem("semidefinite", 5, 0)
-    wrong = lcp_charts.direct("wrong", lambda p: (np.zeros(5), continuation.Counts(), "made up"))
-    none = lcp_charts.direct("none", lambda p: (None, continuation.Counts(), "a ray"))
-    methods = [lcp_charts.path("KKT", lcp.KKTHomotopy), *lcp_charts.references(), wrong, none]
     study = chart.Study(
         name="judged",
         problems=[problem],
-        methods=methods,
+        methods=[lcp_charts.path("KKT", lcp.KKTHomotopy), *lcp_charts.direct_methods(False)],
         ladder=chart.tolerances(1e-8),
         errors=[lcp_charts.RESIDUAL],
         repeats=0,
     )
     rows = {row.method: row for row in chart.run(study).rows}
-    assert {name: row.failure for name, row in rows.items()} == {
-        "KKT": "", "Lemke": "", "modulus": "", "min-Newton": "", "wrong": "wrong end", "none": "stopped"
-    }  # fmt: skip
+    assert {name: row.failure for name, row in rows.items()} == dict.fromkeys(
+        ("KKT", "Lemke", "modulus", "min-Newton"), ""
+    )
     assert rows["KKT"].errors["natural_residual"] < 1e-12
     path = continuation.trace(lcp.KKTHomotopy(problem.subject))
     assert rows["KKT"].counts == path.counts
-    assert rows["none"].message == "a ray"
 
 
 def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
@@ -153,7 +148,7 @@ def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
     assert ours.errors["answer"] <= 1e-15
     problem = chart.Problem("cournot", scenes.make("cournot"), options={"true": {"price": 50.0}})
     wrong = scenes._method("wrong", False, lambda scene: {"price": 40.0})
-    answer = wrong.run(problem, chart.tolerances(1.0).rungs[0])
+    answer = wrong.run(problem, chart.tolerances(1.0)[0])
     assert (answer.failure, answer.message) == ("wrong end", "the answer is off by 2.0e-01")
 
 

@@ -51,26 +51,25 @@ def printed(run: Callable[[], Any]) -> tuple[Any, list[str]]:
 
 def kills(folder: Path, size: int) -> Found:
     """kill -9 of whatever is at work with archives."""
-    good, lines = printed(lambda: benchmark("archive_kills.py").kill(folder, size))
-    wrong = [line for line in lines if line.rpartition(": ")[2].isupper()]
-    text = "; ".join(wrong) or f"{size} kills: what was committed is there, and is gone on with to the same path"
-    return Found(size, 0 if good else max(len(wrong), 1), text)
+    campaign = benchmark("archive_kills.py").Kills(folder).campaign()
+    each = max(size // len(campaign.families), 1)
+    wrong, lines = printed(lambda: campaign.run(each))
+    text = "what was committed is there, and is gone on with to the same path"
+    return Found(size, wrong, "; ".join(lines) if wrong else f"{each} kills of each of seven works: {text}")
 
 
 def damage(folder: Path, size: int) -> Found:
     """Damaged files: an error or the right data, soon, in little memory."""
-    good, lines = printed(lambda: benchmark("archive_damage.py").damage(folder, size))
-    return Found(size, 0 if good else 1, ", ".join(lines[-9:]))
+    wrong, lines = printed(lambda: benchmark("archive_damage.py").campaign(folder).run(size))
+    return Found(size, wrong, ", ".join(lines))
 
 
 def tally(mode: str) -> Callable[[Path, int], Found]:
     """A mode of the benchmark of units."""
 
     def run(folder: Path, size: int) -> Found:
-        wrong, lines = printed(lambda: benchmark("lcp/units.py").MODES[mode][0](size, 0))
-        print(*(line for line in lines if line.startswith(("FALSE", "OFF"))), sep="\n", flush=True)
-        title = next(k for k, line in enumerate(lines) if line.startswith(f"{size} "))
-        return Found(size, wrong, ", ".join(lines[title + 1 :]))
+        wrong, lines = printed(lambda: benchmark("claims.py").CAMPAIGN.run(size, 0, [mode]))
+        return Found(size, wrong, ", ".join(lines))
 
     return run
 

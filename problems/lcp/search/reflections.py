@@ -4,7 +4,7 @@ The first set is affine, and in the second each pair (x_i, w_i) has a nearest po
 with a matrix, a thousandth of a step of a path. Where a set is not convex nothing says that this converges. But only
 solutions make it stand still, no local minimum holds it, and among random problems that are neither monotone nor P it
 soon comes by one: n = 100 in 0.02 s, n = 300 in 0.3, n = 600 in 3, where paths from random starts take 1, 60 and more
-than 300 (`examples/benchmarks/size/hard.py`). The faces that it stays at are tried exactly; it claims nothing itself.
+than 300 (`examples/benchmarks/outside.py`). The faces that it stays at are tried exactly; it claims nothing itself.
 
 References
 ----------

@@ -14,7 +14,7 @@ from problems.bifurcation import Bratu1D
 
 from ...util import benchmark, by_preset
 
-five = benchmark("adapters/five.py")
+five = benchmark("five.py")
 MODELS = {"brusselator": five.brusselator(6), "network": five.network(3, 8)}
 WAYS = ("jax", "jax sparse", "casadi", "sympy", "residual only")
 

@@ -17,7 +17,7 @@ from problems.lcp.data.problem import MixedLCP
 from ...util import benchmark
 from . import second
 
-corrupted = benchmark("proof/corrupted.py")
+corrupted = benchmark("corrupted.py")
 EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
 
 
@@ -112,34 +112,12 @@ def test_units_do_not_matter(seed):
         assert len(proof.turning_points) == len(trace(inner).turning_points)
 
 
-def test_in_random_units_what_is_complete_has_all_its_turning_points_and_no_jump():
-    """Of two units; `units.py` does this for each problem forty times."""
-    found = benchmark("proof/units.py").campaign("cusp", 2)
-    assert sum(found.values()) == 4
-    assert found["complete", "all turns"] == 2
-    wrong = ("careless, jumped", "careless, turns missed", "TURNS MISSED")
-    assert sum(found["gap", kind] for kind in wrong) > 0
-    assert sum(found["complete", kind] for kind in wrong) == 0
-
-
-def test_a_careless_path_may_go_round_a_closed_curve_twice_but_not_back(monkeypatch):
-    units = benchmark("proof/units.py")
-    monkeypatch.setattr(units, "FINE", 100)
-    reference = trace(circle := units.plain(Circle()))
-    for far, jumped in ([*np.arange(0.0, 12.6, 0.4)], False), ([0.0, 0.4, 0.8, 1.2, 0.8], True):
-        points = np.column_stack([np.cos(far), np.sin(far)])
-        path = units.carried(points, points, far, [])
-        assert units.faults(path, circle, reference) == (jumped, 0 if jumped else 2)
-
-
 # --- what is no path --------------------------------------------------------------------------------------
 
 
 def test_no_corrupted_path_is_proved():
     """Fourteen of them; `corrupted.py` makes ten thousand."""
-    found = corrupted.campaign(14, seed=3)
-    assert sum(found.values()) == 14
-    assert {verdict for kind, verdict in found if (kind, verdict) != ("left_out", "proved")} == {"refused"}
+    assert corrupted.CAMPAIGN.run(14, 3) == 0
 
 
 def _accepting(fault, subject=0, seeds=6):

@@ -12,8 +12,8 @@ from problems.nonlinear import bratu_under_obstacle
 
 from ...util import benchmark
 
-corrupted = benchmark("proof/corrupted.py")
-drawn = benchmark("proof/subjects.py")
+corrupted = benchmark("corrupted.py")
+drawn = benchmark("subjects.py")
 
 
 def bent(y, lam, a, b):
@@ -141,7 +141,7 @@ def test_a_proof_of_pieces_is_checked_again(subjects):
 def test_random_paths_with_kinks_are_proved(seed):
     # In 20 a switch vanishes at both ends of a step; in 29 one is 8.5e-4, with tubes as wide, where an arc ends;
     # in the others the parameter turns within the first step behind a kink, and moves by next to nothing in all.
-    homotopy = benchmark("proof/subjects.py").cubic(seed)
+    homotopy = benchmark("subjects.py").cubic(seed)
     path = trace(homotopy, budget=Budget(steps=60))
     proof = certify(path, homotopy)
     assert proof.complete, str(proof)

@@ -21,7 +21,7 @@ def test_profiles_reach_as_far_as_anything_is_solved():
 def made(*points):
     """Results of one problem: (method, error, factorisations, failure)."""
     rows = [
-        chart.Row("p", "p", 1, -1, name, False, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0, 1)
+        chart.Row("p", "p", 1, name, False, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0)
         for name, error, work, failure in points
     ]
     return chart.Results("s", "t", "tolerance", {"e": "error"}, ("factorizations",), tuple(rows))

@@ -9,7 +9,7 @@ import pytest
 import continuation
 from continuation.archive import open_archive
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
-from problems.bifurcation.truth import bratu
+from tests.truth import bratu
 
 
 @pytest.fixture

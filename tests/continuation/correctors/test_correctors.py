@@ -10,7 +10,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
 from continuation.rejection import Rejection
 from problems.bifurcation import Circle, ExponentialCosine
-from problems.bifurcation.truth import exponential_cosine
+from tests.truth import exponential_cosine
 
 CORRECTORS = [
     BorderedNewton(), BorderedNewton(reuse=0.0), BorderedNewton(reuse=1.0, max_iterations=20), Chord(), Broyden(),

@@ -86,7 +86,7 @@ def test_branches_that_leave_branches_are_all_there_and_none_twice():
 
 
 def test_the_benchmark_of_pitchforks_runs():
-    assert len(benchmark("diagrams/pitchforks.py").run(3)) == 14
+    assert len(benchmark("pitchforks.py").run(3)) == 14
 
 
 def test_ten_pitchforks_that_leave_each_other_have_an_arm_for_each_and_a_crossing_for_each_later_one():

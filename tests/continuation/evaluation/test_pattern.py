@@ -15,7 +15,7 @@ from continuation.linear import Banded
 
 from ...util import benchmark
 
-alone = benchmark("size/no_jacobian.py")
+alone = benchmark("no_jacobian.py")
 
 
 def looks(matrix, spent):

@@ -15,7 +15,7 @@ from continuation.events.singularity import branch_point_near, row_sizes
 
 from ...util import benchmark, every_preset
 
-campaign = benchmark("crossings/run.py")
+campaign = benchmark("crossings.py")
 
 
 def branch_points(path):

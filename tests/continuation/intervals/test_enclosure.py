@@ -14,9 +14,9 @@ from continuation.numbers.boxes import along_curve, with_gradient
 from continuation.numbers.ends import Ends, thin
 from continuation.numbers.series import ELEMENTARY
 
-from ...util import benchmark
+from . import against_mpmath
 
-EXACT = benchmark("proof/functions.py").ONE
+EXACT = against_mpmath.ONE
 DOMAIN = {
     **dict.fromkeys(("arcsin", "arccos", "arctanh"), (-0.95, 0.95)),
     **dict.fromkeys(("sqrt", "log", "log2", "log10", "cbrt", "reciprocal", "absolute"), (0.05, 4.0)),

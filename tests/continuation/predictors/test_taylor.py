@@ -18,7 +18,7 @@ from continuation.predictors import Taylor
 from continuation.predictors.fitted import fitted
 from continuation.predictors.taylor import ORDERS, Series, best_order, coefficients_at, series_reach
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
-from problems.bifurcation.truth import bratu, exponential_cosine, freudenstein_roth
+from tests.truth import bratu, exponential_cosine, freudenstein_roth
 
 
 def at_start(homotopy, metric=None):

@@ -20,18 +20,17 @@ from ...util import benchmark
 from .util import powers
 
 Outcome = lcp.Outcome
-campaign = benchmark("lcp/units.py")
+campaign = benchmark("claims.py")
 
 
-@pytest.mark.parametrize(("mode", "number"), [("units", 60), ("factor", 20), ("truth", 60)])
+@pytest.mark.parametrize(("mode", "number"), [("units", 60), ("factor", 20), ("truth", 60), ("bounds", 60)])
 def test_the_benchmark_of_units_finds_nothing_wrong(capsys, mode, number):
-    run, _ = campaign.MODES[mode]
-    assert run(number, 3) == 0, capsys.readouterr().out
+    assert campaign.CAMPAIGN.run(number, 3, [mode]) == 0, capsys.readouterr().out
 
 
 def test_the_benchmark_can_fail(monkeypatch):
     monkeypatch.setattr(campaign, "same_outcome", lambda one, other, exact: False)
-    assert campaign.units(3, 0) == 3
+    assert campaign.CAMPAIGN.run(3, 0, ["units"]) == 3
 
 
 @pytest.mark.parametrize("power", [-990, -40, 3, 900])

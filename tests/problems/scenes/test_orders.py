@@ -141,3 +141,11 @@ def test_the_price_of_exercise_falls_from_the_strike_with_the_time_left():
     assert 50.0 < found.boundary[-1] < 100.0
     # On a mesh eight times as fine in price and time it ends at 80.8867; by the first points off the payoff at 80.9027.
     assert solve(AmericanPut()).boundary[-1] == pytest.approx(80.8867, abs=1e-3)
+
+
+def test_values_that_no_float_holds_stop_no_time_step():
+    """On this mesh they fall to subnormal numbers in the second step: no row is right relative to its terms."""
+    scene = AmericanPut(n=800, steps=200)
+    found = solve(scene)
+    assert found.success
+    assert scene.answer(found)["price"] == pytest.approx(6.09037, abs=1e-4)

@@ -7,9 +7,17 @@ from problems import lcp
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
 
-from ....util import benchmark
 
-random_data = benchmark("mixed/programs.py").problem
+def random_data(kind, n, seed):
+    """P, c and the two bounds of a program in the box [-1, 1]^n."""
+    rng = np.random.default_rng(seed)
+    if kind == "condition 1e6":
+        Q, _ = np.linalg.qr(rng.standard_normal((n, n)))
+        P = (Q * np.logspace(0, -6, n)) @ Q.T
+    else:
+        M = rng.standard_normal((n // 2 if kind == "rank n/2" else n, n))
+        P = M.T @ M / n + (0.1 * np.eye(n) if kind == "definite" else 0.0)
+    return (P + P.T) / 2, rng.standard_normal(n), -np.ones(n), np.ones(n)
 
 
 def test_a_diagonal_matrix_needs_one_step_in_any_units():

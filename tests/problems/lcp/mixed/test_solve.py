@@ -15,7 +15,7 @@ from problems.lcp.reference.enumeration import exhaust
 from ....util import benchmark
 from .util import orders
 
-random_problem = benchmark("mixed/pieces.py").random_problem
+random_problem = benchmark("claims.py").random_problem
 
 
 def test_no_outcome_is_false_where_all_pieces_are_tried():

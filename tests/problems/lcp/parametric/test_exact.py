@@ -10,9 +10,7 @@ from attrs import evolve
 
 from problems.lcp import LCP, MixedLCP, UnprovenError, along, prove_path
 
-from ....util import benchmark
-
-known = benchmark("kinks/known_paths.py")
+from . import util as known
 
 
 def test_murtys_path_is_proved_and_is_the_only_one():

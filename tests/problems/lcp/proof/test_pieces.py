@@ -12,7 +12,7 @@ from problems.lcp.reference.enumeration import exhaust
 
 from ....util import benchmark
 
-random_problem = benchmark("mixed/pieces.py").random_problem
+random_problem = benchmark("claims.py").random_problem
 
 
 def test_the_outcome_is_that_of_exact_arithmetic_alone():

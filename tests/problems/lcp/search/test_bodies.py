@@ -10,13 +10,20 @@ from problems import lcp
 
 from ....util import benchmark
 
+outside = benchmark("outside.py")
+
+
+@pytest.mark.parametrize("family", outside.FAMILIES)
+def test_every_family_of_the_benchmark_is_decided(family):
+    (problem,) = outside.FAMILIES[family](1, 7)
+    outcome, _ = outside.measured(problem, limit=60.0)
+    assert outcome not in ("late", "NOT_FOUND", "STATIONARY")
+
 
 @pytest.mark.parametrize("family", ["stacks", "arches", "piles"])
-def test_bodies_in_contact_are_solved_without_a_path(family, monkeypatch):
-    bodies = benchmark("lcp/bodies.py")
-    monkeypatch.setattr(bodies, "EACH", (2, 2, 2))
-    for A, q in getattr(bodies, family)(46):
-        found = lcp.solve(lcp.LCP(A, q))
+def test_bodies_in_contact_are_solved_without_a_path(family):
+    for problem in outside.FAMILIES[family](10, 46):
+        found = lcp.solve(problem)
         assert found.solved
         assert found.relative_residual < 1e-11
         assert not found.paths
@@ -24,11 +31,9 @@ def test_bodies_in_contact_are_solved_without_a_path(family, monkeypatch):
 
 
 @pytest.mark.parametrize(("family", "most"), [("stacks", 60), ("arches", 120)])
-def test_the_kkt_path_alone_solves_bodies_in_contact(family, most, monkeypatch):
-    bodies = benchmark("lcp/bodies.py")
-    monkeypatch.setattr(bodies, "EACH", (2, 2, 2))
-    for A, q in itertools.islice(getattr(bodies, family)(46), 4):
-        found = lcp.solve(lcp.LCP(A, q), "kkt")
+def test_the_kkt_path_alone_solves_bodies_in_contact(family, most):
+    for problem in itertools.islice(outside.FAMILIES[family](7, 46), 0, 7, 2):
+        found = lcp.solve(problem, "kkt")
         assert found.solved
         assert found.counts.factorizations < most
 

@@ -13,7 +13,7 @@ from problems.lcp.search import pivots, solver
 from problems.lcp.search.table import AUTOMATIC
 from tests.util import benchmark
 
-HARD = benchmark("size/hard.py")
+HARD = benchmark("outside.py")
 
 
 def test_they_are_followed_on_before_any_path():
@@ -32,7 +32,7 @@ def test_they_are_followed_on_before_any_path():
 
 @pytest.mark.parametrize("seed", [16, 28], ids=["of the first few", "of those that are given twice the pivots"])
 def test_other_labels_have_short_paths(seed, monkeypatch):
-    problem = LCP(*HARD.game_of("uniform", 60, np.random.default_rng(seed)))
+    problem = HARD.game_of("uniform", 60, np.random.default_rng(seed))
     # Neither of the two labels may go far.
     row = next(row for row in AUTOMATIC if row.name == "pivots")
     monkeypatch.setattr(solver, "AUTOMATIC", (evolve(row, work=1),))
@@ -45,16 +45,6 @@ def test_other_labels_have_short_paths(seed, monkeypatch):
 
 
 def test_traffic_with_more_than_a_thousand_unknowns_is_pivoted():
-    A, q = HARD.traffic(12, 0)
-    found = solve(LCP(A, q))
+    found = solve(HARD.traffic(12, np.random.default_rng(0)))
     assert (found.problem.n, found.outcome.name, len(found.paths)) == (1188, "SOLVED", 0)
     assert "Lemke" in found.message
-
-
-@pytest.mark.parametrize("table", HARD.TABLES)
-def test_the_benchmark_runs(table, monkeypatch, capsys):
-    monkeypatch.setattr(HARD.sys, "argv", ["hard.py", table, "--seeds", "1", "--size", "0.05"])
-    HARD.main()
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == {"games": 25, "traffic": 4, "nonmonotone": 9, "boxes": 7}[table]
-    assert not any(": 0 of 1" in line for line in lines)

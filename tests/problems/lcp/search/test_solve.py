@@ -287,7 +287,7 @@ SMOKE = 500
 
 
 def test_no_false_claim_on_random_small_problems():
-    """Every claim against enumeration in exact arithmetic; `examples/benchmarks/lcp/units.py truth` runs many more."""
+    """Every claim against enumeration in exact arithmetic; `examples/benchmarks/claims.py truth` runs many more."""
     rng = np.random.default_rng(20)
     seen = dict.fromkeys(Outcome, 0)
     for k in range(SMOKE):

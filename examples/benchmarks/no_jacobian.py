@@ -1,0 +1,167 @@
+"""A residual alone beside the same with its Jacobian: Bratu in one and two dimensions, Swift-Hohenberg, and others.
+
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/no_jacobian.py [NAME ...] [--rounds 5] [--preset FAST]
+
+Processor seconds, the least of several rounds. "differences" is the same residual as compiled code would give it, which
+neither jets nor complex numbers pass; "known" has the pattern as `sparsity`; "stability" is the own Jacobian, with what
+`Stability` costs.
+"""
+
+from functools import partial
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from campaign import asked, timed
+from five import brusselator
+from five import ways as written
+
+import continuation
+from continuation.linear import Banded
+from problems.bifurcation import Bratu1D, Bratu2D
+from problems.bifurcation.bratu_2d import five_point
+
+UPPER = {Bratu1D: 1.0, Bratu2D: 2.0}
+"""Bratu's paths go through the fold, and end where lam falls below this."""
+
+
+@frozen
+class SwiftHohenberg:
+    """r u - (1 + d^2/dx^2)^2 u + 2 u^2 - u^3 = 0 on (0, 40), mirrored at both ends."""
+
+    n: int
+
+    def start(self):
+        """A pattern in the middle."""
+        x = (np.arange(self.n) + 0.5) * 40.0 / self.n
+        return 1.5 * np.cos(x) / np.cosh(0.25 * x), -0.4
+
+    def once(self, u):
+        """(1 + d^2/dx^2) u."""
+        mirrored = np.concatenate((u[:1], u, u[-1:]))
+        return u + (mirrored[:-2] - 2.0 * u + mirrored[2:]) * (self.n / 40.0) ** 2
+
+    def residual(self, y, lam):
+        """By second differences."""
+        return (lam + 2.0 * y - y * y) * y - self.once(self.once(y))
+
+    def jacobian(self, y, lam):
+        """Five diagonals."""
+        g = (self.n / 40.0) ** 2
+        line = np.full(self.n, 1.0 - 2.0 * g)
+        line[[0, -1]] = 1.0 - g
+        L = sp.diags_array([np.full(self.n - 1, g), line, np.full(self.n - 1, g)], offsets=[-1, 0, 1])
+        square = sp.dia_array(-(L @ L))
+        band = np.zeros((5, self.n))
+        band[2 - square.offsets] = square.data
+        band[2] += lam + 4.0 * y - 3.0 * y * y
+        return Banded(band, 2, 2), y.copy()
+
+
+@frozen(eq=False)
+class AllenCahn:
+    """Laplacian(u) + lam (u - u^3) = 0 on the unit square, u = 0 on its edge: along u = 0 through branch points."""
+
+    m: int
+    target: float = 60.0
+
+    def start(self):
+        """The trivial solution."""
+        return np.zeros(self.m**2), 10.0
+
+    def residual(self, y, lam):
+        """On m x m points."""
+        u = np.pad(y.reshape(self.m, self.m), 1)
+        bent = u[2:, 1:-1] + u[:-2, 1:-1] + u[1:-1, 2:] + u[1:-1, :-2] - 4.0 * u[1:-1, 1:-1]
+        return bent.ravel() + lam / (self.m + 1.0) ** 2 * (y - y**3)
+
+    def jacobian(self, y, lam):
+        """Five points."""
+        h2 = (self.m + 1.0) ** -2
+        return sp.csc_array(five_point(self.m) + sp.diags_array(lam * h2 * (1.0 - 3.0 * y * y))), h2 * (y - y**3)
+
+
+def diffusing(n):
+    """The Brusselator of `five.py`."""
+    return written(brusselator(n))["numpy"]()
+
+
+PROBLEMS = {
+    "bratu-1d-100": (Bratu1D, 100), "bratu-1d-1000": (Bratu1D, 1000), "bratu-1d-10000": (Bratu1D, 10_000),
+    "bratu-2d-20": (Bratu2D, 20), "bratu-2d-50": (Bratu2D, 50), "bratu-2d-200": (Bratu2D, 200),
+    "swift-hohenberg-300": (SwiftHohenberg, 300), "swift-hohenberg-3000": (SwiftHohenberg, 3000),
+    "allen-cahn-40": (AllenCahn, 40), "brusselator-64": (diffusing, 64), "brusselator-1000": (diffusing, 1000),
+}  # fmt: skip
+
+
+@frozen(eq=False)
+class Plain:
+    """The residual of another homotopy; `sparsity` where it has one."""
+
+    of: object
+    sparsity: object = None
+    compiled: bool = False
+
+    @property
+    def target(self):
+        """The other's."""
+        return getattr(self.of, "target", 0.0)
+
+    def start(self):
+        """The other's."""
+        return self.of.start()
+
+    def residual(self, y, lam):
+        """The other's."""
+        return self.of.residual(np.asarray(y, dtype=float), float(lam)) if self.compiled else self.of.residual(y, lam)
+
+
+def options(homotopy, preset):
+    """Of the trace of a problem."""
+    given = {"preset": getattr(continuation, preset)}
+    kind = type(homotopy)
+    if kind in UPPER:
+        given["events"] = [continuation.TargetValue(UPPER[kind], direction=-1)]
+    if kind is SwiftHohenberg:
+        given |= {"budget": continuation.Budget(steps=30), "direction": 1, "tolerance": 1e-6}
+    return given
+
+
+def ways(homotopy):
+    """By name: with its Jacobian, and without; and with it and the eigenvalues along the path."""
+    slope = homotopy.jacobian(*homotopy.start())[0]
+    pattern = slope.tosparse() if isinstance(slope, Banded) else slope
+    return {
+        "own": homotopy,
+        "alone": Plain(homotopy),
+        "known": Plain(homotopy, sparsity=pattern != 0),
+        "differences": Plain(homotopy, compiled=True),
+        "stability": homotopy,
+    }
+
+
+def measured(name, rounds, preset="FAST", which=None):
+    """By way: the path, and its processor seconds."""
+    kind, size = PROBLEMS[name]
+    homotopy = kind(size)
+    given, forms, found = options(homotopy, preset), ways(homotopy), {}
+    for way in which or forms:
+        more = {"observers": [continuation.Stability()]} if way == "stability" else {}
+        found[way] = timed(partial(continuation.trace, forms[way], **given, **more), rounds)
+    return found
+
+
+def folds_apart(path, other):
+    """How far the folds of two paths are apart, relative; inf where there are not as many."""
+    one, two = (np.array([point.lam for point in each.turning_points]) for each in (path, other))
+    return np.inf if one.shape != two.shape else float((np.abs(one - two) / np.abs(one + two)).max(initial=0.0))
+
+
+if __name__ == "__main__":
+    names, _, given = asked(rounds=5, preset="FAST")
+    for name in names or PROBLEMS:
+        found = measured(name, given.rounds, given.preset)
+        own, least = found["own"]
+        for way, (path, seconds) in found.items():
+            print(f"{name:22} {way:12} {1e3 * seconds:9.1f} ms {seconds / least:7.2f}  {path.status.name}, {len(path)} "
+                  f"points, folds apart {folds_apart(path, own):.0e}, {path.counts}", flush=True)  # fmt: skip

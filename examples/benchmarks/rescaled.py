@@ -1,0 +1,76 @@
+"""A homotopy in other units: E H((y - c) / D, (lam - b) / a), with positive D, E and a."""
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.linear import Banded, Symmetric
+
+DECADES = 8.0
+"""Units are 10^-8 to 10^8 of those of the problem."""
+
+SHIFTS = -2.0, 6.0
+"""Zero lies 10 to one of these powers of the path's extent away."""
+
+
+def dense(H_y: Any) -> Array:
+    """A Jacobian in whatever structure as an array."""
+    H_y = H_y.matrix if isinstance(H_y, Symmetric) else H_y
+    H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
+    return H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
+
+
+@frozen(eq=False)
+class Rescaled:
+    """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
+
+    homotopy: Any
+    D: Array
+    c: Array
+    E: Array
+    a: float
+    b: float
+
+    @property
+    def target(self) -> float | None:
+        """The homotopy's, in these units."""
+        target = getattr(self.homotopy, "target", 0.0)
+        return None if target is None else self.a * target + self.b
+
+    def start(self) -> tuple[Array, float]:
+        """The same point."""
+        y, lam = self.homotopy.start()
+        return self.D * np.asarray(y) + self.c, self.a * lam + self.b
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """E H."""
+        scaled: Array = self.E * self.homotopy.residual((y - self.c) / self.D, (lam - self.b) / self.a)
+        return scaled
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
+        """Dense, whatever the homotopy's is."""
+        H_y, H_lam = self.homotopy.jacobian((y - self.c) / self.D, (lam - self.b) / self.a)
+        return self.E[:, None] * dense(H_y) / self.D, self.E * np.asarray(H_lam) / self.a
+
+    def original(self, u: Array) -> Array:
+        """A point (y, lam) in the units of the homotopy."""
+        return np.append((u[:-1] - self.c) / self.D, (u[-1] - self.b) / self.a)
+
+
+def plain(homotopy: Any) -> Rescaled:
+    """In its own units."""
+    n = np.size(homotopy.start()[0])
+    return Rescaled(homotopy, np.ones(n), np.zeros(n), np.ones(n), 1.0, 0.0)
+
+
+def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:
+    """In random units, with zero at a random place; shifts are measured by the path's extent."""
+    n = extent.size - 1
+    D, E = (10.0 ** generator.uniform(-DECADES, DECADES, n) for _ in range(2))
+    a = float(10.0 ** generator.uniform(-DECADES, DECADES))
+    c = D * extent[:-1] * generator.standard_normal(n) * 10.0 ** generator.uniform(*SHIFTS)
+    b = a * float(extent[-1] * generator.standard_normal() * 10.0 ** generator.uniform(*SHIFTS))
+    return Rescaled(homotopy, D, c, E, a, b)

@@ -1,0 +1,51 @@
+"""What a step costs: time, calls, factorisations, on the problems of the record of behaviour.
+
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/step.py [NAME ...]
+
+Beside another checkout: the same with that in PYTHONPATH, in turns. Calls of functions, Python's and numpy's, are
+counted exactly, whatever else runs.
+"""
+
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path as File
+from typing import Any
+
+from campaign import asked, timed
+
+import continuation
+
+sys.path.insert(0, str(File(__file__).parents[2] / "tests" / "behaviour"))
+PROBLEMS = import_module("record").paths()
+
+
+def calls(work: Callable[[], Any]) -> int:
+    """How many functions are called, in Python and in C."""
+    number = 0
+
+    def count(_frame: Any, event: str, _argument: Any) -> None:
+        nonlocal number
+        number += event in ("call", "c_call")
+
+    sys.setprofile(count)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return number
+
+
+def measured(name: str, rounds: int = 20) -> dict[str, float]:
+    """A path in numbers."""
+    make, options = PROBLEMS[name]
+    homotopy = make()
+    path, seconds = timed(lambda: continuation.trace(homotopy, **options), rounds)
+    steps = path.counts.accepted + path.counts.rejected
+    number = calls(lambda: continuation.trace(homotopy, **options))
+    return {"steps": steps, **path.counts.as_dict(), "calls a step": number / steps, "us a step": 1e6 * seconds / steps}
+
+
+if __name__ == "__main__":
+    for name in asked()[0] or PROBLEMS:
+        print(name, {key: round(value) for key, value in measured(name).items()}, flush=True)
