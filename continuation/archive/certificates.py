@@ -17,7 +17,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, like, own, publish, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, own, publish, short
 from continuation.archive.codec import read_arrays, write_arrays
 from continuation.archive.contents import FAULTS
 from continuation.archive.hdf5 import StructureError, subgroup
@@ -60,7 +60,6 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
                 if str(number) in group:
                     del group[str(number)]
                 _write(group.create_group(str(number)), proof)
-            like(part, name)
             publish(part, name, replace=True)
 
 

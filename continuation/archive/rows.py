@@ -18,8 +18,13 @@ from continuation.archive.schema import (
     CONTROLLER_STATE,
     COUNT_NAMES,
     KINK_PART,
+    KINKS,
     LOCATED,
     NO_EVENT,
+    OBSERVED,
+    ORIGINS,
+    PARAMETER,
+    TANGENTS,
     Layout,
     text,
 )
@@ -54,33 +59,30 @@ class Row:
     switch: int = -1
 
 
-def parts_of(event: LocatedEvent | None) -> list[Row]:
-    """The rows of a kink's switches and rays, which follow its own; none for other events."""
-    if event is None:
-        return []
-    nothing = np.full_like(event.u, _NAN)
-    pairs = zip_longest(event.switches, () if event.rays is None else event.rays)
-    return [
-        Row(event, None, KINK_PART, nothing if ray is None else ray, -1 if switch is None else switch)
-        for switch, ray in pairs
-    ]
+def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
+    """A step and the events that have come since the one before; the last one shares its row if the step ends there.
 
-
-def rows_at(step: Step, events: Sequence[LocatedEvent], pieces: bool) -> list[Row]:
-    """A step and the events that have come since the one before; the last one shares its row if the step ends there."""
+    The rows of a kink's switches and rays, where the layout has them, follow its own.
+    """
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
-    before = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
-    return [*before, Row(step, last, ACCEPTED, step.tangent), *(parts_of(last) if pieces else ())]
+    rows = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
+    rows.append(Row(step, last, ACCEPTED, step.tangent))
+    if last is not None and layout.more >= KINKS:
+        nothing, rays = np.full_like(last.u, _NAN), () if last.rays is None else last.rays
+        for switch, ray in zip_longest(last.switches, rays):
+            tangent = nothing if ray is None else ray
+            rows.append(Row(last, None, KINK_PART, tangent, -1 if switch is None else switch))
+    return rows
 
 
-def rows_of(path: Path, pieces: bool = False) -> list[Row]:
-    """Steps and located events in the order of the path; with the switches and the rays of its kinks if `pieces`."""
+def rows_of(path: Path, layout: Layout) -> list[Row]:
+    """Steps and located events in the order of the path."""
     rows, begin = list[Row](), 0
     for step in path.steps:
         end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
-        rows += rows_at(step, path.events[begin:end], pieces)
+        rows += rows_at(step, path.events[begin:end], layout)
         begin = end
     return rows
 
@@ -88,17 +90,18 @@ def rows_of(path: Path, pieces: bool = False) -> list[Row]:
 def layout_of(
     homotopy: Any,
     unknowns: int,
-    observed: Sequence[str],
+    observed: Iterable[str],
     controller: Sequence[float],
-    tangents: bool,
+    tangents: bool = False,
+    pieces: bool = False,
     early: Iterable[Record] = (),
 ) -> Layout:
     """The layout of a file that begins with a path of a homotopy, behind rows of paths that were over `early`."""
-    prefix, pieces = "homotopy_", isinstance(homotopy, SupportsPieces)
-    names = {name.removeprefix(prefix) for row in early for name in row if name.startswith(prefix)}
-    names |= set(scalars(homotopy))
-    width = max(len(controller), CONTROLLER_STATE)
-    return Layout(unknowns, width, tuple(observed), tuple(sorted(names)), tangents or pieces, pieces)
+    held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
+    said = {PARAMETER + name for name in scalars(homotopy)}
+    said |= {name for row in early for name in row if name.startswith(PARAMETER)}
+    more = ORIGINS | held | said | {OBSERVED + name for name in observed}
+    return Layout(unknowns, max(len(controller), CONTROLLER_STATE), more)
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
@@ -108,12 +111,12 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
     block |= _split("parameter", "y", [row.point.u for row in rows])
     block |= dict(zip(_FLOATS, np.array(floats).T.copy()))
     block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), np.array(integers).T)}
-    if layout.tangents:
+    if layout.more >= TANGENTS:
         block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
-    if layout.pieces:
+    if layout.more >= KINKS:
         block["switch"] = np.array([row.switch for row in rows], dtype="i4")
-    for name in layout.observed:
-        block[f"observed_{name}"] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
+    for name in layout.own(OBSERVED):
+        block[OBSERVED + name] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
     return block
 
 
@@ -151,7 +154,7 @@ def from_columns(
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
     columns = [block[name].tolist() for name in (*_FLOATS, *_INTEGERS)]
-    extras = [block[f"observed_{name}"].tolist() for name in observed]
+    extras = [block[OBSERVED + name].tolist() for name in observed]
     for i, (u, v) in enumerate(zip(points, tangents)):
         at = dict(zip((*_FLOATS, *_INTEGERS), [column[i] for column in columns]))
         seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
@@ -205,7 +208,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
         "end_error": _NAN if path.end_error is None else path.end_error,
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
-        **{f"homotopy_{name}": value for name, value in scalars(homotopy).items()},
+        **{PARAMETER + name: value for name, value in scalars(homotopy).items()},
         "homotopy": "" if homotopy is None else class_path(homotopy),
         "source": "",
     }
@@ -214,7 +217,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
 def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
     """The row of the path table as a block: each column an array of length 1."""
     block = {}
-    for column in layout.path_columns:
+    for column in layout.columns("path"):
         cell = record.get(column.name, column.missing)
         cell = text(cell, column.length) if column.length and isinstance(cell, str) else cell
         block[column.name] = np.array([cell], dtype=column.storage)

@@ -19,11 +19,10 @@ from continuation.archive.atomic import ArchiveError, new_file
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
-from continuation.archive.reader import open_archive
+from continuation.archive.reader import StoredSteps, kept_whole
 from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, LOCATED, SLOTS, check_names
 from continuation.archive.store import Store, put
-from continuation.archive.tables import StoredSteps, kept_whole
 from continuation.arguments.checks import complain, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
@@ -163,14 +162,14 @@ class PathLog:
         path = self._path(tracer)
         store = self._store or self._make(tracer, step.u.size - 1, tuple(step.observed))
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
-            stored: Any = StoredSteps(open_archive, self.file, path.number, tracer.path.steps)
+            stored: Any = StoredSteps(self.file, path.number, tracer.path.steps)
             tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
             # Not a point to resume from either: that is one whose row is there.
             return
         ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
-        for row in rows_at(step, ending[::-1], store.layout.pieces):
+        for row in rows_at(step, ending[::-1], store.layout):
             self._add(row)
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
@@ -254,7 +253,7 @@ class PathLog:
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
-        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, self._early)
+        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, early=self._early)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, *self._about)

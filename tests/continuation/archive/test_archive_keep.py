@@ -9,7 +9,7 @@ import pytest
 
 from continuation import Budget, Kind, Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, resume
-from continuation.archive.tables import StoredSteps
+from continuation.archive.reader import StoredSteps
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 

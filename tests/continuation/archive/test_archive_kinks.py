@@ -84,7 +84,7 @@ def test_a_path_that_stays_in_its_file(tmp_path):
 
 def test_windows_do_not_tear_a_kink_apart(tmp_path, monkeypatch):
     written(tmp_path / "run.h5", steps=12)
-    monkeypatch.setattr("continuation.archive.tables.ROWS_AT_ONCE", 3)
+    monkeypatch.setattr("continuation.archive.reader.ROWS_AT_ONCE", 3)
     with open_archive(tmp_path / "run.h5") as archive:
         whole, ends = archive.path(0), archive.path(0, keep="ends")
         assert [len(event.rays) for event in ends.events] == [len(event.rays) for event in whole.events]
