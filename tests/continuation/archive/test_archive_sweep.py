@@ -95,11 +95,6 @@ def test_failures_are_kept(tmp_path, expected, archived):
         paths.close()
 
 
-def test_nothing_but_failures(tmp_path):
-    with trace_many([Broken(), Broken()], archive=tmp_path / "run.h5") as paths:
-        assert [path.message for path in paths] == ["RuntimeError: no start"] * 2
-
-
 @pytest.mark.parametrize("archived", [False, True])
 def test_dask_gives_the_same_rows_as_processes_and_as_one_after_another(tmp_path, expected, archived):
     distributed = pytest.importorskip("distributed", reason="needs the extra `dask`")
@@ -162,20 +157,6 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, expected):
         assert members == sorted(members)
         check(archive, [expected[member] for member in members])
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["pool.h5", "serial.h5"]
-
-
-def test_ctrl_c_within_a_path(tmp_path):
-    def residual(y, lam):
-        if lam > 0.5:
-            raise KeyboardInterrupt
-        return y - lam
-
-    stopping = from_functions(residual, start=(np.zeros(1), 0.0), target=1.0)
-    with pytest.raises(KeyboardInterrupt):
-        trace_many([stopping, stopping], archive=tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert len(archive) == 1
-        assert archive[0].status is Status.INTERRUPTED
 
 
 def test_misspelt_options_are_refused_at_the_door(tmp_path):
@@ -330,3 +311,17 @@ def test_what_ends_badly_is_said():
     assert [path.status for path in paths] == [Status.RAISED, Status.RAISED, Status.REACHED_TARGET]
     assert paths[0].message.startswith("GeneratorExit")
     assert paths[1].message == "NoText: its text cannot be had (ValueError)"
+
+
+def test_ctrl_c_within_a_path(tmp_path):
+    def residual(y, lam):
+        if lam > 0.5:
+            raise KeyboardInterrupt
+        return y - lam
+
+    stopping = from_functions(residual, start=(np.zeros(1), 0.0), target=1.0)
+    with pytest.raises(KeyboardInterrupt):
+        trace_many([stopping, stopping], archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == 1
+        assert archive[0].status is Status.INTERRUPTED
