@@ -30,7 +30,7 @@ from continuation.archive.checks import (
 )
 from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, names, subgroup
+from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, subgroup
 from continuation.archive.schema import (
     EVENT_NAME,
     OBSERVED,
@@ -144,7 +144,7 @@ class Contents:
         # Single things first: where these are damaged that is an error, and HDF5 1.14 ends the process that lists all.
         attributes = {name: file.attrs.get(name) for name in ("schema", "library_version")}
         _ = [name in file for name in ("committed_points", "committed_paths", GROUP)]
-        present = names(file)
+        present = set(file)
         self.checked = GROUP in present
         _check_schema(self.file, attributes, present)
         self.allowance = Allowance(self.size - image.missing, self._limit)

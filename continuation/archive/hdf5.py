@@ -208,15 +208,6 @@ def member(group: Any, name: str) -> Any:
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
-def names(group: Any) -> set[str]:
-    """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
-    links = [group.id.links.get_info(raw) for raw in group.id]
-    places = [link.u for link in links if link.type == h5l.TYPE_HARD]
-    if len(set(places)) < len(places):
-        raise StructureError("something is stored once, under two names")
-    return set(group)
-
-
 def subgroup(group: Any, name: str) -> Any:
     """A group in a group; `StructureError` if it is anything else."""
     found = member(group, name)

@@ -7,7 +7,6 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
-import resource
 import weakref
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -216,10 +215,7 @@ class Store:
             stated = stated_length(head.read(HEAD_BYTES))
             if ends and stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
-        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
-        device = limited or not hasattr(os, "memfd_create")
-        nowhere = os.open(os.devnull, os.O_RDWR) if device else os.memfd_create("abandoned")
+        nowhere = os.open(os.devnull, os.O_RDWR)
         os.dup2(nowhere, descriptor, inheritable=False)
         os.close(nowhere)
         self._abandoned = True
