@@ -7,7 +7,6 @@ several. Recovery, resuming, merging, export, diagrams and the parts of a sweep 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from pathlib import Path as File
 from typing import Any
 
@@ -75,13 +74,8 @@ def share_of_path(
     rows = rows_of(path, layout)
     points = filled(to_columns(rows, 0, layout, names.index) if rows else {}, layout, "point", len(rows))
     row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
-    table = Table(layout, "point", len(rows), partial(part, points))
+    table = Table.of(layout, "point", points)
     return Share(layout, names, row_columns(row, layout), table, slice(0, len(rows)))
-
-
-def part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
-    """Rows of a column that is in memory."""
-    return columns[name][rows]
 
 
 def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:

@@ -15,7 +15,7 @@ from typing import Any
 from attrs import define, evolve
 
 from continuation.archive.atomic import new_file, own
-from continuation.archive.copies import Share, append, part, share_of, share_of_path, sourced, write_copy
+from continuation.archive.copies import Share, append, share_of, share_of_path, sourced, write_copy
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import StoredSteps, open_archive
 from continuation.archive.resume import check_homotopy
@@ -34,7 +34,7 @@ def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
     share, attributes = share_of_path(path), _attributes(path)
     share = sourced(share, attributes["identifier"], "", first=0)
-    paths = Table(share.layout, "path", 1, partial(part, share.paths))
+    paths = Table.of(share.layout, "path", share.paths)
     return dataset(share.points, paths, share.names, share.layout.unknowns, attributes)
 
 

@@ -94,7 +94,7 @@ class Image:
         """Fill the buffer."""
         view, done = memoryview(buffer).cast("B"), 0
         try:
-            while count := os.preadv(self.descriptor, [view[done:]], self.at + done):
+            while done < len(view) and (count := os.preadv(self.descriptor, [view[done:]], self.at + done)):
                 done += count
         except OSError as error:
             # Its text: a traceback that is kept would keep a buffer of HDF5's.

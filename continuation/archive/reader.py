@@ -65,7 +65,6 @@ class Archive(Sequence[Path]):
         self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
         # As they are now: the file may be read anew while it grows.
-        self._held, self._unended = contents.committed.paths, dict[str, Any]()
         self.points, self.paths = contents.table("point"), contents.table("path")
         try:
             lengths = self.paths["n_points"]
@@ -75,8 +74,9 @@ class Archive(Sequence[Path]):
                 raise contents.damaged(ValueError("its paths have other lengths than its points"))
             if rest:
                 self._first_rows = np.append(self._first_rows, self.points.size)
-                self._read_unended(rest)
-                self.paths = Table(self.layout, "path", len(self), self._fetch_path)
+                row = row_columns(self._unended(rest), self.layout)
+                columns = {name: np.concatenate((self.paths[name], row[name])) for name in self.paths}
+                self.paths = Table.of(self.layout, "path", columns)
         except BaseException:
             self.close()
             raise
@@ -190,7 +190,7 @@ class Archive(Sequence[Path]):
         ArchiveError
             If the file says something that is no status.
         """
-        return self._sensible(lambda: Status(int(self.paths["status"][index])))
+        return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     # -- views ------------------------------------------------------------------------------------------------
 
@@ -206,13 +206,12 @@ class Archive(Sequence[Path]):
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        valid = [c for c in map(unpack, self.contents.slots()) if c is not None and self._covers(c)]
+        valid = []
+        for found in filter(None, map(unpack, self.contents.slots())):
+            # The rows before it are all committed: it is written before the counters are.
+            rows = self.rows(found.path) if found.path < len(self) else slice(0, 0)
+            valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
-
-    def _covers(self, checkpoint: Checkpoint) -> bool:
-        """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
-        rows = self.rows(checkpoint.path) if checkpoint.path < len(self) else slice(0, 0)
-        return bool(rows.start + checkpoint.rows <= rows.stop)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The first homotopy's description (JSON), and its arrays."""
@@ -232,19 +231,13 @@ class Archive(Sequence[Path]):
 
     # -- within -----------------------------------------------------------------------------------------------
 
-    def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        """Of the table with the row of the path without an end, which no commit has written."""
-        values = self.contents.read("path", name, slice(min(rows.start, self._held), min(rows.stop, self._held)))
-        own = row_columns(self._unended, self.layout)[name] if rows.stop > self._held else values[:0]
-        return np.concatenate((values, own))
-
-    def _read_unended(self, rows: int) -> None:
-        """A row for the path that has none, as far as its checkpoint tells."""
-        number = self._held
+    def _unended(self, rows: int) -> dict[str, Any]:
+        """The row of the path that has none, as far as its checkpoint tells."""
+        number = self.paths.size
         member = int(self.paths["member"][-1]) + 1 if number else 0
         # An older checkpoint than the last is good to resume from, and tells the work of then.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        self._unended = row = {**row, "path": number, "member": member, "n_points": rows}
+        row |= {"path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
         if checkpoint is not None and checkpoint.path == number:
             told = checkpoint.run.get("member")
@@ -252,6 +245,7 @@ class Archive(Sequence[Path]):
             if not self.contents.checked or self.contents.committed.checkpoint == checkpoint.sequence:
                 row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
                 row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        return row
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,11 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         self.size, self._fetch = rows, fetch
         self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes(table), 1), ROWS_AT_ONCE)
         self._read: dict[str, tuple[int, np.ndarray[Any, Any]]] = {}
+
+    @classmethod
+    def of(cls, layout: Layout, table: str, columns: Mapping[str, Any]) -> Table:
+        """A table in memory."""
+        return cls(layout, table, len(next(iter(columns.values()))), partial(_part, columns))
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self.columns:
@@ -93,6 +99,10 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         """Read everything."""
         for name in self.columns:
             self[name]
+
+
+def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
+    return columns[name][rows]
 
 
 def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:

@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from itertools import pairwise
+from itertools import groupby, pairwise
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
@@ -99,25 +99,27 @@ def gather(files: Sequence[File], target: File) -> None:
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
-        shares = [share_of(archives[i], k, k + 1) for _, i, k in places]
+        # Neighbours that are neighbours in their part, too, are read and written together.
+        runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
+        shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
         head, made = leading(shares), []
-        for number, share in enumerate(shares):
+        for run, share in zip(runs, shares):
             # The source is not the part, which goes.
             share.paths["source"][:] = b""
-            whole = sourced(share, str(head.attributes["identifier"]), target.name, first=number)
+            whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
             made.append(_of_size(whole, head.layout.unknowns, target))
-        put(target, partial(write_copy, made, what=f"a sweep of {len(shares)} paths"))
+        put(target, partial(write_copy, made, what=f"a sweep of {len(places)} paths"))
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:
-    """The share; if its paths have another number of unknowns, what they would be in one file: refused."""
+    """The share; paths with another number of unknowns are what they would be in one file: refused."""
     found = share.layout.unknowns
     if found == unknowns or not share.size:
         return share
     reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
-    paths = dict(share.paths)
+    paths, had = dict(share.paths), share.paths["n_points"] > 0
     for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
-        paths[name] = np.full_like(paths[name], value)
+        paths[name] = np.where(had, np.array(value, paths[name].dtype), paths[name])
     return evolve(share, paths=paths, rows=slice(0, 0))
 
 
