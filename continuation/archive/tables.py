@@ -95,11 +95,6 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
             self._read[name] = start, held
         return held[rows.start - start : rows.stop - start]
 
-    def load(self) -> None:
-        """Read everything."""
-        for name in self.columns:
-            self[name]
-
 
 def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
     return columns[name][rows]

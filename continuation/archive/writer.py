@@ -106,7 +106,6 @@ class PathLog:
     _open: OpenPath | None = None
     _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
     _about: tuple[str, Mapping[str, Any]] = ("", {})
-    _paths = _sequence = 0
     _known: tuple[Any, Any] = (None, None)
     """The file's first homotopy, and what says in a checkpoint how to make it."""
     _commit_at = 0.0
@@ -147,8 +146,11 @@ class PathLog:
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._early = store.file, store, (points, []), []
-        log._whole, log._paths, log._sequence = whole, checkpoint.path, checkpoint.sequence
-        log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
+        log._whole, log._known, log.member = (
+            whole,
+            (tracer.homotopy, checkpoint.run["homotopy"]),
+            checkpoint.run["member"],
+        )
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
         log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, None, mark, mark)
@@ -200,7 +202,6 @@ class PathLog:
         if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
             row |= {"path": path.number, "n_points": self._rows[0] + len(self._rows[1]) - path.first}
             row["member"] = path.number if self.member is None else self.member
-            self._paths = path.number + 1
             if self._store is None:
                 self._early.append(row)
             else:
@@ -236,7 +237,8 @@ class PathLog:
         if path is None:
             if self._closed:
                 raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
-            self._open = path = OpenPath(tracer, self._paths, self._rows[0])
+            number = len(self._early) if self._store is None else self._store.committed.paths
+            self._open = path = OpenPath(tracer, number, self._rows[0])
             self._commit_at = time.monotonic() + self._limits.seconds
         if path.tracer is not tracer:
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
@@ -276,7 +278,8 @@ class PathLog:
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
-            checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
+            sequence = store.committed.checkpoint + 1
+            checkpoints = {sequence % SLOTS: self._checkpoint(path, path.resume, sequence)}
         if row is not None and row["path"] >= store.committed.paths:
             row["source"] = f"{store.identifier} {row['path']} {self.file.name}"
             paths = row_columns(row, store.layout)
@@ -289,14 +292,13 @@ class PathLog:
         self._rows = (start + len(rows), [])
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
-        self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
 
-    def _checkpoint(self, path: OpenPath, mark: Mark) -> bytes:
+    def _checkpoint(self, path: OpenPath, mark: Mark, sequence: int) -> bytes:
         if path.run is None:
             homotopy, described = self._known
             known = described if homotopy is path.tracer.homotopy else None
             path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
         state, counts, rows = mark
         named, seconds = dict(zip(COUNT_NAMES, counts)), path.seconds + path.tracer.seconds
-        return pack(Checkpoint(self._sequence + 1, path.number, rows, state, named, seconds, {}), path.run)
+        return pack(Checkpoint(sequence, path.number, rows, state, named, seconds, {}), path.run)
