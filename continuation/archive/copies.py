@@ -72,7 +72,7 @@ def share_of_path(
     layout = layout_of(homotopy, unknowns, observed, controller, tangents, pieces)
     names = list(dict.fromkeys(event.name for event in path.events))
     rows = rows_of(path, layout)
-    points = filled(to_columns(rows, 0, layout, names.index) if rows else {}, layout, "point", len(rows))
+    points = to_columns(rows, 0, layout, names.index) if rows else filled({}, layout, "point", 0)
     row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
     table = Table.of(layout, "point", points)
     return Share(layout, names, row_columns(row, layout), table, slice(0, len(rows)))

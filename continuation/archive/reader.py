@@ -19,7 +19,7 @@ from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
 from continuation.archive.rows import from_columns, record_of, row_columns
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, OBSERVED
-from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset
+from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset, kept_whole
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -32,13 +32,6 @@ _T = TypeVar("_T")
 
 _STEP_BYTES, _COPIES = 1400, 6
 """Of a step that is made of a row: its own and its segment's objects, and copies of its point and tangent."""
-
-
-def kept_whole(keep: str) -> bool:
-    """Whether ``"all"`` steps stay in memory, or the ``"ends"`` alone; `ValueError` for anything else."""
-    if keep not in ("all", "ends"):
-        raise complain(ValueError, "keep", '"all" or "ends"', keep)
-    return keep == "all"
 
 
 class Archive(Sequence[Path]):
@@ -110,10 +103,6 @@ class Archive(Sequence[Path]):
             0 is the first; from the end where it is negative.
         keep : str
             "all" steps in memory, or its "ends".
-
-        Returns
-        -------
-        Path
 
         Raises
         ------
@@ -192,8 +181,6 @@ class Archive(Sequence[Path]):
         """
         return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
-    # -- views ------------------------------------------------------------------------------------------------
-
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
         return dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
@@ -201,8 +188,6 @@ class Archive(Sequence[Path]):
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
         return dataframe(self.points)
-
-    # -- for resuming and copying -----------------------------------------------------------------------------
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""

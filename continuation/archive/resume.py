@@ -17,8 +17,9 @@ import numpy as np
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
-from continuation.archive.reader import Archive, kept_whole, open_archive
+from continuation.archive.reader import Archive, open_archive
 from continuation.archive.store import Store, put
+from continuation.archive.tables import kept_whole
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array

@@ -10,6 +10,7 @@ import numpy as np
 
 from continuation.archive.atomic import ArchiveError
 from continuation.archive.schema import COMPONENT, EVENT_NAME, Layout
+from continuation.arguments.checks import complain
 
 Fetch = Callable[[str, slice], np.ndarray[Any, Any]]
 Block = dict[str, Any]
@@ -94,6 +95,13 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
                 held = self._fetch(name, rows)
             self._read[name] = start, held
         return held[rows.start - start : rows.stop - start]
+
+
+def kept_whole(keep: str) -> bool:
+    """Whether ``"all"`` steps stay in memory, or the ``"ends"`` alone; `ValueError` for anything else."""
+    if keep not in ("all", "ends"):
+        raise complain(ValueError, "keep", '"all" or "ends"', keep)
+    return keep == "all"
 
 
 def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
