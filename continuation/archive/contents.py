@@ -280,20 +280,20 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
     complete = {"committed_points", "committed_paths"} <= present and (schema in (UNCHECKED, None) or GROUP in present)
     kind, _, version = str(schema).rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
-    if schema is None and not complete:
-        what = "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)"
-    elif kind != ours or not (version.isdecimal() and len(version) < 9):
-        what = f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}"
-    elif int(version) > int(newest):
-        what = (
-            f"has the newer schema {schema}, this library reads up to {SCHEMA}; "
-            f"upgrade to continuation {str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
-        )
-    elif not complete:
-        what = "truncated, its writer ended before the structure was complete"
-    else:
-        return
-    raise ArchiveError(f"{name}: {what}")
+    known = kind == ours and version.isdecimal() and len(version) < 9
+    newer = (
+        f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
+        f"{str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
+    )
+    refused = {
+        "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)": schema is None and not complete,
+        f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}": not known,
+        newer: known and int(version) > int(newest),
+        "truncated, its writer ended before the structure was complete": not complete,
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise ArchiveError(f"{name}: {what}")
 
 
 def _layout(file: Any, present: set[str], allowance: Allowance) -> Layout:

@@ -151,22 +151,24 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
     status, checkpoint = source.status(last), source.checkpoint()
-    if status not in RESUMABLE:
-        said = f"path {last} has ended ({status.name}), there is nothing to resume"
-    elif status is Status.BUDGET_EXHAUSTED and "budget" not in options:
-        said = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
-    elif checkpoint is not None and checkpoint.path == last:
-        return checkpoint
-    elif not source.paths["n_points"][last]:
-        said = f"path {last} has no state to resume from; trace it again"
-    else:
-        writer = str(source.attributes.get("library_version", "unknown"))
-        said = (
-            f"path {last} was written by version {writer:.20} and has no state that version {__version__} resumes "
-            f"(a state resumes within its major version); "
-            f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
-        )
-    raise ArchiveError(f"{source.file}: {said}")
+    writer, none = source.attributes.get("library_version", "unknown"), checkpoint is None or checkpoint.path != last
+    other = (
+        f"path {last} was written by version {writer!s:.20} and has no state that version {__version__} resumes "
+        f"(a state resumes within its major version); "
+        f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+    )
+    spent = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
+    refused = {
+        f"path {last} has ended ({status.name}), there is nothing to resume": status not in RESUMABLE,
+        spent: status is Status.BUDGET_EXHAUSTED and "budget" not in options,
+        f"path {last} has no state to resume from; trace it again": none and not source.paths["n_points"][last],
+        other: none,
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise ArchiveError(f"{source.file}: {what}")
+    assert checkpoint is not None
+    return checkpoint
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
