@@ -95,35 +95,6 @@ def test_failures_are_kept(tmp_path, expected, archived):
         paths.close()
 
 
-@pytest.mark.parametrize("archived", [False, True])
-def test_dask_gives_the_same_rows_as_processes_and_as_one_after_another(tmp_path, expected, archived):
-    distributed = pytest.importorskip("distributed", reason="needs the extra `dask`")
-    homotopies = [*HOMOTOPIES, Broken()]
-    # Workers are threads here: with processes of their own the same homotopies and files would be pickled.
-    with (
-        distributed.LocalCluster(2, threads_per_worker=1, processes=False, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-        client.get_executor() as executor,
-    ):
-        paths = trace_many(homotopies, executor, tmp_path / "dask.h5" if archived else None)
-    check(paths[: len(HOMOTOPIES)], expected)
-    assert (paths[-1].status, paths[-1].message) == (Status.RAISED, "RuntimeError: no start")
-    if archived:
-        assert [entry.name for entry in tmp_path.iterdir()] == ["dask.h5"]
-        with (
-            ProcessPoolExecutor(2) as executor,
-            trace_many(homotopies, executor, tmp_path / "processes.h5") as others,
-            trace_many(homotopies, archive=tmp_path / "serial.h5") as serial,
-        ):
-            for column in ("member", "status", "factorizations", "homotopy_imperfection", "message"):
-                for other in (others, serial):
-                    np.testing.assert_array_equal(paths.paths[column], other.paths[column])
-            for name in ("parameter", "y", "arclength"):
-                assert np.array_equal(paths.points[name], others.points[name])
-                assert np.array_equal(paths.points[name], serial.points[name])
-        paths.close()
-
-
 def test_a_worker_that_dies_costs_its_own_paths_only(tmp_path):
     with ProcessPoolExecutor(1) as executor:
         paths = trace_many([*HOMOTOPIES[:3], Deadly()], executor, tmp_path / "run.h5")
