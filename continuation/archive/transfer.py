@@ -34,9 +34,7 @@ from continuation.path import Path
 from continuation.status import Kind, Status
 
 
-def merge(
-    files: Iterable[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
-) -> File:
+def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> File:
     """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
 
     Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
@@ -48,14 +46,11 @@ def merge(
     files : iterable of path
     target : path
         Must not exist.
-    compression : int
-        Level of gzip, 0 to 9.
-    title : str
 
     Raises
     ------
     ValueError
-        If there are no files, or gzip does not know the level.
+        If there are no files.
     ArchiveError
         If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
         `target` exists.
@@ -65,21 +60,14 @@ def merge(
     files = list(files)
     if not files:
         raise ValueError("files: expected at least one archive, found none")
-    _check_level(compression)
     whole = new_file("target", target)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         shares = [share_of(archive) for archive in archives]
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         _refuse_duplicates(archives, shares)
-        what, more = f"merged from {len(archives)} files: {names}", {"title": title} if title else {}
-        put(whole, partial(write_copy, shares, what=what, more=more, compression=compression))
+        put(whole, partial(write_copy, shares, what=f"merged from {len(archives)} files: {names}"))
     return whole
-
-
-def _check_level(compression: Any) -> None:
-    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
-        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 
 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
@@ -150,7 +138,8 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     ArchiveError
         If `file` is no archive, or a target exists.
     """
-    _check_level(compression)
+    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
+        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
     name = as_file("target", target)
     with open_archive(file) as archive:
         if name.suffix in (".nc", ".nc4", ".h5"):

@@ -144,9 +144,8 @@ def test_merge(tmp_path):
         trace(FreudensteinRoth(), archive=PathLog(files[1], tangents=True), budget=Budget(steps=7)),
         trace(ExponentialCosine(2), archive=files[2]),
     ]
-    with open_archive(merge(files, tmp_path / "all.h5", title="all of them", compression=5)) as archive:
+    with open_archive(merge(files, tmp_path / "all.h5")) as archive:
         check(archive, paths)
-        assert archive.attributes["title"] == "all of them"
         assert "merged from 3 files: 0.h5, 1.h5, 2.h5" in archive.attributes["history"]
         assert np.array_equal(archive.paths["homotopy_n"], [np.nan, np.nan, 2.0], equal_nan=True)
         assert np.array_equal(archive[1].tangents, paths[1].tangents)
