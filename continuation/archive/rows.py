@@ -33,13 +33,8 @@ from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.segment import hermite
 
-_FLOATS = (
-    "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",
-)  # fmt: skip
-_INTEGERS = {
-    "orientation": "i1", "kind": "i1", "role": "i1",
-    "event_index": "i2", "corrector_iterations": "i2", "rejections": "i2",
-}  # fmt: skip
+_FLOATS = ("arclength", "step_length", "residual_norm", "contraction", "distance", "angle")
+_INTEGERS = {"orientation": "i1", "kind": "i1", "corrector_iterations": "i2", "rejections": "i2"}
 _SHARE, _NAN = "parameter_share", math.nan
 
 Record = dict[str, Any]
@@ -106,11 +101,19 @@ def layout_of(
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
     """The block of columns for some rows of one path; `number` numbers an event's name."""
-    floats, integers = zip(*[_values(row, number) for row in rows])
-    block: dict[str, Any] = {"path_index": np.full(len(rows), path, dtype="i4")}
-    block |= _split("parameter", "y", [row.point.u for row in rows])
-    block |= dict(zip(_FLOATS, np.array(floats).T.copy()))
-    block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), np.array(integers).T)}
+    points, events = [row.point for row in rows], [row.event for row in rows]
+    block: dict[str, Any] = {
+        "path_index": np.full(len(rows), path, dtype="i4"),
+        "role": np.array([row.role for row in rows], dtype="i1"),
+        "event_index": np.array([NO_EVENT if e is None else number(e.name) for e in events], dtype="i2"),
+        "event_monitor": np.array([_NAN if e is None else e.monitor for e in events]),
+        _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
+        **_split("parameter", "y", [point.u for point in points]),
+    }
+    # Of what an event has not, the number is missing.
+    block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
+    block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
+    block["orientation"][block["role"] == KINK_PART] = 0
     if layout.more >= TANGENTS:
         block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
     if layout.more >= KINKS:
@@ -126,20 +129,6 @@ def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
     return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
 
 
-def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    at = row.point
-    index, monitor = (NO_EVENT, _NAN) if row.event is None else (number(row.event.name), row.event.monitor)
-    if isinstance(at, Step):
-        return (
-            (at.arclength, at.step_length, at.residual_norm, monitor, at.contraction, at.distance, at.angle, at.share),
-            (at.orientation, at.kind, row.role, index, at.corrector_iterations, at.rejections),
-        )
-    return (
-        (at.arclength, _NAN, at.residual_norm, monitor, _NAN, _NAN, _NAN, _NAN),
-        (at.orientation if row.role == LOCATED else 0, at.kind, row.role, index, -1, -1),
-    )
-
-
 def from_columns(
     block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str], first: int = 0
 ) -> tuple[list[Step], list[LocatedEvent]]:
@@ -153,10 +142,11 @@ def from_columns(
     steps: list[Step] = []
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
-    columns = [block[name].tolist() for name in (*_FLOATS, *_INTEGERS)]
+    fields = (*_FLOATS, *_INTEGERS, "event_index", "role", "event_monitor", _SHARE)
+    columns = [block[name].tolist() for name in fields]
     extras = [block[OBSERVED + name].tolist() for name in observed]
     for i, (u, v) in enumerate(zip(points, tangents)):
-        at = dict(zip((*_FLOATS, *_INTEGERS), [column[i] for column in columns]))
+        at = dict(zip(fields, [column[i] for column in columns]))
         seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
         number, role, monitor, share = (at.pop(name) for name in ("event_index", "role", "event_monitor", _SHARE))
         if number != NO_EVENT:
