@@ -49,7 +49,11 @@ def beside(target: File) -> Iterator[File]:
 
     Raises `ArchiveError` for whatever the operating system says while it is written.
     """
-    _tidy(target)
+    # What killed writers of the same name left was never anything but a copy.
+    for left in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > _ABANDONED and not is_held(left):
+                left.unlink()
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         yield part
@@ -64,10 +68,16 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name in the same directory, in one step; `replace` takes the place of an old one.
+    """Give a complete file its name in the same directory, in one step.
 
-    Raises `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
+    `replace`: It takes the place of an old file, whose mode it gets, and whose owner where that is allowed. Raises
+    `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
     """
+    if replace and target.exists():
+        status = target.stat()
+        with suppress(PermissionError):
+            os.chown(part, status.st_uid, status.st_gid)
+        part.chmod(status.st_mode & 0o7777)
     try:
         (os.replace if replace else os.link)(part, target)
     except FileExistsError:
@@ -85,22 +95,6 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
-
-
-def like(part: File, original: File) -> None:
-    """Give a new file the mode of the one that it replaces, and its owner where that is allowed."""
-    status = original.stat()
-    with suppress(PermissionError):
-        os.chown(part, status.st_uid, status.st_gid)
-    part.chmod(status.st_mode & 0o7777)
-
-
-def _tidy(target: File) -> None:
-    """Remove what killed writers of the same name left beside it; a part of theirs was never anything but a copy."""
-    for part in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
-        with suppress(OSError):
-            if time.time() - part.stat().st_mtime > _ABANDONED and not is_held(part):
-                part.unlink()
 
 
 def as_file(argument: str, value: Any) -> File:
@@ -126,12 +120,15 @@ def check_new(file: File) -> None:
         raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
         raise exists(file)
-    if not file.parent.is_dir():
-        raise ArchiveError(f"{file}: there is no directory {file.parent}")
-    if len(file.name.encode(errors="surrogatepass")) > _NAME_BYTES:
-        raise ArchiveError(f"{file}: the name is too long, expected at most {_NAME_BYTES} bytes")
-    if not os.access(file.parent, os.W_OK):
-        raise ArchiveError(f"{file}: the directory {file.parent} may not be written")
+    refused = {
+        f"there is no directory {file.parent}": not file.parent.is_dir(),
+        f"the name is too long, expected at most {_NAME_BYTES} bytes": len(file.name.encode(errors="surrogatepass"))
+        > _NAME_BYTES,
+        f"the directory {file.parent} may not be written": not os.access(file.parent, os.W_OK),
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise ArchiveError(f"{file}: {what}")
 
 
 _NAME_BYTES = 255 - len("..xxxxxxxx.part")

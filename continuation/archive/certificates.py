@@ -17,7 +17,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, like, own, publish, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, own, publish, short
 from continuation.archive.codec import read_arrays, write_arrays
 from continuation.archive.contents import FAULTS
 from continuation.archive.hdf5 import StructureError, subgroup
@@ -59,15 +59,13 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
                 group = copy.require_group(GROUP)
                 if str(number) in group:
                     del group[str(number)]
-                _write(group.create_group(str(number)), proof)
-            like(part, name)
+                made = group.create_group(str(number))
+                made.attrs["summary"] = str(proof)[:1000]
+                columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in NAMES}
+                write_arrays(
+                    made, {name: values.astype("i8" if name == "slabs" else "f8") for name, values in columns.items()}
+                )
             publish(part, name, replace=True)
-
-
-def _write(group: Any, proof: Proof) -> None:
-    group.attrs["summary"] = str(proof)[:1000]
-    columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in NAMES}
-    write_arrays(group, {name: values.astype("i8" if name == "slabs" else "f8") for name, values in columns.items()})
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:

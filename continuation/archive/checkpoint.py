@@ -88,7 +88,7 @@ def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any]
     own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
     if own:
         # Without the homotopy's own events, which a new tracer adds again in the same order.
-        first = 0 if watched[0] is own[0] or watched[0] == own[0] else 1
+        first = 0 if own[0] in watched[:1] else 1
         values["events"] = watched[first + len(own) :]
     options = {name: _described(value) for name, value in values.items()}
     return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}

@@ -22,10 +22,9 @@ from attrs import astuple, frozen
 GROUP = "checks"
 RECORDS = "commits"
 PLACES = 2
-_RECORD = struct.Struct("<7QI")
-RECORD_BYTES = _RECORD.size
+RECORD_BYTES = 7 * 8 + 4
 _BOUNDS = struct.Struct("<QQ")
-_STOP = 2
+STOP = 2
 """Words of a row that hold the end of its block."""
 
 _LARGE = 1 << 16
@@ -52,13 +51,8 @@ class Committed:
 
     def pack(self) -> Array:
         """As bytes, with a CRC-32."""
-        body = _RECORD.pack(*astuple(self), 0)[:-4]
-        return np.frombuffer(body + struct.pack("<I", zlib.crc32(body)), dtype="u1")
-
-
-def _unpack(raw: bytes) -> Committed | None:
-    *numbers, crc = _RECORD.unpack(raw)
-    return Committed(*numbers) if crc == zlib.crc32(raw[:-4]) else None
+        body = np.array(astuple(self), "<u8").tobytes()
+        return np.frombuffer(body + struct.pack("<I", zlib.crc32(body)), "u1")
 
 
 def blank() -> Array:
@@ -68,15 +62,17 @@ def blank() -> Array:
 
 def latest(records: Array) -> Committed:
     """The last commit that was completed; `DamageError` if the records do not tell."""
-    found = [_unpack(record.tobytes()) for record in records]
-    last = max((one for one in found[PLACES:] if one is not None), key=lambda one: one.sequence, default=None)
-    # If the other place is torn or damaged, the intent tells whether a later commit had come so far as to write there.
-    intent = None if last is None else found[(last.sequence + 1) % PLACES]
-    if last is not None and None not in found[PLACES:]:
-        return last
-    if last is None or intent is None:
+    sound = [zlib.crc32(raw[:-4]) == int.from_bytes(raw[-4:].tobytes(), "little") for raw in records]
+    found = [Committed(*np.frombuffer(raw[:-4], "<u8").tolist()) if ok else None for raw, ok in zip(records, sound)]
+    commits = [one for one in found[PLACES:] if one is not None]
+    last = max(commits, key=lambda one: one.sequence, default=None)
+    if last is not None and len(commits) < PLACES:
+        # The other is torn or damaged: the intent tells whether a later commit had come so far as to write there.
+        intent = found[(last.sequence + 1) % PLACES]
+        last = None if intent is None else max(last, intent, key=lambda one: one.sequence)
+    if last is None:
         raise DamageError("the records of what was committed are damaged")
-    return intent if intent.sequence > last.sequence else last
+    return last
 
 
 def digest(values: Any, seed: int = 0) -> int:
@@ -96,11 +92,6 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
     return np.array([stop & 0xFFFFFFFF, stop >> 32, *sums], dtype="u4")
 
 
-def width(columns: Sequence[str]) -> int:
-    """Words of a row of checksums."""
-    return _STOP + len(columns)
-
-
 class Ledger:
     """The checksums of one table of `size` rows, as read from a file: what `seal` returned, one row a block.
 
@@ -117,7 +108,7 @@ class Ledger:
         elif bounds[-1] != size or wrong.size:
             raise DamageError("the checksums are damaged")
         self.bounds, self.rows = bounds, int(bounds[-1])
-        self._sums, self._place = rows[:, _STOP:], {name: k for k, name in enumerate(sorted(columns))}
+        self._sums, self._place = rows[:, STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
         """Rows of a column, checked; `fetch` reads them, in whole blocks.

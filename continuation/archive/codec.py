@@ -13,8 +13,10 @@ from types import BuiltinFunctionType, FunctionType
 from typing import Any, Literal, Protocol, runtime_checkable
 
 import attrs
+import h5py
 import numpy as np
 import scipy.sparse as sp
+from h5py import h5a, h5s, h5t
 
 from continuation.archive.checks import DamageError, digest
 from continuation.archive.hdf5 import Allowance, dataset
@@ -44,10 +46,20 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
     return json.dumps(tree), arrays
 
 
+def set_attributes(thing: Any, attributes: Mapping[str, Any]) -> None:
+    """New attributes of a group or dataset, texts of any length; h5py's own way costs several times as much."""
+    kind, one = h5t.py_create(h5py.string_dtype(), logical=True), h5s.create(h5s.SCALAR)
+    for name, value in attributes.items():
+        if isinstance(value, str):
+            h5a.create(thing.id, name.encode(), kind, one).write(np.array(value.encode(), dtype=object))
+        else:
+            thing.attrs[name] = value
+
+
 def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
     """Put them into a new file."""
     group = file.create_group(GROUP)
-    group.attrs.update({"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
+    set_attributes(group, {"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
     write_arrays(group, arrays)
 
 
@@ -55,7 +67,7 @@ def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
     """Arrays in a group, each with a checksum of its own."""
     for name, array in arrays.items():
         stored = group.create_dataset(name, data=array)
-        stored.attrs.update({"order": order(array), "checksum": np.uint32(digest(array))})
+        set_attributes(stored, {"order": order(array), "checksum": np.uint32(digest(array))})
 
 
 def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, Any]:
@@ -133,28 +145,25 @@ def encode(value: Any, place: Place, name: str = "value") -> Any:
     function nor `SupportsArchive`.
     """
     value = value.item() if isinstance(value, np.generic) else value
-    if value is None or isinstance(value, (str, bool, int, float)):
-        return value
-    if isinstance(value, np.ndarray):
-        if value.dtype.kind not in "fiubc":
+    match value:
+        case None | str() | bool() | int() | float():
+            return value
+        case np.ndarray() if value.dtype.kind in "fiubc":
+            return {"array": place(name, value)}
+        case np.ndarray():
             raise UnstorableError(f"{name} is an array of {value.dtype}")
-        return {"array": place(name, value)}
-    if isinstance(value, (tuple, list)):
-        items = [encode(item, place, f"{name}_{i}") for i, item in enumerate(value)]
-        return {"list" if isinstance(value, list) else "tuple": items}
-    if isinstance(value, Mapping):
-        return {"dict": {str(key): encode(item, place, str(key)) for key, item in value.items()}}
-    if sp.issparse(value):
-        return _encode_sparse(value, place, name)
-    if isinstance(value, (FunctionType, BuiltinFunctionType, type)):
-        return {"function": path_of(value)}
+        case tuple() | list():
+            items = [encode(item, place, f"{name}_{i}") for i, item in enumerate(value)]
+            return {"list" if isinstance(value, list) else "tuple": items}
+        case Mapping():
+            return {"dict": {str(key): encode(item, place, str(key)) for key, item in value.items()}}
+        case FunctionType() | BuiltinFunctionType() | type():
+            return {"function": path_of(value)}
+        case _ if sp.issparse(value):
+            matrix = value if value.format in ("csr", "csc") else value.tocsr()
+            parts = {part: place(f"{name}_{part}", getattr(matrix, part)) for part in ("data", "indices", "indptr")}
+            return {"sparse": matrix.format, "shape": [int(n) for n in matrix.shape], **parts}
     return _encode_object(value, place, name)
-
-
-def _encode_sparse(value: Any, place: Place, name: str) -> Any:
-    matrix = value if value.format in ("csr", "csc") else value.tocsr()
-    parts = {part: place(f"{name}_{part}", getattr(matrix, part)) for part in ("data", "indices", "indptr")}
-    return {"sparse": matrix.format, "shape": [int(n) for n in matrix.shape], **parts}
 
 
 def _encode_object(value: Any, place: Place, name: str) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -21,30 +20,31 @@ from continuation.archive.checks import (
     PLACES,
     RECORD_BYTES,
     RECORDS,
+    STOP,
     Committed,
     DamageError,
     Ledger,
     digest,
     latest,
     of_attributes,
-    width,
 )
 from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, names, subgroup
+from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, subgroup
 from continuation.archive.schema import (
     EVENT_NAME,
-    KINK_COLUMNS,
-    ORIGIN_COLUMNS,
+    OBSERVED,
+    OPTIONAL,
+    PARAMETER,
     RESUME,
     SCHEMA,
     SLOTS,
-    TANGENT_COLUMNS,
     UNCHECKED,
     Column,
     Layout,
     check_names,
 )
+from continuation.archive.tables import Table
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
@@ -55,6 +55,8 @@ FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds for which a file that is being written may seem to be damaged, since its writer is in the middle of
 something, and between two looks at it."""
+
+TABLES = ("point", "path")
 
 
 class Contents:
@@ -142,24 +144,26 @@ class Contents:
         # Single things first: where these are damaged that is an error, and HDF5 1.14 ends the process that lists all.
         attributes = {name: file.attrs.get(name) for name in ("schema", "library_version")}
         _ = [name in file for name in ("committed_points", "committed_paths", GROUP)]
-        present = names(file)
+        present = set(file)
         self.checked = GROUP in present
         _check_schema(self.file, attributes, present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
         self.layout = _layout(file, present, self.allowance)
-        columns = {"point": self.layout.point_columns, "path": self.layout.path_columns}
-        self._columns = {table: {column.name: column for column in held} for table, held in columns.items()}
-        self.committed, self.cut_off = self._read_committed(), {"point": 0, "path": 0}
-        if self.checked:
-            point, path = (self._read_ledger(table) for table in ("point", "path"))
-            self.committed = evolve(self.committed, points=point, paths=path)
-        for table, rows in (("point", self.committed.points), ("path", self.committed.paths)):
-            held = columns[table]
-            row = sum(column.storage.itemsize * math.prod(self.layout.width(column)) for column in held)
-            self.allowance.take(f"the table of {table}s", rows * row + len(held) * COLUMN_BYTES)
+        self._columns = {table: {column.name: column for column in self.layout.columns(table)} for table in TABLES}
+        self.committed, self.cut_off = self._read_committed(), dict.fromkeys(TABLES, 0)
+        for table in TABLES:
+            rows = self._read_ledger(table) if self.checked else getattr(self.committed, f"{table}s")
+            self.committed = evolve(self.committed, **{f"{table}s": rows})
+            held = rows * self.layout.row_bytes(table) + len(self._columns[table]) * COLUMN_BYTES
+            self.allowance.take(f"the table of {table}s", held)
         self.attributes: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(file.attrs), {})
         if self.checked and of_attributes(self.attributes) != int(subgroup(file, GROUP).attrs["attributes"]):
             self._flaw("its attributes are not what was written")
+            # So that they can be written again, whatever happened to their text.
+            plain = {
+                k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in self.attributes.items()
+            }
+            self.attributes = {name.encode(errors="replace").decode(): value for name, value in plain.items()}
         self.event_names = self._read_names()
 
     def _read_committed(self) -> Committed:
@@ -178,41 +182,40 @@ class Contents:
     def _read_ledger(self, table: str) -> int:
         """The checksums of a table; how many of its rows they cover, which is all but where the file is cut off."""
         columns, rows = list(self._columns[table]), getattr(self.committed, f"{table}s")
-        blocks = getattr(self.committed, f"{table}_blocks")
-        checks, shape = subgroup(self.root, GROUP), (None, width(columns))
-        sums = self._leading(dataset(checks, table, np.dtype("u4"), shape, self.allowance, blocks), blocks)
+        blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
+        sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
         self._ledgers[table] = ledger = Ledger(sums, columns, None if self._salvage else rows)
         self.cut_off[table] = rows - ledger.rows
         if ledger.rows != rows:
             self._flaw(f"the checksums of {rows - ledger.rows} {table}s are missing")
         return ledger.rows
 
-    def _leading(self, found: Any, count: int) -> Array:
+    def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
         """The first rows of a dataset; of a file that is cut off those chunks that HDF5 can still find."""
+        found = dataset(group, name, kind, shape, self.allowance, count)
         step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
-        parts = [np.empty((0, *found.shape[1:]), found.dtype)]
-        for start in range(0, count, step):
-            rows = slice(start, min(start + step, count))
-            part = self._or_else("", lambda rows=rows: found[rows], None)  # type: ignore[misc]
-            if part is None:
-                break
-            parts.append(part)
-        return np.concatenate(parts)
+        parts: list[Array | None] = [np.empty((0, *found.shape[1:]), found.dtype)]
+        while parts[-1] is not None and (len(parts) - 1) * step < count:
+            rows = slice((len(parts) - 1) * step, min(len(parts) * step, count))
+            parts.append(self._or_else("", partial(found.__getitem__, rows), None))
+        return np.concatenate([part for part in parts if part is not None])
 
     def _read_names(self) -> tuple[str, ...]:
         # Raw bytes: h5netcdf, netCDF4 and h5py each decode text in their own way, HDF5 only stores it.
         count = self.committed.names if self.checked else self.root[EVENT_NAME.name].shape[0]
-        stored = dataset(self.root, EVENT_NAME.name, EVENT_NAME.storage, (None,), self.allowance, count)
-        raw = self._leading(stored, count).astype(EVENT_NAME.storage)
+        raw = self._leading(self.root, EVENT_NAME.name, EVENT_NAME.storage, (None,), count).astype(EVENT_NAME.storage)
         if self.checked:
-            sums = dataset(subgroup(self.root, GROUP), "event", np.dtype("u4"), (None,), self.allowance, count)
-            found = [digest(raw[k : k + 1]) for k in range(len(raw))]
-            if len(raw) < count or found != self._leading(sums, count).tolist():
+            sums = self._leading(subgroup(self.root, GROUP), "event", np.dtype("u4"), (None,), count)
+            if len(raw) < count or [digest(raw[k : k + 1]) for k in range(len(raw))] != sums.tolist():
                 self._flaw("the names of its events are not what was written")
         named = [name.decode(errors="replace") for name in raw]
         return (*named, *(f"event {k}, whose name is lost" for k in range(len(named), count)))
 
     # -- tables -----------------------------------------------------------------------------------------------
+
+    def table(self, name: str) -> Table:
+        """The committed rows of the table ``"point"`` or ``"path"``, read when asked for, and checked."""
+        return Table(self.layout, name, getattr(self.committed, f"{name}s"), partial(self.read, name))
 
     def read(self, table: str, name: str, rows: slice) -> Array:
         """Committed rows of a column of the table ``"point"`` or ``"path"``, checked."""
@@ -252,8 +255,7 @@ class Contents:
         """The two checkpoints, as far as they are there; each says itself whether it is whole."""
 
         def read() -> list[bytes]:
-            shape = (SLOTS, None)
-            found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), shape, self.allowance)
+            found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
             return [slot.tobytes() for slot in found[()]]
 
         return self._guarded(read) if RESUME in set(self.root) else []
@@ -278,33 +280,27 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
     complete = {"committed_points", "committed_paths"} <= present and (schema in (UNCHECKED, None) or GROUP in present)
     kind, _, version = str(schema).rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
-    if schema is None and not complete:
-        what = "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)"
-    elif kind != ours or not (version.isdecimal() and len(version) < 9):
-        what = f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}"
-    elif int(version) > int(newest):
-        what = (
-            f"has the newer schema {schema}, this library reads up to {SCHEMA}; "
-            f"upgrade to continuation {str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
-        )
-    elif not complete:
-        what = "truncated, its writer ended before the structure was complete"
-    else:
-        return
-    raise ArchiveError(f"{name}: {what}")
+    known = kind == ours and version.isdecimal() and len(version) < 9
+    newer = (
+        f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
+        f"{str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
+    )
+    refused = {
+        "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)": schema is None and not complete,
+        f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}": not known,
+        newer: known and int(version) > int(newest),
+        "truncated, its writer ended before the structure was complete": not complete,
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise ArchiveError(f"{name}: {what}")
 
 
 def _layout(file: Any, present: set[str], allowance: Allowance) -> Layout:
-    def named(prefix: str) -> tuple[str, ...]:
-        found = tuple(sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix)))
-        check_names(prefix, found)
-        return found
-
+    known = {column.name for column in OPTIONAL} & present
+    for prefix in (OBSERVED, PARAMETER):
+        own = sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix))
+        check_names(prefix, own)
+        known |= {prefix + name for name in own}
     y, state = (dataset(file, name, np.dtype("f8"), (None, None), allowance, 0) for name in ("y", "controller_state"))
-    tangents, pieces, origins = (
-        present.issuperset(column.name for column in columns)
-        for columns in (TANGENT_COLUMNS, KINK_COLUMNS, ORIGIN_COLUMNS)
-    )
-    return Layout(
-        int(y.shape[1]), int(state.shape[1]), named("observed_"), named("homotopy_"), tangents, pieces, origins
-    )
+    return Layout(int(y.shape[1]), int(state.shape[1]), frozenset(known))

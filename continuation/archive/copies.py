@@ -6,8 +6,7 @@ several. Recovery, resuming, merging, export, diagrams and the parts of a sweep 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as File
 from typing import Any
 
@@ -16,45 +15,36 @@ from attrs import evolve, frozen
 
 from continuation.archive.atomic import ArchiveError
 from continuation.archive.contents import Contents
+from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive
-from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, Column, Layout, text
+from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
+from continuation.archive.schema import ORIGIN_COLUMNS, ORIGINS, SCHEMA, Layout, text
 from continuation.archive.store import Store
-from continuation.archive.tables import ROWS_AT_ONCE
-
-Block = dict[str, Any]
-
-_BLOCK_BYTES = 1 << 23
-"""Of what is copied at once, and so of the blocks that a reader checks whole."""
+from continuation.archive.tables import Block, Table
+from continuation.path import Path
 
 
 @frozen(eq=False)
 class Share:
     """Some paths and their points.
 
-    `paths`: Rows of the path table, by column. `points`: Which rows of the point table; of the last path it may be the
-    first ones only. `fetch`: (column, rows) -> numbers. `names`: What `event_index` counts. `first`: The number that
-    the first path has in `path_index`. `origin`: The open file, where it is of one.
+    `paths`: Rows of the path table, by column. `points`: A point table, of which `rows` are theirs; of the last path it
+    may be the first ones only. `names`: What `event_index` counts. `first`: The number that the first path has in
+    `path_index`. `origin`: The open file, where it is of one.
     """
 
     layout: Layout
     names: Sequence[str]
-    paths: Mapping[str, Any]
-    points: slice
-    fetch: Callable[[str, slice], Any]
+    paths: Block
+    points: Table
+    rows: slice
     first: int = 0
     origin: Contents | None = None
-
-    @classmethod
-    def of(cls, contents: Contents, paths: Mapping[str, Any], points: slice, first: int = 0) -> Share:
-        """A share of an open file."""
-        return cls(
-            contents.layout, contents.event_names, paths, points, partial(contents.read, "point"), first, contents
-        )
 
     @property
     def size(self) -> int:
         """The number of points."""
-        return int(self.points.stop - self.points.start)
+        return int(self.rows.stop - self.rows.start)
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
@@ -67,8 +57,25 @@ def share_of(archive: Archive, first: int = 0, last: int | None = None, points: 
     # Of files without an identifier the time, the process and the name must do.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
     end = begin + points if points is not None else archive.rows(stop - 1).stop if stop > first else 0
-    share = Share.of(contents, archive.paths.block(slice(first, stop)), slice(begin, end), first)
+    paths = {name: values.copy() for name, values in archive.paths.block(slice(first, stop)).items()}
+    share = Share(contents.layout, contents.event_names, paths, archive.points, slice(begin, end), first, contents)
     return sourced(share, about.get("identifier", unnamed), contents.file.name, about.get("homotopy", ""))
+
+
+def share_of_path(
+    path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
+) -> Share:
+    """A finished path as a share; with the switches and rays of kinks if `pieces`."""
+    first = path.steps[0] if path.steps else None
+    tangents = first is not None and bool(np.isfinite(first.tangent).all())
+    unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
+    layout = layout_of(homotopy, unknowns, observed, controller, tangents, pieces)
+    names = list(dict.fromkeys(event.name for event in path.events))
+    rows = rows_of(path, layout)
+    points = to_columns(rows, 0, layout, names.index) if rows else filled({}, layout, "point", 0)
+    row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
+    table = Table.of(layout, "point", points)
+    return Share(layout, names, row_columns(row, layout), table, slice(0, len(rows)))
 
 
 def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
@@ -96,29 +103,40 @@ def leading(shares: Sequence[Share]) -> Contents:
 def append(store: Store, share: Share) -> None:
     """Add a share that is in memory to a file, in one commit."""
     number = store.committed.paths
-    points = _numbered(share, store, share.points, number) if share.size else None
-    store.commit(points, _rows(share, store.layout, number))
+    store.commit(_numbered(share, store, share.rows, number) if share.size else None, _rows(share, store, number))
 
 
 def write_copy(
     shares: Sequence[Share],
-    part: File,
+    file: File,
     *,
-    attributes: Mapping[str, Any],
+    what: str,
+    more: Mapping[str, Any] | None = None,
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
     """Concatenate shares of open files into a new one, which is still open.
 
+    Its attributes are those of the archive of the first point, of which `what` is said in the history, and `more`.
     Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
-    layout = _joint(shares)
-    store = Store(part, layout, {**attributes, "schema": SCHEMA}, leading(shares).problem(), compression=compression)
+    head = leading(shares)
+    for share in shares:
+        if share.layout.unknowns != head.layout.unknowns and share.size and share.origin is not None:
+            raise ArchiveError(
+                f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
+                f"{head.layout.unknowns}; one file holds one number"
+            )
+    # A column that only some have is missing elsewhere.
+    layouts = [share.layout for share in shares]
+    width, names = max(layout.controller for layout in layouts), ORIGINS.union(*(layout.more for layout in layouts))
+    about = {**head.attributes, **process(), **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
+    store = Store(file, Layout(head.layout.unknowns, width, names), about, head.problem(), compression=compression)
     try:
         for block in _blocks(shares, store):
             store.commit(block)
         counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
-        rows = [_rows(share, layout, number) for share, number in zip(shares, counts)]
+        rows = [_rows(share, store, number) for share, number in zip(shares, counts)]
         store.commit(paths=_joined(rows) if counts[-1] else None, checkpoints=checkpoints)
     except BaseException:
         store.close()
@@ -126,34 +144,16 @@ def write_copy(
     return store
 
 
-def _joint(shares: Sequence[Share]) -> Layout:
-    """One layout that holds them all: a column that only some have is missing elsewhere."""
-    head = leading(shares)
-    first, layouts = head.layout, [share.layout for share in shares]
-    for share in shares:
-        if share.layout.unknowns != first.unknowns and share.size and share.origin is not None:
-            raise ArchiveError(
-                f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
-                f"{first.unknowns}; one file holds one number"
-            )
-    joint: dict[str, Any] = {
-        name: max(getattr(layout, name) for layout in layouts) for name in ("controller", "tangents", "pieces")
-    }
-    for name in ("observed", "scalars"):
-        joint[name] = tuple(sorted({own for layout in layouts for own in getattr(layout, name)}))
-    return evolve(first, origins=any(layout.origins for layout in layouts) or len(layouts) > 1, **joint)
-
-
 def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
     """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
-    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), ROWS_AT_ONCE)
     waiting: list[Block] = []
     held = path = 0
     for share in shares:
-        for start in range(share.points.start, share.points.stop, size):
-            part = slice(start, min(start + size, share.points.stop))
-            waiting.append(_numbered(share, store, part, path))
-            held += part.stop - part.start
+        size = share.points.at_once
+        for start in range(share.rows.start, share.rows.stop, size):
+            rows = slice(start, min(start + size, share.rows.stop))
+            waiting.append(_numbered(share, store, rows, path))
+            held += rows.stop - rows.start
             if held >= size:
                 yield _joined(waiting)
                 waiting, held = [], 0
@@ -169,26 +169,26 @@ def _joined(blocks: Sequence[Block]) -> Block:
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
     """Points as a block of the store's columns, with its numbers of events, the share's first path being `path`."""
     numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
-    block = {column.name: share.fetch(column.name, rows) for column in share.layout.point_columns}
+    block = share.points.block(rows)
     block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
-    if share.origin and (np.any(block["event_index"] >= len(share.names)) or np.any(block["event_index"] < -1)):
+    events = block["event_index"]
+    if share.origin and (np.any(events >= len(share.names)) or np.any(events < -1)):
         raise share.origin.damaged(ValueError("its points refer to events that it does not name"))
     # The number -1, no event, finds the last entry.
-    block["event_index"] = numbers[block["event_index"]]
-    return filled(block, store.layout, store.layout.point_columns, rows.stop - rows.start)
+    block["event_index"] = numbers[events]
+    return filled(block, store.layout, "point", rows.stop - rows.start)
 
 
-def _rows(share: Share, layout: Layout, path: int) -> Block:
+def _rows(share: Share, store: Store, path: int) -> Block:
     """The share's rows of the path table, numbered from `path` on."""
     count = len(share.paths["path"])
-    columns = {**share.paths, "path": np.arange(path, path + count)}
-    return filled(columns, layout, layout.path_columns, count)
+    return filled({**share.paths, "path": np.arange(path, path + count)}, store.layout, "path", count)
 
 
-def filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Column], rows: int) -> Block:
+def filled(block: Mapping[str, Any], layout: Layout, table: str, rows: int) -> Block:
     """The block in the columns of the layout; what it lacks is missing (NaN)."""
     whole = {}
-    for column in columns:
+    for column in layout.columns(table):
         values, shape = block.get(column.name), (rows, *layout.width(column))
         if values is None or values.shape != shape:
             missing = np.full(shape, column.missing, dtype=column.storage)

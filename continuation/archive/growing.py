@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from copy import deepcopy
 from functools import partial
@@ -12,64 +12,48 @@ from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-import numpy as np
 from attrs import define, evolve
 
 from continuation.archive.atomic import new_file, own
-from continuation.archive.copies import Share, append, filled, share_of, sourced, write_copy
-from continuation.archive.provenance import history, process, root_attributes
-from continuation.archive.reader import open_archive
+from continuation.archive.copies import Share, append, share_of, share_of_path, sourced, write_copy
+from continuation.archive.provenance import root_attributes
+from continuation.archive.reader import StoredSteps, open_archive
 from continuation.archive.resume import check_homotopy
-from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
 from continuation.archive.store import Store, put
-from continuation.archive.tables import StoredSteps, Table, dataframe, dataset
+from continuation.archive.tables import Table, dataframe, dataset
 from continuation.path import Path
 
 
-def share_of_path(
-    path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
-) -> Share:
-    """A finished path as a share; with the switches and rays of kinks if `pieces`."""
-    first = path.steps[0] if path.steps else None
-    tangents = first is not None and bool(np.isfinite(first.tangent).all())
-    unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
-    layout = layout_of(homotopy, unknowns, observed, controller, tangents or pieces)
-    layout = evolve(layout, pieces=pieces or layout.pieces)
-    rows, names = rows_of(path, layout.pieces), list(dict.fromkeys(event.name for event in path.events))
-    points = filled(to_columns(rows, 0, layout, names.index) if rows else {}, layout, layout.point_columns, len(rows))
-    row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
-    paths = row_columns(row, layout)
-    return Share(layout, names, paths, slice(0, len(rows)), partial(_part, points))
-
-
-def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
-    return columns[name][rows]
-
-
-def attributes_of(path: Path, title: str = "") -> dict[str, Any]:
+def _attributes(path: Path, title: str = "A path") -> dict[str, Any]:
     """The root attributes of a file that begins with a path."""
-    attributes = root_attributes(None, title or "A path", {})
-    return {**attributes, **path.labels.attributes(), "references": "\n\n".join(path.references)}
+    about = root_attributes(None, title, {})
+    return {**about, **path.labels.attributes(), "references": "\n\n".join(path.references)}
 
 
 def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
-    share, attributes = share_of_path(path), attributes_of(path)
+    share, attributes = share_of_path(path), _attributes(path)
     share = sourced(share, attributes["identifier"], "", first=0)
-    points = Table(share.layout.point_columns, share.size, share.fetch)
-    paths = Table(share.layout.path_columns, 1, partial(_part, share.paths))
-    return dataset(points, paths, share.names, share.layout.unknowns, attributes)
+    paths = Table.of(share.layout, "path", share.paths)
+    return dataset(share.points, paths, share.names, share.layout.unknowns, attributes)
 
 
 def dataframe_of(path: Path) -> Any:
     """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names."""
     share = share_of_path(path)
-    frame = dataframe(Table(share.layout.point_columns, share.size, share.fetch))
-    frame["event"] = [share.names[k] if k >= 0 else "" for k in share.fetch("event_index", share.points)]
+    frame = dataframe(share.points)
+    frame["event"] = [share.names[k] if k >= 0 else "" for k in share.points["event_index"]]
     called = {f"y_{i}": name for i, name in enumerate(path.labels.names)}
     if path.labels.parameter_name:
         called["parameter"] = path.labels.parameter_name
     return frame.rename(columns=called)
+
+
+def _add(store: Store, share: Share, file: File) -> int:
+    """Add a path to its file, and its number there."""
+    number = store.committed.paths
+    append(store, sourced(share, store.identifier, file.name, first=number))
+    return number
 
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
@@ -78,14 +62,14 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     `many`: At least one; all of one number of unknowns, with the same scalars observed. Raises `ArchiveError` if it
     exists, or cannot be written.
     """
-    target, attributes = new_file("file", file), attributes_of(many[0], title)
+    target = new_file("file", file)
     pieces = any(event.switches for path in many for event in path.events)
     shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
 
-    def write(part: Any) -> Store:
-        store = Store(part, shares[0].layout, attributes)
-        for number, share in enumerate(shares):
-            append(store, sourced(share, store.identifier, target.name, first=number))
+    def write(beside: File) -> Store:
+        store = Store(beside, shares[0].layout, _attributes(many[0], title or "A path"))
+        for share in shares:
+            _add(store, share, target)
         return store
 
     put(target, write)
@@ -113,34 +97,31 @@ class Growing:
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
-        with open_archive(target) as source:
-            about = source.attributes
-            with closing(own(target, source.contents.descriptor, about.get("process"))):
-                if len(source):
-                    last = source[-1].endpoint
-                    check_homotopy(homotopy, last.u, last.residual_norm)
-                for number, path in enumerate(source):
-                    # A point that was read is part of an array, which would stay in memory with it.
-                    yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
-                attributes = {**about, **process(), **history(about, "went on")}
-                copy = partial(write_copy, [share_of(source)], attributes=attributes)
-                self._store = put(target, copy, replace=True, grows=True)
+        with (
+            open_archive(target) as source,
+            closing(own(target, source.contents.descriptor, source.attributes.get("process"))),
+        ):
+            if len(source):
+                last = source[-1].endpoint
+                check_homotopy(homotopy, last.u, last.residual_norm)
+            for number, path in enumerate(source):
+                # A point that was read is part of an array, which would stay in memory with it.
+                yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
+            copy = partial(write_copy, [share_of(source)], what="went on")
+            self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""
-        number = 0 if self._store is None else self._store.committed.paths
-        share = share_of_path(path, member=number, pieces=self.pieces)
+        share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
         if self._store is None:
-            attributes = attributes_of(path, self.title)
-            self._store = put(self.file, partial(Store, layout=share.layout, attributes=attributes), grows=True)
-        append(self._store, sourced(share, self._store.identifier, self.file.name, first=number))
-        return self._kept(path, number)
+            about = _attributes(path, self.title)
+            self._store = put(self.file, partial(Store, layout=share.layout, attributes=about), grows=True)
+        return self._kept(path, _add(self._store, share, self.file))
 
     def _kept(self, path: Path, number: int) -> Path:
         if self.keep == "all":
             return path
-        ends = [path.steps[0], path.steps[-1]]
-        steps: Any = StoredSteps(open_archive, self.file, number, ends, len(path.steps))
+        steps: Any = StoredSteps(self.file, number, [path.steps[0], path.steps[-1]], len(path.steps))
         return evolve(path, steps=steps)
 
     def __enter__(self) -> Growing:

@@ -43,36 +43,32 @@ class Image:
         try:
             # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
             self.descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-        except (OSError, ValueError) as error:
-            said = f"cannot be opened ({short(error)})"
-            what = "there is no such file" if isinstance(error, FileNotFoundError) else said
-            raise ArchiveError(f"{file}: {what}") from None
-        try:
             status = os.fstat(self.descriptor)
             if not stat.S_ISREG(status.st_mode):
                 what = "a directory" if stat.S_ISDIR(status.st_mode) else "no regular file"
-                raise ArchiveError(f"{file}: is {what}, an archive is a file")
+                raise StructureError(f"is {what}, an archive is a file")
             self.length = status.st_size
-            self._head = self._closed(file, os.pread(self.descriptor, HEAD_BYTES, 0))
-        except OSError as error:
+            self._head = self._closed(os.pread(self.descriptor, HEAD_BYTES, 0))
+        except FileNotFoundError:
+            raise ArchiveError(f"{file}: there is no such file") from None
+        except (OSError, ValueError) as error:
             self.close()
-            if isinstance(error, ArchiveError):
-                raise
-            raise ArchiveError(f"{file}: could not be read ({short(error)})") from error
+            said = str(error) if isinstance(error, StructureError) else f"cannot be read ({short(error)})"
+            raise ArchiveError(f"{file}: {said}") from None
 
-    def _closed(self, file: File, head: bytes) -> bytes:
+    def _closed(self, head: bytes) -> bytes:
         """The head that the file would have if its writer had closed it."""
         if not head.startswith(SIGNATURE):
-            what = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
-            raise ArchiveError(f"{file}: {what}")
+            said = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
+            raise StructureError(said)
         padded = head.ljust(HEAD_BYTES, b"\0")
         if padded[_VERSION] not in (2, 3):
             return head
         if struct.unpack_from("<I", padded, _CRC)[0] != lookup3(padded[:_CRC]):
-            raise ArchiveError(f"{file}: truncated or damaged, HDF5 cannot open it (its head is not sound)")
+            raise StructureError("truncated or damaged, HDF5 cannot open it (its head is not sound)")
         self.closed_by_writer = head[_VERSION] < 3 or not head[_IN_USE]
-        stated, size = stated_length(head), self.length
-        self.missing, self.length = max(stated - size, 0), max(stated, size)
+        stated = stated_length(head)
+        self.missing, self.length = max(stated - self.length, 0), max(stated, self.length)
         length = struct.pack("<Q", self.length)
         closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
         return closed + struct.pack("<I", lookup3(closed))
@@ -98,7 +94,7 @@ class Image:
         """Fill the buffer."""
         view, done = memoryview(buffer).cast("B"), 0
         try:
-            while count := os.preadv(self.descriptor, [view[done:]], self.at + done):
+            while done < len(view) and (count := os.preadv(self.descriptor, [view[done:]], self.at + done)):
                 done += count
         except OSError as error:
             # Its text: a traceback that is kept would keep a buffer of HDF5's.
@@ -139,22 +135,18 @@ def _check_heap(heap: memoryview) -> None:
             raise OSError("a heap of texts is not sound")
 
 
-def lookup3(data: bytes) -> int:
-    """The checksum of HDF5's metadata: Jenkins' lookup3, `hashlittle` (burtleburtle.net/bob/c/lookup3.c)."""
-    a = b = c = (0xDEADBEEF + len(data)) & _WORD
-    blocks = max((len(data) - 1) // 12, 0)
-    for k in range(blocks):
-        x, y, z = struct.unpack_from("<III", data, 12 * k)
-        a, b, c = (a + x) & _WORD, (b + y) & _WORD, (c + z) & _WORD
-        for shift in (4, 6, 8, 16, 19, 4):
+def lookup3(head: bytes) -> int:
+    """HDF5's checksum of 44 bytes of metadata: Jenkins' lookup3, `hashlittle` (burtleburtle.net/bob/c/lookup3.c)."""
+    words = struct.unpack("<12I", head.ljust(48, b"\0"))
+    a = b = c = 0xDEADBEEF + 44
+    for k in (0, 3, 6, 9):
+        a, b, c = (a + words[k]) & _WORD, (b + words[k + 1]) & _WORD, (c + words[k + 2]) & _WORD
+        for shift in (4, 6, 8, 16, 19, 4) if k < 9 else ():
             # The three change places with each round, and are in their own again after six.
             a, b, c = b, (c + b) & _WORD, ((a - c) & _WORD) ^ _turned(c, shift)
-    x, y, z = struct.unpack("<III", data[12 * blocks :].ljust(12, b"\0"))
-    a, b, c = (a + x) & _WORD, (b + y) & _WORD, (c + z) & _WORD
     for shift in (14, 11, 25, 16, 4, 14, 24):
-        c = ((c ^ b) - _turned(b, shift)) & _WORD
-        a, b, c = b, c, a
-    return int(b)
+        a, b, c = b, ((c ^ b) - _turned(b, shift)) & _WORD, a
+    return b
 
 
 def _turned(x: int, k: int) -> int:
@@ -214,15 +206,6 @@ def member(group: Any, name: str) -> Any:
     # As `group[name]`, which makes a new object of the whole file each time.
     found = h5o.open(group.id, raw)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
-
-
-def names(group: Any) -> set[str]:
-    """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
-    links = [group.id.links.get_info(raw) for raw in group.id]
-    places = [link.u for link in links if link.type == h5l.TYPE_HARD]
-    if len(set(places)) < len(places):
-        raise StructureError("something is stored once, under two names")
-    return set(group)
 
 
 def subgroup(group: Any, name: str) -> Any:

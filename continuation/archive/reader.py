@@ -1,12 +1,15 @@
-"""`open_archive`: an archive as tables and as paths, read when asked for."""
+"""`open_archive`: an archive as tables and as paths, read when asked for; and steps of a path that stay in the file, so
+that a long path needs no memory.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from numbers import Integral
 from os import PathLike
+from pathlib import Path as File
 from types import TracebackType
 from typing import Any, TypeVar, overload
 
@@ -15,20 +18,17 @@ import numpy as np
 from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
 from continuation.archive.rows import from_columns, record_of, row_columns
-from continuation.archive.schema import COUNT_NAMES
-from continuation.archive.tables import Table, dataframe, dataset, kept_whole, stored_path
+from continuation.archive.schema import ACCEPTED, COUNT_NAMES, OBSERVED
+from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset, kept_whole
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
 from continuation.counts import Counts
-from continuation.path import Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.plot.html import archive_page
 from continuation.status import Status
 
 _T = TypeVar("_T")
-
-_AT_ONCE = 1 << 22
-"""Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
 
 _STEP_BYTES, _COPIES = 1400, 6
 """Of a step that is made of a row: its own and its segment's objects, and copies of its point and tangent."""
@@ -58,21 +58,21 @@ class Archive(Sequence[Path]):
         self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
         # As they are now: the file may be read anew while it grows.
-        self._committed, self._unended = contents.committed, dict[str, Any]()
+        self.points, self.paths = contents.table("point"), contents.table("path")
         try:
-            lengths = contents.read("path", "n_points", slice(0, self._committed.paths))
+            lengths = self.paths["n_points"]
             self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
-            rest = self._committed.points - int(self._first_rows[-1])
+            rest = self.points.size - int(self._first_rows[-1])
             if rest < 0 or np.any(lengths < 0):
                 raise contents.damaged(ValueError("its paths have other lengths than its points"))
             if rest:
-                self._first_rows = np.append(self._first_rows, self._committed.points)
-                self._read_unended(rest)
+                self._first_rows = np.append(self._first_rows, self.points.size)
+                row = row_columns(self._unended(rest), self.layout)
+                columns = {name: np.concatenate((self.paths[name], row[name])) for name in self.paths}
+                self.paths = Table.of(self.layout, "path", columns)
         except BaseException:
             self.close()
             raise
-        self.points = Table(self.layout.point_columns, self._committed.points, partial(contents.read, "point"))
-        self.paths = Table(self.layout.path_columns, len(self), self._fetch_path)
 
     # -- the sequence -----------------------------------------------------------------------------------------
 
@@ -104,10 +104,6 @@ class Archive(Sequence[Path]):
         keep : str
             "all" steps in memory, or its "ends".
 
-        Returns
-        -------
-        Path
-
         Raises
         ------
         IndexError
@@ -120,12 +116,7 @@ class Archive(Sequence[Path]):
             raise complain(TypeError, "index", "an integer or a slice", index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
-        index %= len(self)
-        rows, row = self.rows(index), self.paths.block(slice(index, index + 1))
-        if whole:
-            size = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
-            self._sensible(lambda: self.contents.allowance.take("the steps of the path", size))
-        return self._sensible(lambda: self._path(index, row, self.points.block(rows) if whole else None))
+        return self._sensible(partial(self._path, int(index) % len(self), whole))
 
     def _sensible(self, read: Callable[[], _T]) -> _T:
         """What `read` makes of the file; `ArchiveError` if it cannot."""
@@ -134,14 +125,15 @@ class Archive(Sequence[Path]):
         except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
-    def _path(self, index: int, rows: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
-        """A path of its row of the one table, and of its rows of the other if they are to be in memory."""
+    def _path(self, index: int, whole: bool) -> Path:
         steps: Any
-        row = {name: column[0] for name, column in rows.items()}
-        if points is not None:
-            steps, events = from_columns(points, self.event_names, self.layout.observed)
+        rows, row = self.rows(index), {name: self.paths.some(name, slice(index, index + 1))[0] for name in self.paths}
+        if whole:
+            size = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
+            self.contents.allowance.take("the steps of the path", size)
+            steps, events = from_columns(self.points.block(rows), self.event_names, self.layout.own(OBSERVED))
         else:
-            steps, events = stored_path(self, open_archive, self.file, index)
+            steps, events = _stored(self, index)
         end_error = float(row["end_error"])
         return Path(
             steps,
@@ -155,20 +147,6 @@ class Archive(Sequence[Path]):
             winding_number=int(row["winding_number"]) or None,
             labels=Labels.from_attributes(self.attributes),
         )
-
-    def __iter__(self) -> Iterator[Path]:
-        # In runs of paths: many short reads cost much more.
-        at_once, stop = _AT_ONCE // (2 * self.layout.unknowns + len(self.points)), 0
-        while stop < len(self):
-            start, begin = stop, int(self._first_rows[stop])
-            stop = max(start + 1, int(np.searchsorted(self._first_rows, begin + at_once, "right")) - 1)
-            paths = self.paths.block(slice(start, stop))
-            points = self.points.block(slice(begin, self.rows(stop - 1).stop))
-            for k in range(start, stop):
-                rows = slice(self.rows(k).start - begin, self.rows(k).stop - begin)
-                row = {name: column[k - start : k - start + 1] for name, column in paths.items()}
-                own = {name: column[rows] for name, column in points.items()}
-                yield self._sensible(partial(self._path, k, row, own))
 
     def __repr__(self) -> str:
         state = "" if self.closed_by_writer else ", not closed by its writer"
@@ -201,9 +179,7 @@ class Archive(Sequence[Path]):
         ArchiveError
             If the file says something that is no status.
         """
-        return self._sensible(lambda: Status(int(self.paths["status"][index])))
-
-    # -- views ------------------------------------------------------------------------------------------------
+        return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
@@ -213,17 +189,14 @@ class Archive(Sequence[Path]):
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
         return dataframe(self.points)
 
-    # -- for resuming and copying -----------------------------------------------------------------------------
-
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        valid = [c for c in map(unpack, self.contents.slots()) if c is not None and self._covers(c)]
+        valid = []
+        for found in filter(None, map(unpack, self.contents.slots())):
+            # The rows before it are all committed: it is written before the counters are.
+            rows = self.rows(found.path) if found.path < len(self) else slice(0, 0)
+            valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
-
-    def _covers(self, checkpoint: Checkpoint) -> bool:
-        """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
-        rows = self.rows(checkpoint.path) if checkpoint.path < len(self) else slice(0, 0)
-        return bool(rows.start + checkpoint.rows <= rows.stop)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The first homotopy's description (JSON), and its arrays."""
@@ -243,26 +216,21 @@ class Archive(Sequence[Path]):
 
     # -- within -----------------------------------------------------------------------------------------------
 
-    def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        held = self._committed.paths
-        values = self.contents.read("path", name, slice(min(rows.start, held), min(rows.stop, held)))
-        own = row_columns(self._unended, self.layout)[name] if rows.stop > held else values[:0]
-        return np.concatenate((values, own))
-
-    def _read_unended(self, rows: int) -> None:
-        """A row for the path that has none, as far as its checkpoint tells."""
-        number = self._committed.paths
-        member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
+    def _unended(self, rows: int) -> dict[str, Any]:
+        """The row of the path that has none, as far as its checkpoint tells."""
+        number = self.paths.size
+        member = int(self.paths["member"][-1]) + 1 if number else 0
         # An older checkpoint than the last is good to resume from, and tells the work of then.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        self._unended = row = {**row, "path": number, "member": member, "n_points": rows}
+        row |= {"path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
         if checkpoint is not None and checkpoint.path == number:
             told = checkpoint.run.get("member")
             row["member"] = number if told is None else int(told)
-            if not self.contents.checked or self._committed.checkpoint == checkpoint.sequence:
+            if not self.contents.checked or self.contents.committed.checkpoint == checkpoint.sequence:
                 row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
                 row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        return row
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
@@ -283,3 +251,99 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
         One line for a file that is missing, unreadable, not HDF5, foreign, truncated, damaged, or of a newer schema.
     """
     return Archive(file, limit=limit)
+
+
+# -- steps that stay in the file -------------------------------------------------------------------------------
+
+_COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
+"""What of a step is a column of the file. A tangent may be in memory alone."""
+
+
+class StoredSteps(Sequence[Step]):
+    """The steps of a path as a sequence: the first and the last ones in memory, the others read from the file.
+
+    While the path is traced, `append` adds to it, and what is not yet committed is in memory: all of `steps` at first.
+    A step that is read has the segment to the step before only if the archive holds tangents.
+    """
+
+    def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
+        held = list(steps)
+        self._file, self._path, self._first = file, path, next(iter(held), None)
+        self._last, self._count = (held, len(held)) if count is None else (held[-1:], count)
+
+    def append(self, step: Step) -> None:
+        """The next step."""
+        self._first = self._first or step
+        self._last.append(step)
+        self._count += 1
+
+    def committed(self) -> None:
+        """The file holds all of it: only the last step is still held, and the first."""
+        self._last = self._last[-1:]
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            wanted = range(*index.indices(self._count))
+            first = min(wanted, default=0)
+            between = list(self._between(first, max(wanted, default=-1) + 1))
+            return [between[i - first] for i in wanted]
+        if not -self._count <= index < self._count:
+            raise IndexError(f"index: expected a step below {self._count}, found {index}")
+        index %= self._count
+        return self._first if not index and self._first else next(self._between(index, index + 1))
+
+    def __iter__(self) -> Iterator[Step]:
+        return self._between(0, self._count)
+
+    def __repr__(self) -> str:
+        held = {id(step) for step in (self._first, *self._last) if step is not None}
+        return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
+
+    def column(self, name: str) -> Any:
+        """One number or vector of all steps, as an array: ``u``, ``tangent`` or ``arclength``."""
+        fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
+        if not fields or not begin:
+            return np.array([getattr(step, name) for step in self])
+        with open_archive(self._file) as archive:
+            # To make steps of them takes 14 times as long.
+            rows = archive.rows(self._path)
+            steps = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[:begin]
+            found = [archive.points.some(field, rows)[steps] for field in fields]
+        stored = found[0] if len(found) == 1 else np.column_stack(found)
+        return np.concatenate((stored, [getattr(step, name) for step in self._last]))
+
+    def _between(self, start: int, stop: int) -> Iterator[Step]:
+        begin = self._count - len(self._last)
+        while start < min(stop, begin):
+            # One row more, for the segment from the step before.
+            before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
+            with open_archive(self._file) as archive:
+                steps, _ = _window(archive, self._path, before, end)
+            yield from steps[start - before :]
+            start = end
+        yield from self._last[start - begin : max(stop - begin, 0)]
+
+
+def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
+    """Some steps of a path, and the events from the first of them on to before the one after them."""
+    rows = archive.rows(path)
+    accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
+    begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))
+    observed = archive.layout.own(OBSERVED)
+    return from_columns(archive.points.block(slice(begin, end)), archive.event_names, observed, start)
+
+
+def _stored(archive: Archive, path: int) -> tuple[StoredSteps, list[LocatedEvent]]:
+    """The steps of a path, of which only the ends are in memory, and its events."""
+    rows = archive.rows(path)
+    accepted, numbers = archive.points.some("role", rows) == ACCEPTED, archive.points.some("event_index", rows)
+    count = int(np.count_nonzero(accepted))
+    # A kink and its parts stay together: their rows come after the step's.
+    eventful = np.unique((np.cumsum(accepted) - 1)[numbers >= 0] // ROWS_AT_ONCE).tolist() if count else []
+    events = [event for k in eventful for event in _window(archive, path, k * ROWS_AT_ONCE, (k + 1) * ROWS_AT_ONCE)[1]]
+    # The last with the one before, for the segment from there.
+    last = _window(archive, path, max(count - 2, 0), count)[0][-1:] if count else []
+    return StoredSteps(archive.file, path, _window(archive, path, 0, min(count - 1, 1))[0] + last, count), events

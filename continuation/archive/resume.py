@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
+from operator import getitem
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
@@ -16,7 +17,6 @@ import numpy as np
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
-from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.store import Store, put
 from continuation.archive.tables import kept_whole
@@ -109,16 +109,12 @@ def resume(
         stored = float(source.points.some("residual_norm", slice(rows - 1, rows))[0])
         check_homotopy(tracer.homotopy, checkpoint.state.here.u, stored)
         store = _beginning(source, checkpoint, rows, target, archive is None)
+    log = PathLog.continued(store, checkpoint, tracer, whole_path)
     try:
         with open_archive(store.file) as held:
             before = held.path(checkpoint.path, keep=keep)
-    except BaseException:
-        store.close()
-        raise
-    tracer.path.steps, tracer.path.events[:] = before.steps, before.events
-    log = PathLog.continued(store, checkpoint, tracer, whole_path)
-    tracer.observers = (log, *observers)
-    try:
+        tracer.path.steps, tracer.path.events[:] = before.steps, before.events
+        tracer.observers = (log, *observers)
         steps = iter(tracer)
         # The first thing a resumed tracer does is to factor again; an uninterrupted one did not pay for that.
         next(steps)
@@ -155,22 +151,24 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
     status, checkpoint = source.status(last), source.checkpoint()
-    if status not in RESUMABLE:
-        said = f"path {last} has ended ({status.name}), there is nothing to resume"
-    elif status is Status.BUDGET_EXHAUSTED and "budget" not in options:
-        said = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
-    elif checkpoint is not None and checkpoint.path == last:
-        return checkpoint
-    elif not source.paths["n_points"][last]:
-        said = f"path {last} has no state to resume from; trace it again"
-    else:
-        writer = str(source.attributes.get("library_version", "unknown"))
-        said = (
-            f"path {last} was written by version {writer:.20} and has no state that version {__version__} resumes "
-            f"(a state resumes within its major version); "
-            f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
-        )
-    raise ArchiveError(f"{source.file}: {said}")
+    writer, none = source.attributes.get("library_version", "unknown"), checkpoint is None or checkpoint.path != last
+    other = (
+        f"path {last} was written by version {writer!s:.20} and has no state that version {__version__} resumes "
+        f"(a state resumes within its major version); "
+        f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+    )
+    spent = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
+    refused = {
+        f"path {last} has ended ({status.name}), there is nothing to resume": status not in RESUMABLE,
+        spent: status is Status.BUDGET_EXHAUSTED and "budget" not in options,
+        f"path {last} has no state to resume from; trace it again": none and not source.paths["n_points"][last],
+        other: none,
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise ArchiveError(f"{source.file}: {what}")
+    assert checkpoint is not None
+    return checkpoint
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
@@ -178,35 +176,39 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
 
     Raises `ArchiveError` if it was not stored, or is not among what is trusted.
     """
+    tree: Any = checkpoint.run.get("homotopy")
+    if not isinstance(tree, dict) or not tree.get("problem"):
+        return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
+    text, arrays = source.problem()
+    return _made(source, "the homotopy", lambda: json.loads(text), arrays.__getitem__, known, "homotopy= or --homotopy")
+
+
+def _made(
+    source: Archive,
+    name: str,
+    tree: Callable[[], Any],
+    fetch: Callable[[Any], Any],
+    known: Mapping[str, Any],
+    hint: str,
+) -> Any:
+    """What the file describes; `ArchiveError` with what to pass instead where it cannot be made."""
     try:
-        tree: Any = checkpoint.run["homotopy"]
-        fetch: Callable[[Any], Any] = whole
-        if tree.get("problem"):
-            text, arrays = source.problem()
-            tree, fetch = json.loads(text), arrays.__getitem__
-        return decode(_storable(tree), fetch, known)
-    except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy= or --homotopy"
-        raise ArchiveError(f"{source.file}: {reason}") from None
+        described = tree()
+        if isinstance(described, dict) and "unstorable" in described:
+            raise UnknownError(described["unstorable"])
+        return decode(described, fetch, known)
+    except (UnknownError, KeyError, TypeError, ValueError, RecursionError) as error:
+        said = f"{name} cannot be made from the file ({short(error)}); pass {hint}"
+        raise ArchiveError(f"{source.file}: {said}") from None
 
 
 def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
-    stored, trees = {}, checkpoint.run.get("options", {})
-    for name in (name for name in OPTIONS if name in trees and name not in given):
-        try:
-            stored[name] = decode(_storable(trees[name]), whole, known)
-        except (UnknownError, KeyError, TypeError) as error:
-            reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
-            raise ArchiveError(f"{source.file}: {reason}") from None
+    trees: Any = checkpoint.run.get("options", {})
+    names = [name for name in OPTIONS if name in trees and name not in given]
+    stored = {name: _made(source, name, partial(getitem, trees, name), whole, known, f"{name}=") for name in names}
     return {"box": None, **stored, **given}
-
-
-def _storable(tree: Any) -> Any:
-    if isinstance(tree, dict) and "unstorable" in tree:
-        raise UnknownError(tree["unstorable"])
-    return tree
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
@@ -236,8 +238,6 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     """The file up to the checkpoint, ready to grow, and already so when it takes the place of the old one."""
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
-    attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
-    share = share_of(source, last=checkpoint.path, points=rows)
-    slots = slot_of(checkpoint)
-    copy = partial(write_copy, [share], attributes=attributes, checkpoints=slots)
+    share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)
+    copy = partial(write_copy, [share], what=what, more={"parent": parent}, checkpoints=slots)
     return put(target, copy, replace=replace, grows=True)

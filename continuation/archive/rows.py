@@ -18,8 +18,13 @@ from continuation.archive.schema import (
     CONTROLLER_STATE,
     COUNT_NAMES,
     KINK_PART,
+    KINKS,
     LOCATED,
     NO_EVENT,
+    OBSERVED,
+    ORIGINS,
+    PARAMETER,
+    TANGENTS,
     Layout,
     text,
 )
@@ -28,13 +33,8 @@ from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.segment import hermite
 
-_FLOATS = (
-    "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",
-)  # fmt: skip
-_INTEGERS = {
-    "orientation": "i1", "kind": "i1", "role": "i1",
-    "event_index": "i2", "corrector_iterations": "i2", "rejections": "i2",
-}  # fmt: skip
+_FLOATS = ("arclength", "step_length", "residual_norm", "contraction", "distance", "angle")
+_INTEGERS = {"orientation": "i1", "kind": "i1", "corrector_iterations": "i2", "rejections": "i2"}
 _SHARE, _NAN = "parameter_share", math.nan
 
 Record = dict[str, Any]
@@ -54,33 +54,30 @@ class Row:
     switch: int = -1
 
 
-def parts_of(event: LocatedEvent | None) -> list[Row]:
-    """The rows of a kink's switches and rays, which follow its own; none for other events."""
-    if event is None:
-        return []
-    nothing = np.full_like(event.u, _NAN)
-    pairs = zip_longest(event.switches, () if event.rays is None else event.rays)
-    return [
-        Row(event, None, KINK_PART, nothing if ray is None else ray, -1 if switch is None else switch)
-        for switch, ray in pairs
-    ]
+def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
+    """A step and the events that have come since the one before; the last one shares its row if the step ends there.
 
-
-def rows_at(step: Step, events: Sequence[LocatedEvent], pieces: bool) -> list[Row]:
-    """A step and the events that have come since the one before; the last one shares its row if the step ends there."""
+    The rows of a kink's switches and rays, where the layout has them, follow its own.
+    """
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
-    before = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
-    return [*before, Row(step, last, ACCEPTED, step.tangent), *(parts_of(last) if pieces else ())]
+    rows = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
+    rows.append(Row(step, last, ACCEPTED, step.tangent))
+    if last is not None and layout.more >= KINKS:
+        nothing, rays = np.full_like(last.u, _NAN), () if last.rays is None else last.rays
+        for switch, ray in zip_longest(last.switches, rays):
+            tangent = nothing if ray is None else ray
+            rows.append(Row(last, None, KINK_PART, tangent, -1 if switch is None else switch))
+    return rows
 
 
-def rows_of(path: Path, pieces: bool = False) -> list[Row]:
-    """Steps and located events in the order of the path; with the switches and the rays of its kinks if `pieces`."""
+def rows_of(path: Path, layout: Layout) -> list[Row]:
+    """Steps and located events in the order of the path."""
     rows, begin = list[Row](), 0
     for step in path.steps:
         end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
-        rows += rows_at(step, path.events[begin:end], pieces)
+        rows += rows_at(step, path.events[begin:end], layout)
         begin = end
     return rows
 
@@ -88,32 +85,41 @@ def rows_of(path: Path, pieces: bool = False) -> list[Row]:
 def layout_of(
     homotopy: Any,
     unknowns: int,
-    observed: Sequence[str],
+    observed: Iterable[str],
     controller: Sequence[float],
-    tangents: bool,
+    tangents: bool = False,
+    pieces: bool = False,
     early: Iterable[Record] = (),
 ) -> Layout:
     """The layout of a file that begins with a path of a homotopy, behind rows of paths that were over `early`."""
-    prefix, pieces = "homotopy_", isinstance(homotopy, SupportsPieces)
-    names = {name.removeprefix(prefix) for row in early for name in row if name.startswith(prefix)}
-    names |= set(scalars(homotopy))
-    width = max(len(controller), CONTROLLER_STATE)
-    return Layout(unknowns, width, tuple(observed), tuple(sorted(names)), tangents or pieces, pieces)
+    held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
+    said = {PARAMETER + name for name in scalars(homotopy)}
+    said |= {name for row in early for name in row if name.startswith(PARAMETER)}
+    more = ORIGINS | held | said | {OBSERVED + name for name in observed}
+    return Layout(unknowns, max(len(controller), CONTROLLER_STATE), more)
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
     """The block of columns for some rows of one path; `number` numbers an event's name."""
-    floats, integers = zip(*[_values(row, number) for row in rows])
-    block: dict[str, Any] = {"path_index": np.full(len(rows), path, dtype="i4")}
-    block |= _split("parameter", "y", [row.point.u for row in rows])
-    block |= dict(zip(_FLOATS, np.array(floats).T.copy()))
-    block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), np.array(integers).T)}
-    if layout.tangents:
+    points, events = [row.point for row in rows], [row.event for row in rows]
+    block: dict[str, Any] = {
+        "path_index": np.full(len(rows), path, dtype="i4"),
+        "role": np.array([row.role for row in rows], dtype="i1"),
+        "event_index": np.array([NO_EVENT if e is None else number(e.name) for e in events], dtype="i2"),
+        "event_monitor": np.array([_NAN if e is None else e.monitor for e in events]),
+        _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
+        **_split("parameter", "y", [point.u for point in points]),
+    }
+    # Of what an event has not, the number is missing.
+    block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
+    block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
+    block["orientation"][block["role"] == KINK_PART] = 0
+    if layout.more >= TANGENTS:
         block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
-    if layout.pieces:
+    if layout.more >= KINKS:
         block["switch"] = np.array([row.switch for row in rows], dtype="i4")
-    for name in layout.observed:
-        block[f"observed_{name}"] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
+    for name in layout.own(OBSERVED):
+        block[OBSERVED + name] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
     return block
 
 
@@ -121,20 +127,6 @@ def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
     """The last components of some vectors as one column, the others as a matrix; both in one piece, as HDF5 wants."""
     whole = np.array(vectors)
     return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
-
-
-def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    at = row.point
-    index, monitor = (NO_EVENT, _NAN) if row.event is None else (number(row.event.name), row.event.monitor)
-    if isinstance(at, Step):
-        return (
-            (at.arclength, at.step_length, at.residual_norm, monitor, at.contraction, at.distance, at.angle, at.share),
-            (at.orientation, at.kind, row.role, index, at.corrector_iterations, at.rejections),
-        )
-    return (
-        (at.arclength, _NAN, at.residual_norm, monitor, _NAN, _NAN, _NAN, _NAN),
-        (at.orientation if row.role == LOCATED else 0, at.kind, row.role, index, -1, -1),
-    )
 
 
 def from_columns(
@@ -150,10 +142,11 @@ def from_columns(
     steps: list[Step] = []
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
-    columns = [block[name].tolist() for name in (*_FLOATS, *_INTEGERS)]
-    extras = [block[f"observed_{name}"].tolist() for name in observed]
+    fields = (*_FLOATS, *_INTEGERS, "event_index", "role", "event_monitor", _SHARE)
+    columns = [block[name].tolist() for name in fields]
+    extras = [block[OBSERVED + name].tolist() for name in observed]
     for i, (u, v) in enumerate(zip(points, tangents)):
-        at = dict(zip((*_FLOATS, *_INTEGERS), [column[i] for column in columns]))
+        at = dict(zip(fields, [column[i] for column in columns]))
         seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
         number, role, monitor, share = (at.pop(name) for name in ("event_index", "role", "event_monitor", _SHARE))
         if number != NO_EVENT:
@@ -205,7 +198,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
         "end_error": _NAN if path.end_error is None else path.end_error,
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
-        **{f"homotopy_{name}": value for name, value in scalars(homotopy).items()},
+        **{PARAMETER + name: value for name, value in scalars(homotopy).items()},
         "homotopy": "" if homotopy is None else class_path(homotopy),
         "source": "",
     }
@@ -214,7 +207,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
 def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
     """The row of the path table as a block: each column an array of length 1."""
     block = {}
-    for column in layout.path_columns:
+    for column in layout.columns("path"):
         cell = record.get(column.name, column.missing)
         cell = text(cell, column.length) if column.length and isinstance(cell, str) else cell
         block[column.name] = np.array([cell], dtype=column.storage)

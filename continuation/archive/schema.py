@@ -6,14 +6,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from io import BytesIO
 from typing import Any
 
 import h5py
 import numpy as np
 from attrs import field, frozen
 
-from continuation.archive.checks import GROUP, RECORDS, blank
-from continuation.archive.checks import width as width_of_sums
+from continuation.archive.checks import GROUP, RECORDS, STOP, blank
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
@@ -164,42 +165,54 @@ EVENT_NAME = Column("event_name", f"utf8:{NAME}", "1", "name of the event", ("ev
 COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
 
 
+OPTIONAL = (*TANGENT_COLUMNS, *KINK_COLUMNS, *ORIGIN_COLUMNS)
+OBSERVED, PARAMETER = "observed_", "homotopy_"
+"""What the names of a homotopy's own columns begin with: scalars at each point, numeric parameters of a path."""
+
+
+def _names(columns: Iterable[Column]) -> frozenset[str]:
+    return frozenset(column.name for column in columns)
+
+
+TANGENTS, KINKS, ORIGINS = _names(TANGENT_COLUMNS), _names((*TANGENT_COLUMNS, *KINK_COLUMNS)), _names(ORIGIN_COLUMNS)
+
+
 @frozen
 class Layout:
-    """What one file holds besides the fixed columns.
-
-    `unknowns`: N, one number a file. `controller`: Numbers in `controller_state`. `observed`: The homotopy's own
-    scalars at each point: columns ``observed_<name>``. `scalars`: The homotopy's numeric parameters: columns
-    ``homotopy_<name>``, one value a path. `pieces`: Whether kinks are held with their switches and rays. `origins`:
-    Whether each path has its homotopy and its source.
-    """
+    """What one file holds: N, how many numbers in `controller_state`, and the names of its columns beyond the fixed."""
 
     unknowns: int
     controller: int = CONTROLLER_STATE
-    observed: tuple[str, ...] = ()
-    scalars: tuple[str, ...] = ()
-    tangents: bool = False
-    pieces: bool = False
-    origins: bool = True
+    more: frozenset[str] = ORIGINS
 
-    @property
-    def point_columns(self) -> tuple[Column, ...]:
-        """The columns of the point table."""
-        tangents = TANGENT_COLUMNS if self.tangents else ()
-        kinks = KINK_COLUMNS if self.pieces else ()
-        own = (Column(f"observed_{name}", "f8", "1", f"{name}, observed by the homotopy") for name in self.observed)
-        return (*POINT_COLUMNS, *tangents, *kinks, *own)
+    def columns(self, table: str) -> tuple[Column, ...]:
+        """The columns of the table ``"point"`` or ``"path"``."""
+        return _columns(self.more, table)
 
-    @property
-    def path_columns(self) -> tuple[Column, ...]:
-        """The columns of the path table."""
-        own = (Column(f"homotopy_{s}", "f8", "1", f"parameter {s} of the homotopy", ("path",)) for s in self.scalars)
-        return (*PATH_COLUMNS, *(ORIGIN_COLUMNS if self.origins else ()), *own)
+    def own(self, prefix: str) -> tuple[str, ...]:
+        """The names of the homotopy's own columns, without what they begin with."""
+        return tuple(sorted(name.removeprefix(prefix) for name in self.more if name.startswith(prefix)))
 
     def width(self, column: Column) -> tuple[int, ...]:
         """The lengths of the column's dimensions beyond the first."""
         lengths = {"component": self.unknowns, "controller": self.controller}
         return tuple(lengths[name] for name in column.dimensions[1:])
+
+    def row_bytes(self, table: str) -> int:
+        """Bytes of a row of a table."""
+        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+
+
+@lru_cache(maxsize=64)
+def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
+    own = Layout(1, more=more).own
+    optional = [column for column in OPTIONAL if column.name in more]
+    seen = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in own(OBSERVED)]
+    said = [
+        Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",)) for name in own(PARAMETER)
+    ]
+    known = (*POINT_COLUMNS, *PATH_COLUMNS, *optional, *seen, *said)
+    return tuple(column for column in known if column.dimensions[0] == table)
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
@@ -230,6 +243,7 @@ def text(value: str, length: int) -> bytes:
 
 SLOTS = 2
 RESUME = "resume"
+LIBVER = ("v110", "v110")
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
 _CHUNKS = {"point": 64, "path": 8, "event": 16}
@@ -238,22 +252,25 @@ _CHUNK_BYTES = 1 << 13
 100 unknowns take 600 KB."""
 
 
-def chunk_rows(width: tuple[int, ...], most: int) -> int:
-    """Rows a chunk, each of so many numbers: 8 KiB at most, a power of two."""
-    fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
-    return int(min(most, 1 << (fitting.bit_length() - 1)))
-
-
-def build(file: Any, layout: Layout, compression: int) -> None:
-    """Make all the datasets of a new file, without rows.
+@lru_cache(maxsize=16)
+def empty(layout: Layout, compression: int) -> bytes:
+    """A file with all its datasets, without rows: its bytes, made once for all files of a layout.
 
     `compression`: Level of gzip; 0 for none.
     """
+    made = BytesIO()
+    with h5py.File(made, "w", libver=LIBVER) as file:
+        _build(file, layout, compression)
+    return made.getvalue()
+
+
+def _build(file: Any, layout: Layout, compression: int) -> None:
     filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
 
     def grows(name: str, dtype: Any, chunk: int, width: tuple[int, ...] = (), **more: Any) -> Any:
-        shapes = {"shape": (0, *width), "maxshape": (None, *width), "chunks": (chunk, *width)}
-        return file.create_dataset(name, dtype=dtype, **shapes, **more)
+        fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
+        chunks = (min(chunk, 1 << (fitting.bit_length() - 1)), *width)
+        return file.create_dataset(name, (0, *width), dtype, maxshape=(None, *width), chunks=chunks, **more)
 
     # Dimensions without a variable, as netCDF knows them, and the two that have one.
     for name in ("point", "event"):
@@ -263,20 +280,19 @@ def build(file: Any, layout: Layout, compression: int) -> None:
     component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.dtype))
     component.attrs.update(COMPONENT.attributes)
     component.make_scale("component")
-    for column in (*layout.point_columns, *layout.path_columns, EVENT_NAME):
-        width, length, own = layout.width(column), column.length, column.name in file
-        if not own:
-            dtype = h5py.string_dtype("utf-8", length) if length else column.dtype
-            chunk = chunk_rows(width, _CHUNKS[column.dimensions[0]])
-            grows(column.name, dtype, chunk, width, **({} if length else filters))
+    for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME):
+        if column.name not in file:
+            dtype = h5py.string_dtype("utf-8", column.length) if column.length else column.dtype
+            own = {} if column.length else filters
+            made = grows(column.name, dtype, _CHUNKS[column.dimensions[0]], layout.width(column), **own)
+            for axis, dimension in enumerate(column.dimensions):
+                made.dims[axis].attach_scale(file[dimension])
         file[column.name].attrs.update(column.attributes)
-        for axis, dimension in enumerate(() if own else column.dimensions):
-            file[column.name].dims[axis].attach_scale(file[dimension])
     for name, what in (("points", "rows of the point table"), ("paths", "rows of the path table")):
         counter = file.create_dataset(f"committed_{name}", (), "i8")
         counter.attrs.update({"units": "1", "long_name": f"valid {what}"})
-    for table, columns, chunk in (("point", layout.point_columns, 16), ("path", layout.path_columns, _CHUNKS["path"])):
-        grows(f"{GROUP}/{table}", "u4", chunk, (width_of_sums([column.name for column in columns]),))
+    for table, chunk in (("point", 16), ("path", _CHUNKS["path"])):
+        grows(f"{GROUP}/{table}", "u4", chunk, (STOP + len(layout.columns(table)),))
     grows(f"{GROUP}/event", "u4", _CHUNKS["event"])
     file[GROUP].create_dataset(RECORDS, data=blank())
     slots = file.create_dataset(f"{RESUME}/slots", (SLOTS, 0), "u1", maxshape=(SLOTS, None), chunks=(1, 1 << 12))

@@ -7,24 +7,26 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
-import resource
 import weakref
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import lru_cache
 from io import BytesIO
 from pathlib import Path as File
 from typing import Any
 
 import h5py
 import numpy as np
-from h5py import h5s
+from h5py import h5d, h5s
 
-from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, like, publish, short
+from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, publish, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
-from continuation.archive.codec import write_problem
+from continuation.archive.codec import set_attributes, write_problem
 from continuation.archive.hdf5 import HEAD_BYTES, stated_length
-from continuation.archive.schema import EVENT_NAME, NAME, RESUME, SLOTS, Layout, build, text
+from continuation.archive.schema import EVENT_NAME, LIBVER, NAME, RESUME, SLOTS, Layout, empty, text
+
+_RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
 
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
@@ -37,15 +39,16 @@ def put(target: File, write: Callable[[File], Store], *, replace: bool = False, 
         check_new(target)
     with beside(target) as part:
         store = write(part)
-        if not grows:
-            store.close(sync=True)
-        store.publish(target, replace=replace)
+        try:
+            if not grows:
+                store.close(sync=True)
+            publish(part, target, replace=replace)
+        except BaseException:
+            store.close()
+            raise
+        store.file = target
         return store
 
-
-LIBVER = ("v110", "v110")
-
-_ONE_RECORD = h5s.create_simple((1, RECORD_BYTES))
 
 Block = Mapping[str, np.ndarray[Any, Any]]
 
@@ -74,13 +77,12 @@ class Store:
         self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()
         # Made in memory: HDF5 ends the process where a write fails while it closes a file.
-        made = BytesIO()
-        with h5py.File(made, "w", libver=LIBVER) as new:
-            new.attrs.update(attributes)
-            build(new, layout, compression)
+        made = BytesIO(empty(layout, compression))
+        with h5py.File(made, "r+", libver=LIBVER) as new:
+            set_attributes(new, attributes)
             if problem is not None:
                 write_problem(new, *problem)
-            new[GROUP].attrs["attributes"] = np.uint32(of_attributes(dict(new.attrs)))
+            set_attributes(new[GROUP], {"attributes": np.uint32(of_attributes(attributes))})
         with part.open("xb") as file:
             file.write(made.getbuffer())
             if durable:
@@ -94,23 +96,12 @@ class Store:
             self._lock.close()
             raise
         _LIVE.add(self)
-        columns = [column.name for column in (*layout.point_columns, *layout.path_columns, EVENT_NAME)]
-        names = (*columns, "point", "event", "committed_points", "committed_paths")
-        self._data = {name: self._h5[name] for name in names}
-        self._checks = {name: self._h5[GROUP][name] for name in ("point", "path", "event", RECORDS)}
-        self._slots = self._h5[RESUME]["slots"]
+        columns = [column.name for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME)]
+        own = [f"{GROUP}/point", f"{GROUP}/path", f"{GROUP}/event", _RECORDS, _SLOTS]
+        names = {*columns, *own, "point", "event", "committed_points", "committed_paths"}
+        # h5py's own objects cost several times as much.
+        self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
         self._h5.swmr_mode = True
-
-    def publish(self, target: File, *, replace: bool = False) -> None:
-        """Give the file its name, as `continuation.archive.atomic.publish` does; it is closed where that fails."""
-        try:
-            if replace:
-                like(self.file, target)
-            publish(self.file, target, replace=replace)
-        except BaseException:
-            self.close()
-            raise
-        self.file = target
 
     # -- writing ----------------------------------------------------------------------------------------------
 
@@ -140,20 +131,21 @@ class Store:
                 for name, values in (block or {}).items():
                     self._put(self._data[name], start, values)
                 if block:
-                    self._put(self._checks[table], number, seal(block, start)[None])
+                    self._put(self._data[f"{GROUP}/{table}"], number, seal(block, start)[None])
             if points:
-                self._data["point"].id.set_extent((after.points,))
+                self._data["point"].set_extent((after.points,))
             for slot, written in raw.items():
-                values = np.frombuffer(written, dtype="u1")
-                if self._slots.shape[1] < values.size:
-                    self._slots.resize((SLOTS, 2 * values.size))
-                self._slots[slot, : values.size] = values
+                slots = self._data[_SLOTS]
+                if slots.shape[1] < len(written):
+                    slots.set_extent((SLOTS, 2 * len(written)))
+                _write(slots, slots.shape, (slot, 0), np.frombuffer(written, "u1")[None])
             self._record(after, 0)
             self._flush()
             # All of it is written: whatever interrupts from here on, the next commit goes on after it.
             self.committed = after
             self._record(after, PLACES)
-            self._data["committed_points"][()], self._data["committed_paths"][()] = after.points, after.paths
+            for name, count in (("committed_points", after.points), ("committed_paths", after.paths)):
+                self._data[name].write(h5s.ALL, h5s.ALL, np.array(count))
             self._flush()
         except (OSError, RuntimeError, ValueError) as error:
             self.abandon()
@@ -162,31 +154,30 @@ class Store:
 
     def _record(self, committed: Committed, first: int) -> None:
         """One of the two records of a commit, in the place whose turn it is."""
-        records = self._checks[RECORDS].id
-        space = records.get_space()
-        space.select_hyperslab((first + committed.sequence % PLACES, 0), (1, RECORD_BYTES))
-        records.write(_ONE_RECORD, space, committed.pack())
+        _write(
+            self._data[_RECORDS],
+            (2 * PLACES, RECORD_BYTES),
+            (first + committed.sequence % PLACES, 0),
+            committed.pack()[None],
+        )
 
     def name_event(self, name: str) -> int:
         """The number of an event's name; a new one is written, and becomes valid with the rows that refer to it."""
         name = text(name, NAME).decode()
         if name not in self.events:
-            self._data["event"].id.set_extent((len(self.events) + 1,))
-            stored = np.array([name.encode()], dtype=EVENT_NAME.storage)
-            self._put(self._data["event_name"], len(self.events), stored)
-            self._put(self._checks["event"], len(self.events), np.array([digest(stored)], dtype="u4"))
+            count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)
+            self._data["event"].set_extent((count + 1,))
+            self._put(self._data["event_name"], count, stored)
+            self._put(self._data[f"{GROUP}/event"], count, np.array([digest(stored)], dtype="u4"))
             self.events.append(name)
         return self.events.index(name)
 
     @staticmethod
     def _put(dataset: Any, start: int, values: np.ndarray[Any, Any]) -> None:
-        """Rows from `start` on; h5py's own slicing costs several times as much."""
-        identity = dataset.id
-        identity.set_extent((start + len(values), *values.shape[1:]))
-        space = identity.get_space()
-        space.select_hyperslab((start, *(0,) * (values.ndim - 1)), values.shape)
-        kind = identity.get_type() if values.dtype.kind == "S" else None
-        identity.write(h5s.create_simple(values.shape), space, values, kind)
+        """Rows from `start` on."""
+        extent = (start + len(values), *values.shape[1:])
+        dataset.set_extent(extent)
+        _write(dataset, extent, (start, *(0,) * (values.ndim - 1)), values)
 
     def _flush(self) -> None:
         self._h5.flush()
@@ -224,10 +215,7 @@ class Store:
             stated = stated_length(head.read(HEAD_BYTES))
             if ends and stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
-        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
-        device = limited or not hasattr(os, "memfd_create")
-        nowhere = os.open(os.devnull, os.O_RDWR) if device else os.memfd_create("abandoned")
+        nowhere = os.open(os.devnull, os.O_RDWR)
         os.dup2(nowhere, descriptor, inheritable=False)
         os.close(nowhere)
         self._abandoned = True
@@ -247,6 +235,20 @@ def _in_child() -> None:
 
 
 os.register_at_fork(after_in_child=_in_child)
+
+
+@lru_cache(maxsize=64)
+def _spaces(extent: tuple[int, ...], place: tuple[int, ...], shape: tuple[int, ...]) -> tuple[Any, Any]:
+    """Of values in memory, and of their place in a dataset: one for all columns of one shape."""
+    space = h5s.create_simple(extent)
+    space.select_hyperslab(place, shape)
+    return h5s.create_simple(shape), space
+
+
+def _write(dataset: Any, extent: tuple[int, ...], place: tuple[int, ...], values: np.ndarray[Any, Any]) -> None:
+    """Values at a place of a dataset of that extent; h5py's own slicing costs several times as much."""
+    kind = dataset.get_type() if values.dtype.kind == "S" else None
+    dataset.write(*_spaces(extent, place, values.shape), values, kind)
 
 
 def _rows(block: Block | None) -> int:

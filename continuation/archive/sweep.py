@@ -8,13 +8,10 @@ came, in files that are put in order at the end.
 from __future__ import annotations
 
 import secrets
-import tempfile
-import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import ExitStack, suppress
 from functools import partial
-from multiprocessing.process import BaseProcess
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
@@ -23,15 +20,14 @@ from attrs import define, field, frozen
 
 from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
-from continuation.archive.copies import Share, append
-from continuation.archive.growing import share_of_path
+from continuation.archive.copies import Share, append, share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
 from continuation.archive.store import Store, put
 from continuation.archive.transfer import gather
 from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
@@ -39,17 +35,21 @@ from continuation.step.tracer import Tracer
 from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
-Result = Path | Share | BaseException | None
-"""What came of a homotopy; None where Ctrl-C ended it."""
-
-_LOOK = 0.2
-"""Seconds between two looks at the stop sign."""
-
-_GRACE = 0.5
-"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the answer."""
+Result = Path | Share | BaseException
+"""What came of a homotopy."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
 """What a homotopy raises costs its own path; Ctrl-C alone ends the sweep."""
+
+
+@frozen(eq=False)
+class Task:
+    """A homotopy for a worker, and its number in the sweep."""
+
+    homotopy: Any
+    number: int
+    archived: bool
+    options: Options
 
 
 def trace_many(
@@ -109,130 +109,79 @@ def trace_many(
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
     if progress is not None and not callable(progress):
         raise complain(TypeError, "progress", "a function of (done, total)", progress)
-    tasks = list(homotopies)
-    for homotopy in tasks:
+    many = list(homotopies)
+    for homotopy in many:
         instance_with("homotopies", homotopy, ("start", "residual"), "homotopies only")
     target = None if archive is None else new_file("archive", archive)
-    if target is not None and not tasks:
+    if target is not None and not many:
         raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
-    paths = _swept(executor, tasks, target, progress or (lambda done, total: None), timeout, options)
+    tasks = [Task(homotopy, k, target is not None, options) for k, homotopy in enumerate(many)]
+    paths = _swept(executor, tasks, target, progress or (lambda done, total: None), timeout)
     return paths if target is None else open_archive(target)
 
 
 def _swept(
-    executor: Executor | None, tasks: list[Any], target: File | None, report: Progress, timeout: Any, options: Options
+    executor: Executor | None, tasks: Sequence[Task], target: File | None, report: Progress, timeout: float | None
 ) -> list[Path]:
-    token = secrets.token_hex(4)
-    # A worker may run in another directory, on another machine.
-    folder = File(tempfile.gettempdir()) if target is None else target.absolute().parent
-    stop = folder / f"{'continuation' if target is None else target.stem}.sweep-{token}.stop"
-    work_of = [Task(homotopy, k, stop, target is not None, options) for k, homotopy in enumerate(tasks)]
+    futures: dict[Future[Path | Share], int] = {}
+    results: Iterator[tuple[int, Result]] = (
+        ((task.number, traced(task)) for task in tasks)
+        if executor is None
+        else _spread(executor, tasks, timeout, futures)
+    )
+    stopped = False
     with ExitStack() as stack:
-        run = _Run(executor, work_of, timeout, None if target is None else target.absolute(), token, stack)
-        stopped = False
+        kept = _Kept(tasks, None if target is None else target.absolute(), stack)
         try:
-            for done, (number, found) in enumerate(run.results(), 1):
-                run.keep(number, found)
+            for done, (number, found) in enumerate(results, 1):
+                kept.add(number, found)
                 report(done, len(tasks))
         except KeyboardInterrupt:
             stopped = True
-            run.stop()
-        finally:
-            with suppress(OSError):
-                stop.unlink()
-    if target is not None and run.parts:
-        files = [store.file for store in run.parts.values()]
+            for future in futures:
+                future.cancel()
+            _end_processes(executor)
+            for future, number in futures.items():
+                if future.done() and not future.cancelled() and future.exception() is None:
+                    # Ctrl-C reaches the workers too, in a terminal.
+                    with suppress(KeyboardInterrupt):
+                        kept.add(number, future.result())
+    if target is not None and kept.parts:
+        files = [store.file for store in kept.parts.values()]
         gather(files, target)
         for file in files:
             file.unlink()
-    paths = [run.paths[number] for number in sorted(run.paths)]
+    paths = [kept.paths[number] for number in sorted(kept.paths)]
     if stopped:
         raise Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
     return paths
 
 
 @define(eq=False)
-class _Run:
-    """A sweep on its way: what is awaited, and the paths that came, in memory or in a file for each layout."""
+class _Kept:
+    """The paths that came, in memory or in a file for each layout."""
 
-    executor: Executor | None
     tasks: Sequence[Task]
-    timeout: float | None
     target: File | None
-    token: str
     stack: ExitStack
+    token: str = field(factory=partial(secrets.token_hex, 4))
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
-    futures: dict[Future[Result], int] = field(factory=dict)
 
-    def results(self) -> Iterator[tuple[int, Result]]:
-        """What came of each homotopy, when it comes."""
-        if self.executor is not None:
-            yield from self._spread(self.executor)
-            return
-        for task in self.tasks:
-            found, stopped = traced(task)
-            if stopped:
-                self.keep(task.number, found)
-            yield task.number, None if stopped else found
-
-    def _spread(self, executor: Executor) -> Iterator[tuple[int, Result]]:
-        """Submit all of it and wait; workers that hang past the timeout are ended with their processes.
-
-        What was lost with a worker is done again, each in a process of its own: one that ends its process takes no
-        other with it.
-        """
-        lost: dict[int, BaseException] = {}
-        for task in self.tasks:
-            try:
-                self.futures[executor.submit(work, task)] = task.number
-            except BrokenExecutor as error:
-                lost[task.number] = error
-        waiting = set(self.futures)
-        while waiting:
-            ended, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
-            if not ended:
-                # All that run have run for that long, since a worker that ends one begins the next.
-                if not _end_processes(executor):
-                    waiting = {future for future in waiting if not future.cancel() and not future.running()}
-                    continue
-                ended, waiting = wait(waiting)
-            for future in ended:
-                # Dask does again what is lost with a worker while somebody holds its future.
-                number, found = self.futures.pop(future), _outcome(future)
-                if isinstance(found, BrokenExecutor):
-                    lost[number] = found
-                else:
-                    yield number, found
-            del ended
-        late = TimeoutError(f"took longer than {self.timeout or 0:g} s")
-        lost |= dict.fromkeys(self.futures.values(), late)
-        for number in sorted(lost):
-            alone = isinstance(lost[number], BrokenExecutor) and isinstance(executor, ProcessPoolExecutor)
-            found = self._alone(executor, self.tasks[number], late) if alone else lost[number]
-            yield number, found
-
-    def _alone(self, executor: Executor, task: Task, late: TimeoutError) -> Result:
-        """What comes of a homotopy in a process of its own."""
-        alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
-        try:
-            future = alone.submit(work, task)
-            return _outcome(future) if wait([future], timeout=self.timeout).done else late
-        finally:
-            _end_processes(alone)
-            alone.shutdown()
-
-    def keep(self, number: int, found: Result) -> None:
+    def add(self, number: int, found: Result) -> None:
         """Put a path where it stays; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
         task = self.tasks[number]
-        if found is None:
-            raise KeyboardInterrupt
+        if isinstance(found, KeyboardInterrupt):
+            raise found
         if isinstance(found, BaseException):
-            found = sent(Path(status=Status.RAISED, message=sentence(found)), task)
+            found = _sent(Path(status=Status.RAISED, message=sentence(found)), task)
         if isinstance(found, Path):
-            self.paths[number] = found
+            self.paths[number], status = found, found.status
         else:
             append(self.parts.get(found.layout) or self._part(found, task), found)
+            status = Status(int(found.paths["status"][0]))
+        if status is Status.INTERRUPTED:
+            raise KeyboardInterrupt
 
     def _part(self, share: Share, task: Task) -> Store:
         """The file for all paths of a layout."""
@@ -247,102 +196,81 @@ class _Run:
         self.parts[share.layout] = store
         return store
 
-    def stop(self) -> None:
-        """Let the workers end their paths, and those that do not do so soon, with their processes; keep what is done.
 
-        Threads, which cannot be ended, end by themselves.
-        """
-        if self.executor is None:
-            return
-        with suppress(OSError):
-            self.tasks[0].stop.touch()
-        for future in self.futures:
-            future.cancel()
-        if wait(self.futures, timeout=_GRACE).not_done and _end_processes(self.executor):
-            wait(self.futures, timeout=_GRACE)
-        for future, number in self.futures.items():
-            found = _outcome(future) if future.done() else None
-            if isinstance(found, (Path, Share)):
-                self.keep(number, found)
+def _spread(
+    executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
+) -> Iterator[tuple[int, Result]]:
+    """Submit all of it and wait; `futures` are those on their way. A pool's workers that hang are ended.
 
-
-def _outcome(future: Future[Result]) -> Result:
-    error = None if future.cancelled() else future.exception()
-    if future.cancelled() or isinstance(error, KeyboardInterrupt):
-        return None
-    return future.result() if error is None else error
-
-
-def _end_processes(executor: Executor) -> bool:
-    """End the processes of a pool, whose homotopies do not come back; False where it has none of its own."""
+    What was lost with a worker is done again, each in a process of its own: one that ends its process takes no other
+    with it.
+    """
+    lost: dict[int, BaseException] = {}
+    for task in tasks:
+        try:
+            futures[executor.submit(traced, task)] = task.number
+        except BrokenExecutor as error:
+            lost[task.number] = error
     pool = isinstance(executor, ProcessPoolExecutor)
-    processes: list[BaseProcess] = list((getattr(executor, "_processes", None) or {}).values()) if pool else []
-    for process in processes:
-        process.kill()
-        process.join()
-    return bool(processes)
+    while futures:
+        ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
+        if not ended:
+            # All that run have run for that long, since a worker that ends one begins the next.
+            _end_processes(executor)
+            ended = wait(futures).done
+        while ended:
+            # Dask does again what is lost with a worker while somebody holds its future.
+            future = ended.pop()
+            number, raised = futures.pop(future), future.exception()
+            if isinstance(raised, BrokenExecutor):
+                lost[number] = raised
+            else:
+                yield number, future.result() if raised is None else raised
+            del future
+    for number in sorted(lost):
+        yield number, _alone(executor, tasks[number], timeout) if pool else lost[number]
 
 
-# -- what a worker does ----------------------------------------------------------------------------------------
-
-
-@frozen(eq=False)
-class Task:
-    """A homotopy for a worker, and its number in the sweep. A file `stop` ends the worker by its existence."""
-
-    homotopy: Any
-    number: int
-    stop: File
-    archived: bool
-    options: Options
-
-
-@define(eq=False)
-class _Watch:
-    """Ends a path as Ctrl-C does once the stop sign, a file, is there."""
-
-    stop: File
-    next_look: float = 0.0
-
-    def step(self, tracer: Tracer, step: Step) -> None:
-        """See `continuation.Observer`."""
-        if time.monotonic() >= self.next_look:
-            self.next_look = time.monotonic() + _LOOK
-            if self.stop.exists():
-                raise KeyboardInterrupt
-
-    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Steps are enough."""
-
-    def end(self, tracer: Tracer) -> None:
-        """So it has ended."""
-
-
-def work(task: Task) -> Result:
-    """Trace a homotopy; None where Ctrl-C ended it."""
-    found, stopped = (None, True) if task.stop.exists() else traced(task)
-    return None if stopped else found
-
-
-def traced(task: Task) -> tuple[Path | Share, bool]:
-    """The path of a homotopy, whatever that raises, and whether Ctrl-C ended it."""
-    path, controller, stopped = Path(), tuple[float, ...](), False
+def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
+    """What comes of a homotopy in a process of its own."""
+    alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
     try:
-        tracer = Tracer(task.homotopy, observers=(_Watch(task.stop),), **task.options)
+        future = alone.submit(traced, task)
+        if not wait([future], timeout=timeout).done:
+            return TimeoutError(f"took longer than {timeout or 0:g} s")
+        return future.exception() or future.result()
+    finally:
+        _end_processes(alone)
+        alone.shutdown()
+
+
+def _end_processes(executor: Executor | None) -> None:
+    """End the processes of a pool, whose homotopies do not come back; threads end by themselves."""
+    if isinstance(executor, ProcessPoolExecutor):
+        for process in list((executor._processes or {}).values()):
+            process.kill()
+            process.join()
+
+
+def traced(task: Task) -> Path | Share:
+    """The path of a homotopy, whatever that raises: what a worker does."""
+    path, controller = Path(), tuple[float, ...]()
+    try:
+        tracer = Tracer(task.homotopy, **task.options)
         path = tracer.path
         try:
             tracer.run()
         finally:
             controller = () if tracer.state is None else tracer.state.controller
     except Interrupted:
-        stopped = True
+        path.status = Status.INTERRUPTED
     except _ITS_OWN as error:
         if path.status in (Status.TRACING, Status.ABANDONED):
             path.status = Status.RAISED
         path.message = sentence(error)
-    return sent(path, task, controller), stopped
+    return _sent(path, task, controller)
 
 
-def sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
-    """A path as it is sent back."""
+def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
+    """A path as it is sent back: as columns where there is an archive."""
     return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path

@@ -10,7 +10,8 @@ import gzip
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from itertools import pairwise
+from functools import partial
+from itertools import groupby, pairwise
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
@@ -21,9 +22,8 @@ from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
 from continuation.archive.checkpoint import slot_of
-from continuation.archive.contents import Contents
+from continuation.archive.contents import TABLES, Contents
 from continuation.archive.copies import Share, filled, leading, share_of, sourced, write_copy
-from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
 from continuation.archive.schema import TEXT, text
@@ -34,9 +34,7 @@ from continuation.path import Path
 from continuation.status import Kind, Status
 
 
-def merge(
-    files: Iterable[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
-) -> File:
+def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> File:
     """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
 
     Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
@@ -48,14 +46,11 @@ def merge(
     files : iterable of path
     target : path
         Must not exist.
-    compression : int
-        Level of gzip, 0 to 9.
-    title : str
 
     Raises
     ------
     ValueError
-        If there are no files, or gzip does not know the level.
+        If there are no files.
     ArchiveError
         If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
         `target` exists.
@@ -65,27 +60,14 @@ def merge(
     files = list(files)
     if not files:
         raise ValueError("files: expected at least one archive, found none")
-    _check_level(compression)
     whole = new_file("target", target)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         shares = [share_of(archive) for archive in archives]
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
-        attributes = _attributes(shares, f"merged from {len(archives)} files: {names}")
         _refuse_duplicates(archives, shares)
-        attributes |= {"title": title} if title else {}
-        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
+        put(whole, partial(write_copy, shares, what=f"merged from {len(archives)} files: {names}"))
     return whole
-
-
-def _check_level(compression: Any) -> None:
-    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
-        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
-
-
-def _attributes(shares: Sequence[Share], what: str) -> dict[str, Any]:
-    first = leading(shares).attributes
-    return {**first, **process(), **history(first, what)}
 
 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
@@ -103,33 +85,30 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 def gather(files: Sequence[File], target: File) -> None:
     """Merge the parts of a sweep, in the order of its members; those of other sizes than the first keep no points."""
     with ExitStack() as stack:
-        places = []
-        for archive in [stack.enter_context(open_archive(file)) for file in files]:
-            archive.paths.load()
-            places += [(member, archive, k) for k, member in enumerate(archive.paths["member"].tolist())]
-        places.sort(key=lambda place: place[0])
-        shares = [share_of(archive, k, k + 1) for _, archive, k in places]
-        attributes, unknowns = _attributes(shares, f"a sweep of {len(shares)} paths"), leading(shares).layout.unknowns
-        for share in shares:
-            # Not the part, which goes.
+        archives = [stack.enter_context(open_archive(file)) for file in files]
+        places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
+        # Neighbours that are neighbours in their part, too, are read and written together.
+        runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
+        shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
+        head, made = leading(shares), []
+        for run, share in zip(runs, shares):
+            # The source is not the part, which goes.
             share.paths["source"][:] = b""
-        shares = [
-            _of_size(sourced(share, attributes["identifier"], target.name, first=k), unknowns, target)
-            for k, share in enumerate(shares)
-        ]
-        put(target, lambda part: write_copy(shares, part, attributes=attributes))
+            whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
+            made.append(_of_size(whole, head.layout.unknowns, target))
+        put(target, partial(write_copy, made, what=f"a sweep of {len(places)} paths"))
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:
-    """The share; if its paths have another number of unknowns, what they would be in one file: refused."""
+    """The share; paths with another number of unknowns are what they would be in one file: refused."""
     found = share.layout.unknowns
     if found == unknowns or not share.size:
         return share
     reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
-    paths = dict(share.paths)
+    paths, had = dict(share.paths), share.paths["n_points"] > 0
     for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
-        paths[name] = np.full_like(paths[name], value)
-    return evolve(share, paths=paths, points=slice(0, 0))
+        paths[name] = np.where(had, np.array(value, paths[name].dtype), paths[name])
+    return evolve(share, paths=paths, rows=slice(0, 0))
 
 
 # -- other forms -----------------------------------------------------------------------------------------------
@@ -159,14 +138,14 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     ArchiveError
         If `file` is no archive, or a target exists.
     """
-    _check_level(compression)
+    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
+        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
     name = as_file("target", target)
     with open_archive(file) as archive:
         if name.suffix in (".nc", ".nc4", ".h5"):
             check_new(name)
-            attributes = {**archive.attributes, **history(archive.attributes, f"exported from {archive.file.name}")}
-            shares = [share_of(archive)]
-            put(name, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
+            what = f"exported from {archive.file.name}"
+            put(name, partial(write_copy, [share_of(archive)], what=what, compression=compression))
             return [name]
         for suffix in (".csv", ".csv.gz"):
             if name.name.endswith(suffix):
@@ -229,7 +208,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     name = as_file("file", file)
     with ExitStack() as stack:
         contents = stack.enter_context(closing(Contents(name, salvage=True)))
-        lost = {table: contents.unsound(table) for table in ("point", "path")}
+        lost = {table: contents.unsound(table) for table in TABLES}
         damaged, slots = any(lost.values()) or any(contents.cut_off.values()), dict[int, bytes]()
         if damaged or contents.flaws:
             shares = _salvaged(contents, lost)
@@ -246,13 +225,12 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
             slots = slot_of(archive.checkpoint())
         real = File(os.path.realpath(name))
         stack.enter_context(closing(own(real, contents.descriptor, contents.attributes.get("process"), force=force)))
-        if not shares:
+        if not len(shares[0].paths["path"]) and damaged:
             raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
-        attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
         # What is dropped may be worth more to somebody else than it is to us.
         if damaged:
             _keep_aside(real)
-        put(real, lambda part: write_copy(shares, part, attributes=attributes, checkpoints=slots), replace=True)
+        put(real, partial(write_copy, shares, what=what, checkpoints=slots), replace=True)
     return name
 
 
@@ -264,35 +242,34 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]]) -> list[Share]:
     """The sound rows, path by path: each from its first point to the one before its first damaged block.
 
-    `lost` has the unsound blocks of the tables ``"point"`` and ``"path"``. Of a file without rows there is one share. A
-    path whose own row is lost, or has lost points, was interrupted.
+    `lost` has the unsound blocks of the two tables. Of a file without sound rows there is one empty share. A path whose
+    own row is lost, or has lost points, was interrupted.
     """
     committed, layout = contents.committed, contents.layout
+    points, paths = contents.table("point"), contents.table("path")
     sound = {"point": np.ones(committed.points, dtype=bool), "path": np.ones(committed.paths, dtype=bool)}
     for table, spans in lost.items():
         for start, stop in spans:
             sound[table][start:stop] = False
-    runs, shares = dict(_runs(contents, sound["point"])), []
+    runs, shares = dict(_runs(points, sound["point"])), []
     for number in sorted({*runs, *np.flatnonzero(sound["path"]).tolist()}):
-        rows, own = runs.get(number, slice(0, 0)), number < committed.paths and bool(sound["path"][number])
-        points = rows.stop - rows.start
+        rows = runs.get(number, slice(0, 0))
         row = row_columns({**record_of(Path(), None, ()), "path": number, "member": number, "n_points": -1}, layout)
-        if own:
-            row = {name: contents.read("path", name, slice(number, number + 1)) for name in row}
-        if row["n_points"][0] != points:
-            row["n_points"][:] = points
+        if number < committed.paths and sound["path"][number]:
+            row = {name: values.copy() for name, values in paths.block(slice(number, number + 1)).items()}
+        if row["n_points"][0] != rows.stop - rows.start:
+            row["n_points"][:] = rows.stop - rows.start
             _interrupted(row, 0, "The rest of it was damaged.")
-        shares.append(Share.of(contents, row, rows, number))
-    nothing = Share.of(contents, filled({}, layout, layout.path_columns, 0), slice(0, 0))
-    return shares or ([] if any(lost.values()) or any(contents.cut_off.values()) else [nothing])
+        shares.append(Share(layout, contents.event_names, row, points, rows, number, contents))
+    nothing = filled({}, layout, "path", 0)
+    return shares or [Share(layout, contents.event_names, nothing, points, slice(0, 0), 0, contents)]
 
 
-def _runs(contents: Contents, sound: Any) -> Iterator[tuple[int, slice]]:
+def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
     """For each path with a sound first point: its number, and the rows up to the first damaged block."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1"))).reshape(-1, 2)
     for start, stop in edges.tolist():
-        rows = slice(start, stop)
-        paths, kinds = (contents.read("point", name, rows) for name in ("path_index", "kind"))
+        paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))
         changes = np.concatenate(([0], np.flatnonzero(np.diff(paths)) + 1, [stop - start])).tolist()
         for first, last in pairwise(changes):
             # A run that begins in the middle of a path is that path's end, of no use without its beginning.
@@ -309,12 +286,3 @@ def _keep_aside(file: File) -> None:
         raise ArchiveError(f"{file}: is damaged, and would be kept as {aside.name}, which exists already") from None
     except OSError as error:
         raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None
-
-
-def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes that can be written again, whatever happened to their text."""
-    return {
-        name.encode(errors="replace").decode(): value.encode(errors="replace").decode()
-        if isinstance(value, str) else value
-        for name, value in attributes.items()
-    }  # fmt: skip

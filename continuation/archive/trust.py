@@ -84,37 +84,40 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
     makes no sense.
     """
     try:
-        value = _decode(tree, fetch, known or {}, hint)
+        return _decode(tree, fetch, known or {}, hint, "")
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise UnknownError(f"the description makes no sense ({type(error).__name__}: {error})") from None
-    return _checked(value, hint, "")
 
 
-def _checked(value: Any, hint: Any, name: str) -> Any:
+def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any, name: str) -> Any:
+    """`name` is that of the field, for messages."""
+    value: Any
+    match tree:
+        case None | bool() | int() | float() | str():
+            value = tree
+        case {"array": place}:
+            value = fetch(place)
+        case {"tuple": items}:
+            value = tuple(_decode(item, fetch, known, of, name) for item, of in zip(items, _items(hint, len(items))))
+        case {"list": items}:
+            value = [_decode(item, fetch, known, of, name) for item, of in zip(items, _items(hint, len(items)))]
+        case {"dict": items}:
+            value = {key: _decode(item, fetch, known, Any, name) for key, item in items.items()}
+        case {"sparse": form}:
+            parts = tuple(fetch(tree[part]) for part in ("data", "indices", "indptr"))
+            value = (sp.csr_array if form == "csr" else sp.csc_array)(parts, shape=tuple(tree["shape"]))
+            # Indices outside the shape would corrupt memory at the first product.
+            value.check_format(full_check=True)
+        case {"function": path}:
+            if path not in known:
+                raise UnknownError(f"{path} is a function, which is not trusted: pass it in trust=[...]")
+            value = known[path]
+        case _:
+            value = _object(tree, fetch, known, hint)
     if not _fits(value, hint):
         shown = hint.__name__ if isinstance(hint, type) else str(hint)
         raise UnknownError(f"{name}expected {shown}, found {type(value).__name__}")
     return value
-
-
-def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any) -> Any:
-    if tree is None or isinstance(tree, (bool, int, float, str)):
-        return tree
-    if "array" in tree:
-        return fetch(tree["array"])
-    for kind, make in (("tuple", tuple), ("list", list)):
-        if kind in tree:
-            inner = _items(hint, len(tree[kind]))
-            return make(_decode(item, fetch, known, of) for item, of in zip(tree[kind], inner))
-    if "dict" in tree:
-        return {key: _decode(item, fetch, known, Any) for key, item in tree["dict"].items()}
-    if "sparse" in tree:
-        return _sparse(tree, fetch)
-    if "function" not in tree:
-        return _object(tree, fetch, known, hint)
-    if tree["function"] not in known:
-        raise UnknownError(f"{tree['function']} is a function, which is not trusted: pass it in trust=[...]")
-    return known[tree["function"]]
 
 
 def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any) -> Any:
@@ -122,34 +125,22 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     expected = (typing.get_origin(option) or option for option in _options(hint))
     # A class that a field is annotated with is found by its name: it may have moved to another module since.
     named = (c for c in expected if isinstance(c, type) and attrs.has(c) and c.__qualname__ == path.partition(":")[2])
-    cls = next(named, None) or known.get(path) or (_registered(path) if known else None)
+    cls: Any = next(named, None) or known.get(path) or (_registered(path) if known else None)
     if not isinstance(cls, type):
         raise UnknownError(f"{path} is not registered: pass it in trust=[...]")
     if "data" in tree:
-        made: Any = cls
-        return made.from_archive(_decode(tree["data"], fetch, known, Any))
+        return cls.from_archive(_decode(tree["data"], fetch, known, Any, ""))  # type: ignore[attr-defined]
     hints = _hints(cls)
     kinds = {a.alias: hints.get(a.name, Any) for a in attrs.fields(cls) if a.init} if attrs.has(cls) else {}
     if set(tree["fields"]) - set(kinds):
         raise UnknownError(f"{path} has no field {', '.join(set(tree['fields']) - set(kinds))} any more")
-    fields = {
-        key: _checked(_decode(item, fetch, known, kinds[key]), kinds[key], f"{path}: {key} ")
-        for key, item in tree["fields"].items()
-    }
+    fields = {key: _decode(item, fetch, known, kinds[key], f"{path}: {key} ") for key, item in tree["fields"].items()}
     if not hasattr(cls, "__attrs_init__"):
         return cls(**fields)
     # A class with a constructor of its own for people, which completes and checks what is complete here.
-    made = object.__new__(cls)
+    made: Any = object.__new__(cls)
     made.__attrs_init__(**fields)
     return made
-
-
-def _sparse(tree: Any, fetch: Callable[[Any], Any]) -> Any:
-    make = sp.csr_array if tree["sparse"] == "csr" else sp.csc_array
-    matrix = make((fetch(tree["data"]), fetch(tree["indices"]), fetch(tree["indptr"])), shape=tuple(tree["shape"]))
-    # Indices outside the shape would corrupt memory at the first product.
-    matrix.check_format(full_check=True)
-    return matrix
 
 
 # -- types ----------------------------------------------------------------------------------------------------
@@ -188,8 +179,6 @@ def _is(value: Any, hint: Any) -> bool:
     origin, arguments = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is typing.Literal:
         return value in arguments
-    if origin in (typing.ClassVar, typing.Final):
-        return _fits(value, arguments[0])
     if origin is np.ndarray:
         return isinstance(value, np.ndarray) and value.dtype.kind in "fiubc"
     if origin in (tuple, list) and arguments:

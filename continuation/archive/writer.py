@@ -19,11 +19,11 @@ from continuation.archive.atomic import ArchiveError, new_file
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
-from continuation.archive.reader import open_archive
+from continuation.archive.reader import StoredSteps
 from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, LOCATED, SLOTS, check_names
 from continuation.archive.store import Store, put
-from continuation.archive.tables import StoredSteps, kept_whole
+from continuation.archive.tables import kept_whole
 from continuation.arguments.checks import complain, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
@@ -107,7 +107,6 @@ class PathLog:
     _open: OpenPath | None = None
     _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
     _about: tuple[str, Mapping[str, Any]] = ("", {})
-    _paths = _sequence = 0
     _known: tuple[Any, Any] = (None, None)
     """The file's first homotopy, and what says in a checkpoint how to make it."""
     _commit_at = 0.0
@@ -148,8 +147,11 @@ class PathLog:
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._early = store.file, store, (points, []), []
-        log._whole, log._paths, log._sequence = whole, checkpoint.path, checkpoint.sequence
-        log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
+        log._whole, log._known, log.member = (
+            whole,
+            (tracer.homotopy, checkpoint.run["homotopy"]),
+            checkpoint.run["member"],
+        )
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
         log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, None, mark, mark)
@@ -163,14 +165,14 @@ class PathLog:
         path = self._path(tracer)
         store = self._store or self._make(tracer, step.u.size - 1, tuple(step.observed))
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
-            stored: Any = StoredSteps(open_archive, self.file, path.number, tracer.path.steps)
+            stored: Any = StoredSteps(self.file, path.number, tracer.path.steps)
             tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
             # Not a point to resume from either: that is one whose row is there.
             return
         ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
-        for row in rows_at(step, ending[::-1], store.layout.pieces):
+        for row in rows_at(step, ending[::-1], store.layout):
             self._add(row)
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
@@ -201,7 +203,6 @@ class PathLog:
         if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
             row |= {"path": path.number, "n_points": self._rows[0] + len(self._rows[1]) - path.first}
             row["member"] = path.number if self.member is None else self.member
-            self._paths = path.number + 1
             if self._store is None:
                 self._early.append(row)
             else:
@@ -237,7 +238,8 @@ class PathLog:
         if path is None:
             if self._closed:
                 raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
-            self._open = path = OpenPath(tracer, self._paths, self._rows[0])
+            number = len(self._early) if self._store is None else self._store.committed.paths
+            self._open = path = OpenPath(tracer, number, self._rows[0])
             self._commit_at = time.monotonic() + self._limits.seconds
         if path.tracer is not tracer:
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
@@ -254,7 +256,7 @@ class PathLog:
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
-        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, self._early)
+        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, early=self._early)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, *self._about)
@@ -277,7 +279,8 @@ class PathLog:
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
-            checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
+            sequence = store.committed.checkpoint + 1
+            checkpoints = {sequence % SLOTS: self._checkpoint(path, path.resume, sequence)}
         if row is not None and row["path"] >= store.committed.paths:
             row["source"] = f"{store.identifier} {row['path']} {self.file.name}"
             paths = row_columns(row, store.layout)
@@ -290,14 +293,13 @@ class PathLog:
         self._rows = (start + len(rows), [])
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
-        self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
 
-    def _checkpoint(self, path: OpenPath, mark: Mark) -> bytes:
+    def _checkpoint(self, path: OpenPath, mark: Mark, sequence: int) -> bytes:
         if path.run is None:
             homotopy, described = self._known
             known = described if homotopy is path.tracer.homotopy else None
             path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
         state, counts, rows = mark
         named, seconds = dict(zip(COUNT_NAMES, counts)), path.seconds + path.tracer.seconds
-        return pack(Checkpoint(self._sequence + 1, path.number, rows, state, named, seconds, {}), path.run)
+        return pack(Checkpoint(sequence, path.number, rows, state, named, seconds, {}), path.run)

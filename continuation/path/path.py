@@ -300,10 +300,6 @@ class Path:
             page += table("Events" if more <= 0 else f"Events, {more} more", found, ("event", name, "arclength"))
         return page
 
-    def summary(self) -> dict[str, Any]:
-        """The end in numbers, for tables and logs."""
-        return {"status": self.status.name, "points": len(self), "events": len(self.events), **self.counts.as_dict()}
-
 
 @runtime_checkable
 class SupportsColumn(Protocol):

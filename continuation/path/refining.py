@@ -48,9 +48,9 @@ def refined_path(
     steps, first = [path[0]], {0: 0}
     for k, (before, after) in enumerate(pairwise(path), 1):
         segment = after.segment
-        if segment is not None:
-            steps += _between(solver, before, after, segment, allowed, DEEPEST)
-        steps.append(after if segment is None or steps[-1] is before else _joining(steps[-1], after))
+        between = [] if segment is None else _between(solver, before, after, segment, allowed, DEEPEST)
+        knots = pairwise((before, *between, after))
+        steps += [evolve(q, segment=_cubic(p, q, after.weights)) for p, q in knots] if between else [after]
         first[k] = len(steps) - 1
     steps = [evolve(step, index=k) for k, step in enumerate(steps)]
     arclengths = np.array([step.arclength for step in steps])
@@ -81,19 +81,14 @@ def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, al
     middle = Step(
         0, point.u, tangent, arclength, after.step_length, solver.evaluator.residual_norm(point.u),
         before.orientation, Kind.REGULAR, weights=after.weights,
-        segment=_cubic(before, point.u, tangent, after.weights),
     )  # fmt: skip
-    last = _cubic(middle, after.u, after.tangent, after.weights)
-    left = _between(solver, before, middle, middle.segment, allowed, deep - 1) if middle.segment is not None else []
-    if left:
-        middle = _joining(left[-1], middle)
-    return [*left, middle, *_between(solver, middle, after, last, allowed, deep - 1)]
+    left, right = (
+        _between(solver, p, q, _cubic(p, q, after.weights), allowed, deep - 1)
+        for p, q in ((before, middle), (middle, after))
+    )
+    return [*left, middle, *right]
 
 
-def _cubic(before: Step, u: Array, v: Array, weights: Array | None) -> Segment:
+def _cubic(before: Step, after: Step, weights: Array | None) -> Segment:
     border = before.tangent if weights is None else weights * before.tangent
-    return hermite(before.u, before.tangent, u, v, border)
-
-
-def _joining(before: Step, after: Step) -> Step:
-    return evolve(after, segment=_cubic(before, after.u, after.tangent, after.weights))
+    return hermite(before.u, before.tangent, after.u, after.tangent, border)

@@ -19,11 +19,9 @@ COMPARED_ORDER = 6
 SOLVE_ERROR = 1e-8
 """Largest relative residual of a bordered solve: half of the digits."""
 
-SERIES_ERROR = 1e-6
-"""Largest error of a Taylor coefficient, relative to the coefficient's size."""
-
 DERIVATIVE_ERROR = 1e-6
-"""Relative error of a derivative that passes: a difference quotient is as good, a wrong formula is not."""
+"""Relative error of a derivative, a coefficient or a step that passes: a difference quotient is as good, a wrong
+formula is not."""
 
 CANCELLED_ENTRY = 1e-10
 """The same for an entry that cancels, relative to the largest entry."""
@@ -120,7 +118,7 @@ def _check_order(subject: Subject, place: Place, point: Linearization, c: Array)
     along = c @ point.border
     for k in range(2, COMPARED_ORDER + 1):
         said = f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}"
-        require(not abs(along[k]) > SERIES_ERROR * float(np.abs(c[k]).max()) + 1e-12, said)
+        require(not abs(along[k]) > DERIVATIVE_ERROR * float(np.abs(c[k]).max()) + 1e-12, said)
     h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
     powers = np.arange(COMPARED_ORDER + 1)
     sizes = []

@@ -22,11 +22,9 @@ from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.path import Path
 from continuation.status import Status
+from continuation.testing.derivatives import DERIVATIVE_ERROR
 from continuation.testing.protocol import same_residual
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
-
-MAX_STEP_ERROR = 1e-6
-"""Relative error of `max_step` that is let pass."""
 
 
 def max_step(subject: Subject) -> None:
@@ -39,7 +37,7 @@ def max_step(subject: Subject) -> None:
             for share, factor in () if math.isinf(whole) else ((0.0, 2.0), (0.5, 1.0), (0.999, 1.0)):
                 rest = (1.0 - share) / factor * whole
                 left = _longest(subject, place.where, place.u + share * whole * v, factor * v)
-                if abs(left - rest) > MAX_STEP_ERROR * whole:
+                if abs(left - rest) > DERIVATIVE_ERROR * whole:
                     fail(f"max_step: {place.where} it is {whole:.6g} along v; after {share:g} of that {rest:.6g} along "
                          f"{factor:g} v should be left, found {left:.6g}")  # fmt: skip
             inside = not math.isfinite(whole) or subject.finite(Place("", place.u + 0.999 * whole * v))

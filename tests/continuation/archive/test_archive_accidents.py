@@ -2,17 +2,15 @@
 
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 import pytest
 
-from continuation import Budget, Tracer, trace
+from continuation import Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, export, merge, open_archive, recover, resume
 from continuation.archive.atomic import beside
 from continuation.controllers import Bounds, Fixed
@@ -208,12 +206,6 @@ def test_one_writer_at_a_time(tmp_path):
     assert np.array_equal(rows(file), path.u)
 
 
-def test_a_process_number_in_use_again_is_not_the_writer(tmp_path, monkeypatch):
-    file = killed(tmp_path / "run.h5")
-    monkeypatch.setattr(os, "kill", lambda process, number: None)
-    assert len(resume(file)) == len(trace(HOMOTOPY, **OPTIONS))
-
-
 def test_a_child_does_not_keep_the_lock(tmp_path):
     """Forked while the log is open, and still there when the writer is gone."""
     file, read, write = tmp_path / "run.h5", *os.pipe()
@@ -295,12 +287,3 @@ def test_a_pipe_is_no_archive(tmp_path):
     os.mkfifo(tmp_path / "run.h5")
     with pytest.raises(ArchiveError, match="is no regular file"):
         open_archive(tmp_path / "run.h5")
-
-
-def test_no_core_is_left(tmp_path):
-    """What the limits above rely on."""
-    assert resource.getrlimit(resource.RLIMIT_FSIZE)
-    with h5py.File(tmp_path / "other.h5", "w"):
-        pass
-    with pytest.raises(ArchiveError, match="not an archive of paths"):
-        resume(tmp_path / "other.h5", budget=Budget())

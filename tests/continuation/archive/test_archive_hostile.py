@@ -108,7 +108,7 @@ HARM = {
 OPERATIONS = {
     "open": lambda file: repr(open_archive(file)),
     "read": lambda file: [path.u for path in open_archive(file)],
-    "columns": lambda file: open_archive(file).points.load(),
+    "columns": lambda file: dict(open_archive(file).points),
     "problem": lambda file: open_archive(file).problem(),
     "describe": lambda file: describe(open_archive(file)),
     "export": lambda file: export(file, file.with_suffix(".csv")),

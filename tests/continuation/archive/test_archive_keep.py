@@ -9,7 +9,7 @@ import pytest
 
 from continuation import Budget, Kind, Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, resume
-from continuation.archive.tables import StoredSteps
+from continuation.archive.reader import StoredSteps
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
@@ -70,15 +70,6 @@ def test_resume_from_it(tmp_path, keep, tangents):
             assert np.array_equal(found(middle), archive.path(0)(middle))
 
 
-def test_an_archive_that_is_gone_says_so(tmp_path):
-    found = trace(HOMOTOPY, archive=PathLog(tmp_path / "run.h5", keep="ends"), **OPTIONS)
-    (tmp_path / "run.h5").unlink()
-    assert isinstance(found.steps, StoredSteps)
-    assert found.endpoint.index == len(found) - 1
-    with pytest.raises(ArchiveError, match="there is no such file"):
-        _ = found.u
-
-
 def test_memory_does_not_grow_with_the_path(tmp_path):
     """Of Python's own, which is counted exactly: a list of steps takes more than a kilobyte a step.
 
@@ -136,3 +127,12 @@ def test_what_save_every_can_be(tmp_path, wrong):
         trace(HOMOTOPY, save_every=2)
     with pytest.raises(ValueError, match="save_every: expected"):
         PathLog(tmp_path / "run.h5", save_every=2, keep="ends")
+
+
+def test_an_archive_that_is_gone_says_so(tmp_path):
+    found = trace(HOMOTOPY, archive=PathLog(tmp_path / "run.h5", keep="ends"), **OPTIONS)
+    (tmp_path / "run.h5").unlink()
+    assert isinstance(found.steps, StoredSteps)
+    assert found.endpoint.index == len(found) - 1
+    with pytest.raises(ArchiveError, match="there is no such file"):
+        _ = found.u

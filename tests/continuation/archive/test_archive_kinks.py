@@ -74,17 +74,9 @@ def test_switches_and_rays_come_back(tmp_path):
     assert path.status is Status.BUDGET_EXHAUSTED
 
 
-def test_a_path_that_stays_in_its_file(tmp_path):
-    tracer = written(tmp_path / "run.h5", keep="ends", steps=30)
-    with open_archive(tmp_path / "run.h5") as archive:
-        stored = archive.path(0)
-    assert np.array_equal(tracer.path.u, stored.u)
-    assert [step.index for step in tracer.path.steps[3:9]] == list(range(3, 9))
-
-
 def test_windows_do_not_tear_a_kink_apart(tmp_path, monkeypatch):
     written(tmp_path / "run.h5", steps=12)
-    monkeypatch.setattr("continuation.archive.tables.ROWS_AT_ONCE", 3)
+    monkeypatch.setattr("continuation.archive.reader.ROWS_AT_ONCE", 3)
     with open_archive(tmp_path / "run.h5") as archive:
         whole, ends = archive.path(0), archive.path(0, keep="ends")
         assert [len(event.rays) for event in ends.events] == [len(event.rays) for event in whole.events]

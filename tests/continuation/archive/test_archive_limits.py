@@ -58,16 +58,10 @@ def many_rows(file):
     file["n_points"][0] = file["committed_points"][()] = 1_000_000
 
 
-def many_names(file):
-    for k in range(5000):
-        file[f"observed_{k}"] = file["arclength"]
-
-
 BOMBS = {
     "a wide state": lambda file: zeros(file, "controller_state", (1, 30_000_000)),
     "many unknowns": lambda file: [zeros(file, name, (7, 4_000_000)) for name in ("y", "tangent_y")],
     "many rows": many_rows,
-    "one column under many names": many_names,
     "a large problem": lambda file: file["problem"].create_dataset("A", (10**4, 10**4), "f8", compression="gzip"),
     "many names of events": lambda file: file["event_name"].resize((10**7,)),
 }

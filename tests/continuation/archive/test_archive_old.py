@@ -10,7 +10,6 @@ import pytest
 
 from continuation import Budget, Status, trace
 from continuation.archive import ArchiveError, describe, export, merge, open_archive, recover, resume
-from continuation.archive.checkpoint import major
 from problems.bifurcation import Cusp
 
 OLD = Path(__file__).parent / "old" / "archives.tar.xz"
@@ -90,10 +89,6 @@ def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_
     # The direction is that in which it came: the path does not turn back.
     assert (after.u[1] - after.u[0]) @ (before.u[-1] - before.u[-2]) > 0.0
     assert after.endpoint.lam == trace(Cusp()).endpoint.lam
-
-
-def test_what_two_versions_have_in_common():
-    assert [major(version) for version in ("2.3.1", "0.2.5", "10", "0.2")] == ["2", "0.2", "10", "0.2"]
 
 
 @pytest.mark.parametrize("path", [trace(Cusp(), budget=Budget(steps=1))[:0]], ids=["none"])

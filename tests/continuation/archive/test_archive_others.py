@@ -4,7 +4,6 @@ import gc
 import os
 import threading
 
-import h5py
 import numpy as np
 import pytest
 
@@ -131,13 +130,6 @@ def test_a_file_that_is_removed_while_it_is_written(tmp_path, path):
     assert not file.exists()
 
 
-def test_a_link_to_nothing_is_not_written_through(tmp_path):
-    (tmp_path / "link.h5").symlink_to("gone.h5")
-    with pytest.raises(ArchiveExistsError):
-        trace(HOMOTOPY, archive=tmp_path / "link.h5")
-    assert not (tmp_path / "gone.h5").exists()
-
-
 def test_flipped_bits_in_what_a_killed_writer_left(tmp_path, path):
     """HDF5 waits for a checksum that is being written; nobody writes this one."""
     file, process = tmp_path / "run.h5", os.fork()
@@ -147,14 +139,15 @@ def test_flipped_bits_in_what_a_killed_writer_left(tmp_path, path):
                 os._exit(0)
     os.waitpid(process, 0)
     raw, refused = file.read_bytes(), 0
-    places = [at for at in range(8, 2000) if raw[at]]
-    for at in places[::5]:
+    places = [at for at in range(8, 40_000) if raw[at]]
+    places = places[:: len(places) // 200]
+    for at in places:
         file.write_bytes(raw[:at] + bytes([raw[at] ^ 1]) + raw[at + 1 :])
         found, complaint = read(file)
         refused += bool(complaint)
         assert "\n" not in complaint
         assert np.array_equal(found, path.u[: len(found)])
-    assert refused > len(places[::5]) // 2
+    assert refused > len(places) // 2
 
 
 def read(file):
@@ -166,15 +159,8 @@ def read(file):
         return np.zeros((0, 4)), str(error)
 
 
-def test_a_chunk_that_unfolds_to_more_than_anybody_needs(tmp_path):
-    file = tmp_path / "run.h5"
-    trace(HOMOTOPY, archive=file, **OPTIONS)
-    with h5py.File(file, "r+", libver="latest") as opened:
-        rows = len(opened["parameter"])
-        del opened["parameter"]
-        opened.create_dataset(
-            "parameter", (rows,), "f8", maxshape=(None,), chunks=(1 << 24,), compression="gzip", data=np.zeros(rows)
-        )
-    assert file.stat().st_size < 1 << 20
-    with open_archive(file) as archive, pytest.raises(ArchiveError, match=r"parameter is stored in chunks of"):
-        archive.path(0)
+def test_a_link_to_nothing_is_not_written_through(tmp_path):
+    (tmp_path / "link.h5").symlink_to("gone.h5")
+    with pytest.raises(ArchiveExistsError):
+        trace(HOMOTOPY, archive=tmp_path / "link.h5")
+    assert not (tmp_path / "gone.h5").exists()

@@ -96,13 +96,6 @@ def test_what_is_observed_is_observed_at_located_events_too(tmp_path):
         assert np.isfinite(archive.points["observed_size"]).all()
 
 
-def test_an_archive_keeps_tangents_so_that_its_paths_are_curves(tmp_path):
-    path = trace(Plain(), archive=tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert np.array_equal(archive.path(0).tangents, path.tangents)
-        assert all(step.segment is not None for step in archive.path(0).steps[1:])
-
-
 def test_eight_points_of_a_hundred_unknowns_take_less_than_100_kilobytes(tmp_path):
     class Wide(Plain):
         names = ()

@@ -7,12 +7,11 @@ import pytest
 import xarray
 
 import continuation
-from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation import Budget, Status, TargetValue, Tracer, from_functions, trace
 from continuation.archive import Limits, PathLog, open_archive, resume
 from continuation.archive.resume import stored_homotopy
 from continuation.archive.schema import SCHEMA
 from continuation.archive.trust import registry
-from continuation.counts import Counts
 from continuation.path import LocatedEvent, Step
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth, Pitchfork
 
@@ -33,36 +32,6 @@ CASES = {
 def same(a, b):
     """Equality in which NaN equals NaN."""
     return np.array_equal(a, b, equal_nan=True) if isinstance(a, (float, np.ndarray)) else a == b
-
-
-class Corner:
-    """Walks to an event that falls on an accepted point exactly, and goes on."""
-
-    target = None
-
-    def start(self):
-        return np.zeros(1), 0.0
-
-    def residual(self, y, lam):
-        return y - lam
-
-
-def test_an_event_on_an_accepted_point(tmp_path):
-    log = PathLog(tmp_path / "run.h5")
-    tracer = Tracer(Corner(), observers=(log,), budget=Budget(steps=4))
-    steps = iter(tracer)
-    step = [next(steps) for _ in range(3)][-1]
-    events = [
-        LocatedEvent(name, Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index + 1, True)
-        for name in ("one", "two")
-    ]
-    tracer.path.events.extend(events)
-    log.step(tracer, attrs.evolve(step, index=step.index + 1))
-    steps.close()
-    with open_archive(tmp_path / "run.h5") as archive:
-        found = archive.path(0)
-        assert [(event.name, event.step) for event in found.events] == [("one", 3), ("two", 3)]
-        assert [step.kind for step in found.steps] == [Kind.START, 0, 0, 0]
 
 
 def differences(found, expected, kind, without):
@@ -151,17 +120,6 @@ def test_to_xarray_is_what_xarray_opens(tmp_path, engine):
         assert np.array_equal(variable.values, stored, equal_nan=variable.dtype.kind == "f")
 
 
-def test_dimension_scales_are_attached(tmp_path):
-    trace(Bratu1D(5), archive=tmp_path / "run.h5", budget=Budget(steps=3))
-    with h5py.File(tmp_path / "run.h5") as file:
-        for name, dataset in file.items():
-            if isinstance(dataset, h5py.Group) or dataset.is_scale or dataset.ndim == 0:
-                continue
-            for axis in range(dataset.ndim):
-                (scale,) = dataset.dims[axis].values()
-                assert scale.shape[0] == dataset.shape[axis], name
-
-
 def test_dataframe(tmp_path):
     path = trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
     with open_archive(tmp_path / "run.h5") as archive:
@@ -218,14 +176,6 @@ def test_a_trace_that_is_refused_leaves_no_file(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_every_counter_has_a_column(tmp_path):
-    path = trace(Circle(), archive=tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        names = {"residuals": "evaluations"}
-        for name in Counts().as_dict():
-            assert archive.paths[names.get(name, name)][0] == getattr(path.counts, name) > -1
-
-
 def test_provenance_and_the_problem_are_in_the_file(tmp_path):
     trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:
@@ -238,17 +188,6 @@ def test_provenance_and_the_problem_are_in_the_file(tmp_path):
         assert all(about[f"{name}_version"] for name in ("python", "numpy", "scipy", "h5py", "hdf5"))
         assert "created" in about["history"]
         assert not any(isinstance(value, (bool, np.bool_)) for value in about.values())
-
-
-def test_a_log_is_for_one_path_at_a_time(tmp_path):
-    with PathLog(tmp_path / "run.h5") as log:
-        first, second = (iter(Tracer(Circle(), observers=(log,))) for _ in range(2))
-        next(first)
-        with pytest.raises(OSError, match="a path is being written already"):
-            next(second)
-        first.close()
-    with pytest.raises(OSError, match="the log is closed"):
-        trace(Circle(), archive=log)
 
 
 def test_paths_of_another_size_are_refused(tmp_path):

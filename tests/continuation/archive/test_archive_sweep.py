@@ -95,40 +95,6 @@ def test_failures_are_kept(tmp_path, expected, archived):
         paths.close()
 
 
-def test_nothing_but_failures(tmp_path):
-    with trace_many([Broken(), Broken()], archive=tmp_path / "run.h5") as paths:
-        assert [path.message for path in paths] == ["RuntimeError: no start"] * 2
-
-
-@pytest.mark.parametrize("archived", [False, True])
-def test_dask_gives_the_same_rows_as_processes_and_as_one_after_another(tmp_path, expected, archived):
-    distributed = pytest.importorskip("distributed", reason="needs the extra `dask`")
-    homotopies = [*HOMOTOPIES, Broken()]
-    # Workers are threads here: with processes of their own the same homotopies and files would be pickled.
-    with (
-        distributed.LocalCluster(2, threads_per_worker=1, processes=False, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-        client.get_executor() as executor,
-    ):
-        paths = trace_many(homotopies, executor, tmp_path / "dask.h5" if archived else None)
-    check(paths[: len(HOMOTOPIES)], expected)
-    assert (paths[-1].status, paths[-1].message) == (Status.RAISED, "RuntimeError: no start")
-    if archived:
-        assert [entry.name for entry in tmp_path.iterdir()] == ["dask.h5"]
-        with (
-            ProcessPoolExecutor(2) as executor,
-            trace_many(homotopies, executor, tmp_path / "processes.h5") as others,
-            trace_many(homotopies, archive=tmp_path / "serial.h5") as serial,
-        ):
-            for column in ("member", "status", "factorizations", "homotopy_imperfection", "message"):
-                for other in (others, serial):
-                    np.testing.assert_array_equal(paths.paths[column], other.paths[column])
-            for name in ("parameter", "y", "arclength"):
-                assert np.array_equal(paths.points[name], others.points[name])
-                assert np.array_equal(paths.points[name], serial.points[name])
-        paths.close()
-
-
 def test_a_worker_that_dies_costs_its_own_paths_only(tmp_path):
     with ProcessPoolExecutor(1) as executor:
         paths = trace_many([*HOMOTOPIES[:3], Deadly()], executor, tmp_path / "run.h5")
@@ -164,20 +130,6 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, expected):
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["pool.h5", "serial.h5"]
 
 
-def test_ctrl_c_within_a_path(tmp_path):
-    def residual(y, lam):
-        if lam > 0.5:
-            raise KeyboardInterrupt
-        return y - lam
-
-    stopping = from_functions(residual, start=(np.zeros(1), 0.0), target=1.0)
-    with pytest.raises(KeyboardInterrupt):
-        trace_many([stopping, stopping], archive=tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert len(archive) == 1
-        assert archive[0].status is Status.INTERRUPTED
-
-
 def test_misspelt_options_are_refused_at_the_door(tmp_path):
     said = r"predicter: expected one of the options box, budget, .*; did you mean predictor\?"
     with pytest.raises(TypeError, match=said):
@@ -192,9 +144,8 @@ def test_merge(tmp_path):
         trace(FreudensteinRoth(), archive=PathLog(files[1], tangents=True), budget=Budget(steps=7)),
         trace(ExponentialCosine(2), archive=files[2]),
     ]
-    with open_archive(merge(files, tmp_path / "all.h5", title="all of them", compression=5)) as archive:
+    with open_archive(merge(files, tmp_path / "all.h5")) as archive:
         check(archive, paths)
-        assert archive.attributes["title"] == "all of them"
         assert "merged from 3 files: 0.h5, 1.h5, 2.h5" in archive.attributes["history"]
         assert np.array_equal(archive.paths["homotopy_n"], [np.nan, np.nan, 2.0], equal_nan=True)
         assert np.array_equal(archive[1].tangents, paths[1].tangents)
@@ -330,3 +281,17 @@ def test_what_ends_badly_is_said():
     assert [path.status for path in paths] == [Status.RAISED, Status.RAISED, Status.REACHED_TARGET]
     assert paths[0].message.startswith("GeneratorExit")
     assert paths[1].message == "NoText: its text cannot be had (ValueError)"
+
+
+def test_ctrl_c_within_a_path(tmp_path):
+    def residual(y, lam):
+        if lam > 0.5:
+            raise KeyboardInterrupt
+        return y - lam
+
+    stopping = from_functions(residual, start=(np.zeros(1), 0.0), target=1.0)
+    with pytest.raises(KeyboardInterrupt):
+        trace_many([stopping, stopping], archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == 1
+        assert archive[0].status is Status.INTERRUPTED

@@ -79,12 +79,8 @@ OTHERS = {
     "files, one": ("files", lambda: merge("good.h5", "m.h5")),
     "files, a number": ("files", lambda: merge(5, "m.h5")),
     **{
-        f"compression {value!r}, {what.__name__}": ("compression", call)
+        f"compression {value!r}": ("compression", lambda value=value: export("good.h5", "e.nc", compression=value))
         for value in (99, -1, "a", None, 1.5)
-        for what, call in (
-            (merge, lambda value=value: merge(["good.h5"], "m.h5", compression=value)),
-            (export, lambda value=value: export("good.h5", "e.nc", compression=value)),
-        )
     },
     "suffix": ("target", lambda: export("good.h5", "e.txt")),
     "limits": ("limits", lambda: PathLog("l.h5", limits=(1, 2, 3))),
