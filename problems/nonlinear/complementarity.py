@@ -18,12 +18,11 @@ from continuation.path import Path
 from continuation.status import Status
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.homotopies.cores import in_full
-from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, longest_step
-from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
+from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric
 from problems.lcp.homotopies.references import WANG
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import inside_start, inside_vector
+from problems.lcp.homotopies.two_vector import Blend, TwoVectorHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
 from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
@@ -150,69 +149,48 @@ class InteriorHomotopy:
         return MixedLCP(sp.csr_array((n, n)), np.zeros(n), self.problem.lower, self.problem.upper)
 
     @cached_property
-    def sides(self) -> Sides:
-        """The finite bounds."""
-        return Sides(self._shape)
+    def _affine(self) -> TwoVectorHomotopy:
+        """Wang's homotopy of these bounds, with forces of at least 1."""
+        shape, sides = self._shape, Sides(self._shape)
+        y0 = np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[sides.index]
+        blend = Blend(sign=1, x=0 if sides.free is None else sides.free, y=1)
+        return TwoVectorHomotopy("Wang", shape, blend, self.x0, y0, self.references, Structure(shape))
 
-    @cached_property
-    def y0(self) -> Array:
-        """The forces at the start: at least 1."""
-        return np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[self.sides.index]
+    def _linearized(self, y: Array) -> TwoVectorHomotopy:
+        """That of the affine problem that has the same F and F' at a point."""
+        problem = self.problem.linearized(y[: self.problem.n])
+        return evolve(self._affine, problem=problem, structure=Structure(problem))
 
-    @cached_property
-    def c(self) -> Array:
-        """Their products with the distances from the bounds."""
-        return self.sides.gaps(self.x0) * self.y0
-
-    @cached_property
+    @property
     def own_metric(self) -> RelativeMetric:
-        """Relative changes, as for an LCP."""
-        if self._shape.standard:
-            return RelativeMetric()
-        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
+        """Relative changes, as for an LCP; of an unknown without bounds at least of one."""
+        return evolve(self._affine.own_metric, unit=1.0)
 
     def start(self) -> tuple[Array, float]:
         """(x0, y0) and 1."""
-        return np.concatenate([self.x0, self.y0]), 1.0
+        return self._affine.start()
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """The homotopy, shape (n + number of finite bounds,)."""
-        n, sides = self.problem.n, self.sides
-        x, forces = y[:n], y[n:]
-        goal, origin = self._ends(x, forces)
-        return np.concatenate([(1.0 - lam) * goal + lam * origin, sides.gaps(x) * forces - lam * self.c])
-
-    def _ends(self, x: Array, forces: Array) -> tuple[Array, Array]:
-        sides = self.sides
-        free = 0.0 if sides.free is None else sides.free * (x - self.x0)
-        return self.problem.F(x.copy()) - sides.force(forces), sides.force(self.y0 - forces) + free
-
-    def _system(self, y: Array, lam: float) -> PairSystem:
-        n, sides = self.problem.n, self.sides
-        x, forces = y[:n].copy(), y[n:].copy()
-        goal, origin = self._ends(x, forces)
-        structure = Structure(evolve(self._shape, A=self.problem.slope(x)))
-        blend = Blend(sign=1, x=0 if sides.free is None else sides.free, y=1)
-        sizes = sides.sizes(x, 1.0)
-        return PairSystem(structure, sides, blend, lam, sides.gaps(x), forces, self.c, origin - goal, sizes)
+        # Of the affine homotopy q and A are zero: F is what its rows lack.
+        found = self._affine.residual(y, lam)
+        found[: self.problem.n] += (1.0 - lam) * self.problem.F(y[: self.problem.n].copy())
+        return found
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix by way of one of order n + 1."""
-        return factor_pairs(self._system(y, lam), border.copy())
+        return self._linearized(y).bordered(y, lam, border)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
-        system = self._system(y, lam)
-        return in_full(system.apply, y.size, system.structure.problem.sparse)
+        return self._linearized(y).jacobian(y, lam)
 
     def max_step(self, u: Array, v: Array) -> float:
         """How far along v until a bound or a zero of y is reached."""
-        n, sides = self.problem.n, self.sides
-        inside = longest_step(sides.gaps(u[:n]), sides.pull(v[:n]))
-        return min(inside, longest_step(u[n:-1], v[n:-1]))
+        return self._affine.max_step(u, v)
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
         """The natural residual."""
