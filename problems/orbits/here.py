@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.orbits.blocks import Bordered, Condensed
+from problems.orbits.blocks import Condensed
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 from problems.orbits.multipliers import Multipliers
@@ -105,41 +105,21 @@ class Here:
         return sp.csc_array((entries, (i, j)), shape=(whole, whole)), by_p
 
     @cached_property
-    def _condensed(self) -> tuple[Condensed, Array, Array]:
-        """The blocks in units, what the equations are divided by, and the units of (T, p)."""
+    def _condensed(self) -> Condensed:
+        """The blocks in units."""
         N, m, n = self._values.shape
         blocks = self._blocks * (self.scale / self.scale[:, None])[:, None, :]
-        equations = self.scale / self.grid.widths[:, None, None] + np.zeros_like(self.flow)
-        g = np.stack([-self.flow / equations, -self.T * self._derivatives[1] / equations], axis=-1)
-        largest = np.abs(g).max(axis=(0, 1, 2))
-        units = np.where(largest > 0.0, 1.0 / np.where(largest > 0.0, largest, 1.0), 1.0)
-        g = (g * units).reshape(N, m * n, 2)
-        return Condensed.of(blocks.reshape(N, m * n, -1), g), equations.ravel(), units
-
-    def bordered(self, border: Array) -> Bordered:
-        """The derivative with a border, factored."""
-        condensed, equations, units = self._condensed
-        scale = np.concatenate([np.tile(self.scale, len(self.X)), units])
-        size = self.X.size + 1
-        rows = np.stack([np.append(self._phase_row, [0.0, 0.0]), np.append(border[:size], border[-1])]) * scale
-        sizes = np.abs(rows).max(axis=1)
-        sizes = np.where(sizes > 0.0, sizes, 1.0)
-        system = Bordered(condensed, rows / sizes[:, None], sizes, scale, equations, border[size:-1])
-        assert system.small
-        return system
+        return Condensed.of(blocks.reshape(N, m * n, -1))
 
     @cached_property
     def multipliers(self) -> Multipliers:
         """The Floquet multipliers."""
-        A, B, _ = self._condensed[0].last
-        return Multipliers(A, B)
+        return Multipliers(self._condensed.A, self._condensed.B)
 
     def mode(self, mu: float) -> Array:
         """How the linearised equation moves the orbit along the multiplier nearest to a number, shape (N m, n)."""
         x = self.multipliers.vector(mu)
-        blocks = self._condensed[0]
-        ends = np.stack([x, mu * x])[:, :, None]
-        return blocks.backward(ends, np.zeros((blocks.k, 1)))[:, :, 0] * self.scale
+        return self._condensed.all_from(np.stack([x, mu * x])) * self.scale
 
     @property
     def amplitude(self) -> float:

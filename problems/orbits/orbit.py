@@ -19,7 +19,6 @@ from continuation.metric import Weighted
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
 from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, beside_of, check_times, spread
-from problems.orbits.blocks import Bordered
 from problems.orbits.equations import PHASE_COSINE, Equations, Watch
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
@@ -277,11 +276,6 @@ class PeriodicOrbit:
     def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
         """The derivative by (X, T), sparse, and by p."""
         return self.equations.here(y, lam).matrices()
-
-    @quiet
-    def bordered(self, y: Array, lam: float, border: Array) -> Bordered:
-        """The derivative with a border, factored."""
-        return self.equations.here(y, lam).bordered(border)
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
         """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
