@@ -25,8 +25,8 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
 
     def increment() -> Array:
         y, lam = found.x[:-1], float(found.x[-1])
-        step: Array = factor_bordered(*homotopy.jacobian(y, lam), border).solve(-homotopy.residual(y, lam), 0.0)
-        return step
+        matrix, column = homotopy.jacobian(y, lam)
+        return factor_bordered(matrix, column, border).solve(-homotopy.residual(y, lam), 0.0)
 
     def done(size: float) -> bool:
         return size <= ORBIT_FOUND or (size <= ORBIT_NEAR and found.ratio >= HALVING)

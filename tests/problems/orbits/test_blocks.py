@@ -32,7 +32,7 @@ def test_the_derivative_as_a_matrix_and_condensed(f, n, intervals, degree):
         v = generator.standard_normal(y.size + 1)
         applied, terms = given.differential(y, p, v), np.abs(full) @ np.abs(v)
         assert (np.abs(applied - full @ v) <= 1e-13 * terms).all()
-        # A motion that the condensed block allows, x_N free of x_0, satisfies all equations but those of the last block.
+        # What follows from ends that the condensed block allows satisfies all blocks but the last, where x_N is not x_0.
         condensed = given.equations.here(y, p)._condensed
         x = generator.standard_normal(n)
         ends = np.stack([x, np.linalg.solve(condensed.B, -condensed.A @ x)])
