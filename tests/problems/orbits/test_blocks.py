@@ -32,7 +32,7 @@ def test_the_derivative_as_a_matrix_and_condensed(f, n, intervals, degree):
         v = generator.standard_normal(y.size + 1)
         applied, terms = given.differential(y, p, v), np.abs(full) @ np.abs(v)
         assert (np.abs(applied - full @ v) <= 1e-13 * terms).all()
-        # What follows from ends that the condensed block allows satisfies all blocks but the last, where x_N is not x_0.
+        # What follows from ends that A and B allow satisfies all blocks but the last, where x_N is not x_0.
         condensed = given.equations.here(y, p)._condensed
         x = generator.standard_normal(n)
         ends = np.stack([x, np.linalg.solve(condensed.B, -condensed.A @ x)])
