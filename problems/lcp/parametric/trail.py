@@ -15,7 +15,7 @@ from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.ties import Corner, snap, turn
+from problems.lcp.parametric.ties import Corner, turn
 from problems.lcp.parametric.walk import SWITCH_TIE, Walk
 
 SAME_DIRECTION = 1e-9
@@ -53,8 +53,6 @@ class Trail:
                 return _no_way(t)
             if not inside:
                 return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
-            if corner is not None and len(corner.switches) > 1:
-                snap(walk, corner.switches)
             u, direction = walk.u * self.units
             if walk.still:
                 direction[-1] = 0.0
@@ -78,7 +76,7 @@ class Trail:
             if spent:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
             t = walk.t if walk.still else walk.t + step * walk.dt
-            corner = turn(walk)
+            corner = turn(walk, step)
             if corner is None:
                 return _no_way(t)
             if corner.dead:
@@ -148,16 +146,12 @@ class Trail:
 
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path comes back to its first point before the next corner; it ends there then."""
-        first, last = self.points[0], self.points[-1]
-        # Mostly t alone tells that it is not there.
-        if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
-            return False
-        gap = first - last
+        first = self.points[0]
+        gap = first - self.points[-1]
         ahead = float(gap @ unit)
-        size = 1.0 + largest(first)
-        if not 0.0 < ahead <= length * (1.0 + SAME_DIRECTION) or largest(gap - ahead * unit) > SAME_DIRECTION * size:
+        if not 0.0 < ahead <= length * (1.0 + SAME_DIRECTION) or not _same(unit, self.tangents[0]):
             return False
-        if not _same(unit, self.tangents[0]):
+        if largest(gap - ahead * unit) > SAME_DIRECTION * (1.0 + largest(first)):
             return False
         self.points.append(first)
         self.tangents.append(unit)
