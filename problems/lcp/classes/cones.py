@@ -12,7 +12,7 @@ from attrs import evolve
 
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
-from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
+from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point, positive_point
 
 LARGEST_SUPPORTS = 10
 """Largest order of the tests with one exact linear program an index set (0.02 s for integers of one digit)."""
@@ -68,7 +68,8 @@ def _all_at_most(bound: int) -> Build:
 
 def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
     block = columns(matrix, support)
-    return [equal(row) if i in support else at_least(row) for i, row in enumerate(block)]
+    on, off = [at_least(block[i]) for i in support], [at_least(row) for i, row in enumerate(block) if i not in support]
+    return [*exactly(on), *off]
 
 
 @matrix_class

@@ -11,7 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, IntRow, consistent, over_common_denominator, solve
-from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point
+from problems.lcp.classes.simplex import Point, at_least, at_most, exactly, feasible_point
 from problems.lcp.data.problem import MixedLCP
 
 Bound = tuple[int | None, int | None]
@@ -54,9 +54,8 @@ def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) ->
     A nonsingular principal submatrix gives the only candidate; a singular one leaves a linear feasibility problem,
     solved exactly. So None is a proof.
     """
-    rest = [i for i in range(len(q)) if i not in support]
-    columns = [[row[j] for j in support] for row in entries]
-    return _point(Piece(columns, list(q), support, rest, [], [(0, None)] * len(support)), [0] * len(q), 1)
+    bounds: list[Bound] = [(0, None)] * len(q)
+    return piece_point(entries, q, bounds, 1, [0 if i in support else -1 for i in range(len(q))])
 
 
 def piece_point(
@@ -125,7 +124,7 @@ def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
     def right(i: int) -> int:
         return -piece.constants[i] - sum(a * v for a, v in zip(piece.columns[i], origin))
 
-    system = [equal(row(piece.columns[i]), right(i)) for i in piece.inside]
+    system = exactly([at_least(row(piece.columns[i]), right(i)) for i in piece.inside])
     system += [at_least(row(piece.columns[i]), right(i)) for i in piece.below]
     system += [at_most(row(piece.columns[i]), right(i)) for i in piece.above]
     for j, (low, high) in enumerate(piece.bounds):
@@ -148,7 +147,7 @@ def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
     def split(row: Sequence[int]) -> list[int]:
         return [*row, *(-v for v in row)]
 
-    cone: list[Constraint] = [equal(split(piece.columns[i])) for i in piece.inside]
+    cone = exactly([at_least(split(piece.columns[i])) for i in piece.inside])
     cone += [at_least(split(piece.columns[i])) for i in piece.below if w[i] == 0]
     cone += [at_most(split(piece.columns[i])) for i in piece.above if w[i] == 0]
     units = [split([int(j == k) for j in range(m)]) for k in range(m)]

@@ -33,7 +33,7 @@ class Corner:
 def turn(walk: Walk, step: float) -> Corner | None:
     """Take the corner that so long a step leads to; what it was, or None where no way on was found."""
     found: list[Array] = []
-    switched: tuple[int, ...] = (0,)
+    switched = np.ones(1, dtype=bool)
     driver, switches = 0, tuple(walk.tied.tolist())
     if len(switches) > 1:
         S, r, along = small(walk)
@@ -47,8 +47,8 @@ def turn(walk: Walk, step: float) -> Corner | None:
                 return Corner(switches, found)
             # That no other ray leaves may be said if the one come on is found.
             return Corner(switches, found, dead=True) if edges else None
-        switched, driver = on.switched, on.driver
-    walk.switch(np.isin(np.arange(walk.tied.size), switched))
+        switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
+    walk.switch(switched)
     walk.drive(int(walk.tied[driver]), bool(walk.low[driver]))
     return Corner(switches, found)
 

@@ -146,8 +146,11 @@ class Trail:
 
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path comes back to its first point before the next corner; it ends there then."""
-        first = self.points[0]
-        gap = first - self.points[-1]
+        first, last = self.points[0], self.points[-1]
+        # Mostly t alone tells that it is not there.
+        if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
+            return False
+        gap = first - last
         ahead = float(gap @ unit)
         if not 0.0 < ahead <= length * (1.0 + SAME_DIRECTION) or not _same(unit, self.tangents[0]):
             return False

@@ -117,14 +117,14 @@ class Walk:
         if not by_x:
             y[:, j] = np.array([self.value, self.sign]) + (self.d[j] - self.shares[j]) * whole[:, n]
         place, motion = largest(whole[0]), largest(whole[1])
-        constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
-        self.noise = np.array([place * self.terms + constant, motion * self.terms])
+        self.noise = np.array([[place], [motion]]) * self.terms
+        self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
         self.still = j != n and abs(self.dt) <= SLOW_RATE * motion and self._stands(motion)
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += fixed
         self.gaps, self.rates = y[0] - limits - self.t * self.slopes, y[1] - self.dt * self.slopes
-        for part in (self.gaps, self.rates):
-            np.negative(part[1], out=part[1])
+        np.negative(self.gaps[1], out=self.gaps[1])
+        np.negative(self.rates[1], out=self.rates[1])
         return bool((self.gaps >= -OUTSIDE_LIMITS * self.noise[0]).all())
 
     def _stands(self, motion: float) -> bool:
