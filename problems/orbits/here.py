@@ -1,4 +1,4 @@
-"""An orbit's equations at one point (X, T, p): the residual, its derivative applied, as a matrix, and condensed."""
+"""An orbit's equations at one point (X, T, p): the residual, its derivative as a matrix, and condensed."""
 
 from __future__ import annotations
 
@@ -57,19 +57,8 @@ class Here:
     def residual(self) -> Array:
         """X' - T f at the Gauss points, the phase condition, and how far the mesh is off."""
         equations = self.grid.slopes(self.X) - self.T * self.flow
-        return np.concatenate([equations.ravel(), [self._phase(self._values)], self.times - self.grid.mesh[1:-1]])
-
-    def _phase(self, values: Array) -> float:
-        return float(np.einsum("ig,ign,ign->", self.grid.quadrature, values, self.reference))
-
-    def applied(self, v: Array) -> Array:
-        """The derivative applied to a direction (dX, dT, dmesh, dp)."""
-        (by_x, by_p), size = self._derivatives, self.X.size
-        dX, dT = v[:size].reshape(self.X.shape), v[size]
-        values = self.grid.values(dX)
-        moved = np.einsum("igab,igb->iga", by_x, values) + v[-1] * by_p
-        equations = self.grid.slopes(dX) - self.T * moved - dT * self.flow
-        return np.concatenate([equations.ravel(), [self._phase(values)], v[size + 1 : -1]])
+        phase = np.einsum("ig,ign,ign->", self.grid.quadrature, self._values, self.reference)
+        return np.concatenate([equations.ravel(), [phase], self.times - self.grid.mesh[1:-1]])
 
     @cached_property
     def _blocks(self) -> Array:
@@ -88,6 +77,7 @@ class Here:
         np.add.at(row, self.grid.index, each)
         return row.ravel()
 
+    @cached_property
     def matrices(self) -> tuple[sp.csc_array, Array]:
         """The derivative by the unknowns, sparse, and by p."""
         grid, n = self.grid, self.scale.size
@@ -134,16 +124,6 @@ class Here:
         root = np.sqrt(self.grid.quadrature)[:, :, None]
         own, reference = root * self.flow / self.scale, root * self.reference * self.scale
         return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
-
-    @property
-    def doubling(self) -> float:
-        """As of the multipliers."""
-        return self.multipliers.doubling
-
-    @property
-    def torus(self) -> float:
-        """As of the multipliers."""
-        return self.multipliers.torus
 
     def observed(self) -> dict[str, float]:
         """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""

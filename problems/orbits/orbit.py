@@ -268,14 +268,9 @@ class PeriodicOrbit:
         return self.equations.here(y, lam).residual()
 
     @quiet
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative applied to a direction."""
-        return self.equations.here(y, lam).applied(v)
-
-    @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
         """The derivative by (X, T), sparse, and by p."""
-        return self.equations.here(y, lam).matrices()
+        return self.equations.here(y, lam).matrices
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
         """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
@@ -305,8 +300,8 @@ class PeriodicOrbit:
     def events(self) -> tuple[Event, ...]:
         """Period doublings and tori; where orbits shrink to a Hopf point, and where the phase condition fails."""
         return (
-            Watch(self, "doubling", "period doubling"),
-            Watch(self, "torus", "torus"),
+            Watch(self, "multipliers.doubling", "period doubling"),
+            Watch(self, "multipliers.torus", "torus"),
             Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
             Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
         )
