@@ -53,6 +53,8 @@ class Trail:
                 return _no_way(t)
             if not inside:
                 return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
+            if corner is not None and len(corner.switches) > 1:
+                walk.snap(corner.switches)
             u, direction = walk.u * self.units
             if walk.still:
                 direction[-1] = 0.0

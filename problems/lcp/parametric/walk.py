@@ -155,6 +155,12 @@ class Walk:
         self.find_tied(vanishing)
         return step
 
+    def snap(self, pairs: tuple[int, ...]) -> None:
+        """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
+        at = list(pairs)
+        corners = self.stairs.corner_x[:, at]
+        self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]
+
     # -- round the corner -----------------------------------------------------------------------------------------
 
     def drive(self, i: int, low: bool) -> None:
