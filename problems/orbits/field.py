@@ -18,7 +18,7 @@ from continuation.evaluation.products import sizes
 COMPLEX_STEP = 1e-200
 """The complex step: its square is below everything (Squire and Trapp 1998)."""
 
-CENTRAL_STEP = 6e-6
+CENTRAL_STEP = float(np.cbrt(np.finfo(float).eps))
 """Of central differences, beside the size of a component: the third root of round-off."""
 
 

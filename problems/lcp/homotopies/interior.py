@@ -31,7 +31,7 @@ Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
 
-INVERTIBLE = 1e-150
+INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
 """Sizes below this count as this: its square can still be inverted."""
 
 

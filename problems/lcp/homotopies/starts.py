@@ -30,9 +30,6 @@ those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100
 from 0.5 to 1, 4 from 0 to 0.5, and none from nearer.
 """
 
-SQUARED = 1e-140, 1e140
-"""Between these the largest entry of A can be squared, and what is less by ten digits or more too."""
-
 LOG_DEVIATION = 0.5
 """Standard deviation of the natural logarithms of the components; with 0 or 1 half as many paths solve (measured)."""
 
@@ -119,10 +116,9 @@ def typical_units(problem: MixedLCP) -> tuple[float, float]:
 
 
 def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, float]:
-    most = largest_entries(problem)[1]
     # Squares of what is far from 1 are no floats; over a power of two no digit is another one.
-    unit = 1.0 if SQUARED[0] < most < SQUARED[1] else 2.0 ** (math.frexp(most)[1] - 1)
-    A = problem.A if unit == 1.0 else problem.A / unit
+    unit = 2.0 ** (math.frexp(largest_entries(problem)[1])[1] - 1)
+    A = problem.A / unit
     row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w

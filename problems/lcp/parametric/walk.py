@@ -12,17 +12,13 @@ from problems.lcp.parametric.basis import Basis
 from problems.lcp.parametric.stairs import Stairs
 
 FLAT = 1e-11
-"""A rate below this, relative to its row's entries and the direction, is rounding: it leads to no corner."""
-
-SWITCH_TIE = 1e-10
-"""Switches that vanish so near to each other, relative to the step and to t, vanish at once. On 10,000 problems of
-integers (n <= 6) anything from 1e-13 to 1e-7 gives the same; 1e-6 is too loose for cond X = 1e6."""
+"""A rate below this, relative to its row's entries and the direction, is rounding: it leads to no corner. Switches that
+vanish so near to each other, relative to the step and to t, vanish at once: on 10,000 problems of integers (n <= 6)
+anything from 1e-13 to 1e-7 gives the same; 1e-6 is too loose for cond X = 1e6."""
 
 ZERO_SWITCH = 1e-14
-"""Relative to the terms of its row, what of a switch is zero whether it falls or not."""
-
-RATE_NOISE = 1e-15
-"""A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
+"""Relative to the terms of its row, what of a switch is zero whether it falls or not; and what of a rate of t is, which
+then stands still."""
 
 SLOW_RATE = 1e-6
 """Whether a rate of t is rounding is looked at where it is this much smaller than the largest, and t does not drive."""
@@ -130,7 +126,7 @@ class Walk:
     def _stands(self, motion: float) -> bool:
         """Whether the rate of t is no more than rounding."""
         of_t = np.abs(self.basis.row_of_inverse(self.problem.n))
-        return bool(abs(self.dt) <= RATE_NOISE * (of_t @ self.sizes[self.basis.rows]) * motion)
+        return bool(abs(self.dt) <= ZERO_SWITCH * (of_t @ self.sizes[self.basis.rows]) * motion)
 
     def find_tied(self, vanishing: NDArray[np.bool_] | None = None) -> None:
         """Which switches vanish: where it is, or at the next corner those that are told."""
@@ -151,7 +147,7 @@ class Walk:
         # The driver has left its corner, however short the step was.
         if self.driver < self.problem.n:
             vanishing[:, self.driver] = False
-        vanishing.ravel()[falling[steps <= step + SWITCH_TIE * reach]] = True
+        vanishing.ravel()[falling[steps <= step + FLAT * reach]] = True
         self.find_tied(vanishing)
         return step
 
