@@ -34,26 +34,17 @@ def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
     return tuple(known.get(i, Fraction(0)) for i in range(n))
 
 
-def _first_violation(matrix: ExactMatrix, build: Build) -> tuple[Indices, Point] | None:
-    """The smallest index set whose system has a positive solution, with that solution."""
-    for mask in index_sets(matrix.n):
-        support = indices(mask)
-        found = positive_point(build(matrix, support), len(support))
-        if found is not None:
-            return support, embed(matrix.n, support, found)
-    return None
-
-
 def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
     """No index set has a violating vector; `words` say what a violation shows and what its absence proves."""
     if matrix.n > LARGEST_SUPPORTS:
         return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
-    violation = _first_violation(matrix, build)
-    if violation is None:
-        return Membership(name, True, Evidence(words[1]), cited)
-    support, x = violation
-    sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
-    return Membership(name, False, Evidence(sentence, support, vector=x), cited)
+    for support in map(indices, index_sets(matrix.n)):
+        found = positive_point(build(matrix, support), len(support))
+        if found is not None:
+            x = embed(matrix.n, support, found)
+            sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
+            return Membership(name, False, Evidence(sentence, support, vector=x), cited)
+    return Membership(name, True, Evidence(words[1]), cited)
 
 
 def _all_at_most(bound: int) -> Build:

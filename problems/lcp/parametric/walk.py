@@ -115,18 +115,17 @@ class Walk:
         place, motion = largest(whole[0]), largest(whole[1])
         self.noise = np.array([[place], [motion]]) * self.terms
         self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
-        self.still = j != n and abs(self.dt) <= SLOW_RATE * motion and self._stands(motion)
+        self.still = False
+        if j != n and abs(self.dt) <= SLOW_RATE * motion:
+            # Whether the rate of t is no more than rounding.
+            of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
+            self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += fixed
         self.gaps, self.rates = y[0] - limits - self.t * self.slopes, y[1] - self.dt * self.slopes
         np.negative(self.gaps[1], out=self.gaps[1])
         np.negative(self.rates[1], out=self.rates[1])
         return bool((self.gaps >= -OUTSIDE_LIMITS * self.noise[0]).all())
-
-    def _stands(self, motion: float) -> bool:
-        """Whether the rate of t is no more than rounding."""
-        of_t = np.abs(self.basis.row_of_inverse(self.problem.n))
-        return bool(abs(self.dt) <= ZERO_SWITCH * (of_t @ self.sizes[self.basis.rows]) * motion)
 
     def find_tied(self, vanishing: NDArray[np.bool_] | None = None) -> None:
         """Which switches vanish: where it is, or at the next corner those that are told."""
