@@ -27,10 +27,6 @@ Slope = Callable[[Array, float], tuple[Matrix, Array]]
 """``(F_x, F_lam)``: dense, scipy sparse or `Banded`, and a vector."""
 
 
-def _start(x: Any) -> Array:
-    return finite_vector("x0", x)
-
-
 @frozen(eq=False)
 class AffineForce:
     """F(x, lam) = A x + q + lam d."""
@@ -86,7 +82,7 @@ class NormalMap:
 
     F: Force
     jacobian_of_F: Slope | None = field(default=None, alias="jacobian")
-    x0: Array = field(kw_only=True, converter=_start)
+    x0: Array = field(kw_only=True, converter=lambda x: finite_vector("x0", x))
     lam0: float = field(kw_only=True, validator=finite)
     lower: Any = field(default=0.0, kw_only=True)
     upper: Any = field(default=None, kw_only=True)
@@ -94,6 +90,7 @@ class NormalMap:
     upper_rate: Any = field(default=0.0, kw_only=True)
     target: float | None = field(default=0.0, kw_only=True, validator=finite_or_none)
     references: ClassVar[tuple[str, ...]] = (ROBINSON,)
+    problem_class: ClassVar[str] = "complementarity problems with a parameter"
 
     def __attrs_post_init__(self) -> None:
         n = self.x0.size
@@ -133,11 +130,6 @@ class NormalMap:
             found = f"{A.shape}, {force.q.shape} and {force.d.shape}"
             raise ValueError(f"A: expected a square matrix, and q and d of its size, found shapes {found}")
         return cls(force, force.slope, **more)
-
-    @property
-    def problem_class(self) -> str:
-        """What it is for, in words."""
-        return "complementarity problems with a parameter"
 
     def bounds(self, lam: float) -> tuple[Array, Array]:
         """The lower and the upper bounds at a value of the parameter.

@@ -137,17 +137,14 @@ class KKTHomotopy:
         return RelativeMetric(
             lower=np.concatenate([self.problem.lower, np.zeros(m), lower, np.zeros(t.size)]),
             upper=np.concatenate([self.problem.upper, above, upper, t]),
-            unit=self._units[0],
+            unit=natural_units(self.problem)[0],
         )
-
-    @cached_property
-    def _units(self) -> tuple[float, float]:
-        return natural_units(self.problem)
 
     @cached_property
     def unit(self) -> float:
         """A unit of w for one of x."""
-        return self._units[1] / self._units[0]
+        x, w = natural_units(self.problem)
+        return w / x
 
     @property
     def give(self) -> float:
