@@ -27,6 +27,10 @@ Slope = Callable[[Array, float], tuple[Matrix, Array]]
 """``(F_x, F_lam)``: dense, scipy sparse or `Banded`, and a vector."""
 
 
+def _start(x: Any) -> Array:
+    return finite_vector("x0", x)
+
+
 @frozen(eq=False)
 class AffineForce:
     """F(x, lam) = A x + q + lam d."""
@@ -82,7 +86,7 @@ class NormalMap:
 
     F: Force
     jacobian_of_F: Slope | None = field(default=None, alias="jacobian")
-    x0: Array = field(kw_only=True, converter=lambda x: finite_vector("x0", x))
+    x0: Array = field(kw_only=True, converter=_start)
     lam0: float = field(kw_only=True, validator=finite)
     lower: Any = field(default=0.0, kw_only=True)
     upper: Any = field(default=None, kw_only=True)

@@ -79,6 +79,11 @@ class Rows:
         n, m = self.problem.n, self.sides.index.size
         return n, n + m, n + m + n
 
+    @property
+    def size(self) -> int:
+        """How many unknowns there are: 3 an index with one bound, 5 one with two, 2 one with none."""
+        return self._ends[2] + self.boxed.size
+
     def raised(self, w: Array, t: Array) -> Array:
         """What z is complementary to: w, and s = w + t in a box."""
         if not self.boxed.size:
