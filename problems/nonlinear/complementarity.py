@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 
 import continuation
 from continuation import jets
@@ -18,7 +18,8 @@ from continuation.path import Path
 from continuation.status import Status
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric
+from problems.lcp.homotopies import interior
+from problems.lcp.homotopies.interior import OwnMetric, Parts, RelativeMetric
 from problems.lcp.homotopies.references import WANG
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import inside_start, inside_vector
@@ -137,6 +138,10 @@ class InteriorHomotopy:
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (WANG,)
     metric: ClassVar[OwnMetric] = OwnMetric()
+    signs: ClassVar[float] = 1.0
+
+    residual = interior.residual
+    max_step = interior.max_step
 
     def __attrs_post_init__(self) -> None:
         x0 = inside_start(self._shape) if self.x0 is None else inside_vector("x0", self.x0, self._shape)
@@ -149,33 +154,46 @@ class InteriorHomotopy:
         return MixedLCP(sp.csr_array((n, n)), np.zeros(n), self.problem.lower, self.problem.upper)
 
     @cached_property
-    def _affine(self) -> TwoVectorHomotopy:
-        """Wang's homotopy of these bounds, with forces of at least 1."""
-        shape, sides = self._shape, Sides(self._shape)
-        y0 = np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[sides.index]
-        blend = Blend(sign=1, x=0 if sides.free is None else sides.free, y=1)
-        return TwoVectorHomotopy("Wang", shape, blend, self.x0, y0, self.references, Structure(shape))
+    def sides(self) -> Sides:
+        """The finite bounds."""
+        return Sides(self._shape)
 
-    def _linearized(self, y: Array) -> TwoVectorHomotopy:
-        """That of the affine problem that has the same F and F' at a point."""
-        problem = self.problem.linearized(y[: self.problem.n])
-        return evolve(self._affine, problem=problem, structure=Structure(problem))
+    @cached_property
+    def y0(self) -> Array:
+        """The forces at the start: at least 1."""
+        return np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[self.sides.index]
 
-    @property
+    @cached_property
+    def c(self) -> Array:
+        """Their products with the distances from the bounds."""
+        return self.sides.gaps(self.x0) * self.y0
+
+    @cached_property
     def own_metric(self) -> RelativeMetric:
-        """Relative changes, as for an LCP; of an unknown without bounds at least of one."""
-        return evolve(self._affine.own_metric, unit=1.0)
+        """Relative changes, as for an LCP."""
+        if self._shape.standard:
+            return RelativeMetric()
+        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
 
     def start(self) -> tuple[Array, float]:
         """(x0, y0) and 1."""
-        return self._affine.start()
+        return np.concatenate([self.x0, self.y0]), 1.0
 
-    @quiet
-    def residual(self, y: Array, lam: float) -> Array:
-        """The homotopy, shape (n + number of finite bounds,)."""
-        # Of the affine homotopy q and A are zero: F is what its rows lack.
-        found = self._affine.residual(y, lam)
-        found[: self.problem.n] += (1.0 - lam) * self.problem.F(y[: self.problem.n].copy())
+    def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
+        """As those of Wang's homotopy for an LCP; of directions the pairs alone."""
+        n, sides = self.problem.n, self.sides
+        x, forces = y[:n], y[n:]
+        if not one:
+            return x, x, forces, sides.pull(x), 0.0
+        goal = self.problem.F(x.copy()) - sides.force(forces)
+        return goal, sides.force(self.y0 - forces) + sides.free * (x - self.x0), forces, sides.gaps(x), 0.0
+
+    def _linearized(self, y: Array) -> TwoVectorHomotopy:
+        """Wang's homotopy of the affine problem that has the same F and F' at a point."""
+        problem, blend = self.problem.linearized(y[: self.problem.n]), Blend(sign=1, x=self.sides.free, y=1)
+        found = TwoVectorHomotopy("Wang", problem, blend, self.x0, self.y0, self.references, Structure(problem))
+        # What the bounds and the start say is the same at all points.
+        vars(found).update(sides=self.sides, c=self.c, own_metric=self.own_metric)
         return found
 
     @quiet
@@ -187,10 +205,6 @@ class InteriorHomotopy:
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
         return self._linearized(y).jacobian(y, lam)
-
-    def max_step(self, u: Array, v: Array) -> float:
-        """How far along v until a bound or a zero of y is reached."""
-        return self._affine.max_step(u, v)
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
         """The natural residual."""

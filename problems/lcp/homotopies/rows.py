@@ -46,7 +46,7 @@ class Rows:
     @cached_property
     def free(self) -> NDArray[np.bool_]:
         """Where there is no bound, shape (n,)."""
-        return np.zeros(self.problem.n, bool) if self.sides.free is None else self.sides.free > 0.0
+        return np.broadcast_to(np.greater(self.sides.free, 0), self.problem.n)
 
     @cached_property
     def end(self) -> Array | float:

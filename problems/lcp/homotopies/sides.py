@@ -45,10 +45,10 @@ class Sides:
         return np.repeat([1.0, -1.0], [self.low.size, self.high.size])
 
     @cached_property
-    def free(self) -> Array | None:
-        """1 where an index has no bound, else 0; None where all have one."""
-        bounded = np.bincount(self.index, minlength=self.problem.n) > 0
-        return None if bounded.all() else np.where(bounded, 0.0, 1.0)
+    def free(self) -> int | Array:
+        """1 where an index has no bound, else 0: shape (n,), or 0 where all have one."""
+        free = np.bincount(self.index, minlength=self.problem.n) == 0
+        return 1.0 * free if free.any() else 0
 
     def gaps(self, x: Array) -> Array:
         """The distances from the bounds, one a pair."""

@@ -252,7 +252,8 @@ def WangHomotopy(
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
-    return _made("Wang", problem, Blend(sign=1, x=_on_free(sides), y=1), x0, y0, references.WANG, structure)
+    # Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular.
+    return _made("Wang", problem, Blend(sign=1, x=sides.free, y=1), x0, y0, references.WANG, structure)
 
 
 def KojimaMegiddoMizunoHomotopy(
@@ -281,13 +282,8 @@ def KojimaMegiddoMizunoHomotopy(
     x0, sides = given_inside(problem, x0), Sides(problem)
     if y0 is None:
         y0 = np.maximum(sides.pull(problem.w(x0)), 0.0) + np.maximum(1.0, np.abs(problem.q))[sides.index]
-    blend, source = Blend(sign=1, x=_on_free(sides), y=1, A=1), references.KOJIMA_MEGIDDO_MIZUNO
+    blend, source = Blend(sign=1, x=sides.free, y=1, A=1), references.KOJIMA_MEGIDDO_MIZUNO
     return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, source, structure)
-
-
-def _on_free(sides: Sides) -> int | Array:
-    """Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular."""
-    return 0 if sides.free is None else sides.free
 
 
 def _made(
