@@ -333,5 +333,5 @@ class PeriodicOrbit:
 
     @property
     def references(self) -> tuple[str, ...]:
-        """Of collocation, of its linear algebra, and of derivatives where f has none."""
+        """Of collocation, of the multipliers, and of derivatives where f has none."""
         return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

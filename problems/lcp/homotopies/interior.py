@@ -181,18 +181,13 @@ def certify_end(self: LCPHomotopy, y: Array) -> str:
 
 
 def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
-    """How far along v until a factor of the pairs ends; lambda itself is free."""
+    """How far along v, or inf, until a factor of the pairs vanishes; lambda itself is free."""
     factors, changes = np.array([self.parts(u[:-1], u[-1])[2:4], self.parts(v[:-1], v[-1], 0.0)[2:4]]) * self.signs
-    return longest_step(factors, changes)
-
-
-def longest_step(value: Array, direction: Array) -> float:
-    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
-    falling = direction < 0.0
+    falling = changes < 0.0
     if not falling.any():
         return np.inf
     with np.errstate(over="ignore"):
-        return max(0.0, float((value[falling] / -direction[falling]).min()))
+        return max(0.0, float((factors[falling] / -changes[falling]).min()))
 
 
 def observe(self: LCPHomotopy, y: Array, lam: float) -> dict[str, float]:
