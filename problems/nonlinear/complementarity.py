@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 
 import continuation
 from continuation import jets
@@ -18,12 +18,12 @@ from continuation.path import Path
 from continuation.status import Status
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.homotopies.cores import in_full
-from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, longest_step
-from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
+from problems.lcp.homotopies import interior
+from problems.lcp.homotopies.interior import OwnMetric, Parts, RelativeMetric
 from problems.lcp.homotopies.references import WANG
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import inside_start, inside_vector
+from problems.lcp.homotopies.two_vector import Blend, TwoVectorHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
 from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
@@ -138,6 +138,10 @@ class InteriorHomotopy:
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (WANG,)
     metric: ClassVar[OwnMetric] = OwnMetric()
+    signs: ClassVar[float] = 1.0
+
+    residual = interior.residual
+    max_step = interior.max_step
 
     def __attrs_post_init__(self) -> None:
         x0 = inside_start(self._shape) if self.x0 is None else inside_vector("x0", self.x0, self._shape)
@@ -175,44 +179,32 @@ class InteriorHomotopy:
         """(x0, y0) and 1."""
         return np.concatenate([self.x0, self.y0]), 1.0
 
-    @quiet
-    def residual(self, y: Array, lam: float) -> Array:
-        """The homotopy, shape (n + number of finite bounds,)."""
+    def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
+        """As those of Wang's homotopy for an LCP; of directions the pairs alone."""
         n, sides = self.problem.n, self.sides
         x, forces = y[:n], y[n:]
-        goal, origin = self._ends(x, forces)
-        return np.concatenate([(1.0 - lam) * goal + lam * origin, sides.gaps(x) * forces - lam * self.c])
+        if not one:
+            return x, x, forces, sides.pull(x), 0.0
+        goal = self.problem.F(x.copy()) - sides.force(forces)
+        return goal, sides.force(self.y0 - forces) + sides.free * (x - self.x0), forces, sides.gaps(x), 0.0
 
-    def _ends(self, x: Array, forces: Array) -> tuple[Array, Array]:
-        sides = self.sides
-        free = 0.0 if sides.free is None else sides.free * (x - self.x0)
-        return self.problem.F(x.copy()) - sides.force(forces), sides.force(self.y0 - forces) + free
-
-    def _system(self, y: Array, lam: float) -> PairSystem:
-        n, sides = self.problem.n, self.sides
-        x, forces = y[:n].copy(), y[n:].copy()
-        goal, origin = self._ends(x, forces)
-        structure = Structure(evolve(self._shape, A=self.problem.slope(x)))
-        blend = Blend(sign=1, x=0 if sides.free is None else sides.free, y=1)
-        sizes = sides.sizes(x, 1.0)
-        return PairSystem(structure, sides, blend, lam, sides.gaps(x), forces, self.c, origin - goal, sizes)
+    def _linearized(self, y: Array) -> TwoVectorHomotopy:
+        """Wang's homotopy of the affine problem that has the same F and F' at a point."""
+        problem, blend = self.problem.linearized(y[: self.problem.n]), Blend(sign=1, x=self.sides.free, y=1)
+        found = TwoVectorHomotopy("Wang", problem, blend, self.x0, self.y0, self.references, Structure(problem))
+        # What the bounds and the start say is the same at all points.
+        vars(found).update(sides=self.sides, c=self.c, own_metric=self.own_metric)
+        return found
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix by way of one of order n + 1."""
-        return factor_pairs(self._system(y, lam), border.copy())
+        return self._linearized(y).bordered(y, lam, border)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
-        system = self._system(y, lam)
-        return in_full(system.apply, y.size, system.structure.problem.sparse)
-
-    def max_step(self, u: Array, v: Array) -> float:
-        """How far along v until a bound or a zero of y is reached."""
-        n, sides = self.problem.n, self.sides
-        inside = longest_step(sides.gaps(u[:n]), sides.pull(v[:n]))
-        return min(inside, longest_step(u[n:-1], v[n:-1]))
+        return self._linearized(y).jacobian(y, lam)
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
         """The natural residual."""

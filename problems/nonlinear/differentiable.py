@@ -3,48 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.homotopy import Homotopy
-from problems.nonlinear.start_checks import Jacobian, check_jacobian_shape
+from problems.nonlinear.start_checks import EQUATIONS, Jacobian, check_jacobian_shape
 from problems.options import quiet
 
-
-class BuiltOnFunction(Homotopy, Protocol):
-    """A homotopy whose derivative follows from that of F."""
-
-    @property
-    def target(self) -> float | None:
-        """Where the path ends."""
-        ...
-
-    @property
-    def problem_class(self) -> str:
-        """What it is for, in words."""
-        ...
-
-    @property
-    def references(self) -> Sequence[str]:
-        """BibTeX entries."""
-        ...
-
-    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y).
-
-        Parameters
-        ----------
-        slope : Matrix
-            F'(y), shape (n, n).
-        y : Array of shape (n,)
-        lam : float
-        """
-        ...
+if TYPE_CHECKING:
+    from problems.nonlinear.fixed_point import FixedPointHomotopy
+    from problems.nonlinear.newton import NewtonHomotopy
 
 
-H = TypeVar("H", bound=BuiltOnFunction)
+H = TypeVar("H", bound="FixedPointHomotopy | NewtonHomotopy")
 
 
 @frozen(eq=False)
@@ -69,21 +41,13 @@ class Differentiable(Generic[H]):
 
     homotopy: H
     slope: Jacobian
+    target: ClassVar[float | None] = 0.0
+    problem_class: ClassVar[str] = EQUATIONS
 
     def __attrs_post_init__(self) -> None:
         y, lam = self.start()
         check_jacobian_shape(self.slope, y)
         self.jacobian(y, lam)
-
-    @property
-    def target(self) -> float | None:
-        """That of the homotopy."""
-        return self.homotopy.target
-
-    @property
-    def problem_class(self) -> str:
-        """That of the homotopy."""
-        return self.homotopy.problem_class
 
     @property
     def references(self) -> Sequence[str]:

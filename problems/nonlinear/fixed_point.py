@@ -10,7 +10,7 @@ from continuation.arrays import Array, Matrix
 from problems.bibliography import CHOW_MALLET_PARET_YORKE
 from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.identity import blend_with_identity
-from problems.nonlinear.start_checks import Function, Jacobian, start_vector, value_at
+from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, start_vector, value_at
 from problems.options import quiet
 
 
@@ -41,7 +41,7 @@ class FixedPointHomotopy:
 
     F: Function
     a: Array = field(converter=start_vector)
-    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
+    problem_class: ClassVar[str] = EQUATIONS
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (CHOW_MALLET_PARET_YORKE,)
 

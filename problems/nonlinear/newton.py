@@ -10,7 +10,7 @@ from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER
 from problems.nonlinear.differentiable import Differentiable
-from problems.nonlinear.start_checks import Function, Jacobian, start_vector, value_at
+from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, start_vector, value_at
 from problems.options import quiet
 
 
@@ -44,7 +44,7 @@ class NewtonHomotopy:
     a: Array = field(converter=start_vector)
     value: Array = field(init=False, repr=False)
     """F(a), shape (n,)."""
-    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
+    problem_class: ClassVar[str] = EQUATIONS
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
 

@@ -94,6 +94,7 @@ class NormalMap:
     upper_rate: Any = field(default=0.0, kw_only=True)
     target: float | None = field(default=0.0, kw_only=True, validator=finite_or_none)
     references: ClassVar[tuple[str, ...]] = (ROBINSON,)
+    problem_class: ClassVar[str] = "complementarity problems with a parameter"
 
     def __attrs_post_init__(self) -> None:
         n = self.x0.size
@@ -133,11 +134,6 @@ class NormalMap:
             found = f"{A.shape}, {force.q.shape} and {force.d.shape}"
             raise ValueError(f"A: expected a square matrix, and q and d of its size, found shapes {found}")
         return cls(force, force.slope, **more)
-
-    @property
-    def problem_class(self) -> str:
-        """What it is for, in words."""
-        return "complementarity problems with a parameter"
 
     def bounds(self, lam: float) -> tuple[Array, Array]:
         """The lower and the upper bounds at a value of the parameter.

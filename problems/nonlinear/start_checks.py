@@ -10,6 +10,9 @@ import numpy as np
 from continuation.arrays import Array, Matrix
 from problems.options import finite_vector, quiet
 
+EQUATIONS = "nonlinear equations F(x) = 0"
+"""What the homotopies for F are for."""
+
 Function = Callable[[Array], Array]
 """A map R^n -> R^n on numpy arrays; with plain numpy inside, complex numbers and jets pass through it."""
 

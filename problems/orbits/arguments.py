@@ -53,11 +53,6 @@ def check_times(times: Array, states: Array) -> None:
         raise complain(ValueError, "t", f"{len(states)} times that rise, one a state", times)
 
 
-def beside_of(beside: dict[str, Any]) -> tuple[Any, ...]:
-    """What is handed to f behind p."""
-    return () if beside.get("second") is None else (beside["second"],)
-
-
 def spread(states: Array) -> Array:
     """Standard deviations; of what stands still its own size, or 1."""
     spread = states.std(axis=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -59,7 +60,7 @@ class Equations:
 class Watch:
     """An event: where a quantity of an orbit takes a value.
 
-    `orbit`: A PeriodicOrbit. `quantity`: An attribute of `Here`.
+    `orbit`: A PeriodicOrbit. `quantity`: An attribute of `Here`, or of what that has.
     """
 
     orbit: Any
@@ -72,4 +73,4 @@ class Watch:
 
     def monitor(self, u: Array, v: Array) -> float:
         """The quantity less the value."""
-        return float(getattr(self.orbit.equations.here(u[:-1], float(u[-1])), self.quantity)) - self.value
+        return float(attrgetter(self.quantity)(self.orbit.equations.here(u[:-1], float(u[-1])))) - self.value

@@ -18,7 +18,7 @@ from continuation.evaluation.products import sizes
 COMPLEX_STEP = 1e-200
 """The complex step: its square is below everything (Squire and Trapp 1998)."""
 
-CENTRAL_STEP = 6e-6
+CENTRAL_STEP = float(np.cbrt(np.finfo(float).eps))
 """Of central differences, beside the size of a component: the third root of round-off."""
 
 
@@ -75,7 +75,7 @@ TRIED_ASIDE = 0.1
 """How far from a point, in its components' sizes, f is tried: at an equilibrium what is not linear is not seen."""
 
 
-def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array, size: Array, p: float) -> Field:
+def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Array, p: float) -> Field:
     """How to call a function, and how to differentiate it: tried about a point, shape (n,).
 
     Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
@@ -86,6 +86,7 @@ def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array
     x = point[:, None] + TRIED_ASIDE * size[:, None] * np.cos(
         np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0))
     )
+    beside = () if second is None else (second,)
     single = np.asarray(function(x[:, 0].copy(), p, *beside))
     if single.shape != (len(x),) or single.dtype.kind not in "fiu":
         raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)

@@ -1,4 +1,4 @@
-"""An orbit's equations at one point (X, T, p): the residual, its derivative applied, as a matrix, and condensed."""
+"""An orbit's equations at one point (X, T, p): the residual, its derivative as a matrix, and condensed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.orbits.blocks import Bordered, Condensed
+from problems.orbits.blocks import Condensed
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 from problems.orbits.multipliers import Multipliers
@@ -57,19 +57,8 @@ class Here:
     def residual(self) -> Array:
         """X' - T f at the Gauss points, the phase condition, and how far the mesh is off."""
         equations = self.grid.slopes(self.X) - self.T * self.flow
-        return np.concatenate([equations.ravel(), [self._phase(self._values)], self.times - self.grid.mesh[1:-1]])
-
-    def _phase(self, values: Array) -> float:
-        return float(np.einsum("ig,ign,ign->", self.grid.quadrature, values, self.reference))
-
-    def applied(self, v: Array) -> Array:
-        """The derivative applied to a direction (dX, dT, dmesh, dp)."""
-        (by_x, by_p), size = self._derivatives, self.X.size
-        dX, dT = v[:size].reshape(self.X.shape), v[size]
-        values = self.grid.values(dX)
-        moved = np.einsum("igab,igb->iga", by_x, values) + v[-1] * by_p
-        equations = self.grid.slopes(dX) - self.T * moved - dT * self.flow
-        return np.concatenate([equations.ravel(), [self._phase(values)], v[size + 1 : -1]])
+        phase = np.einsum("ig,ign,ign->", self.grid.quadrature, self._values, self.reference)
+        return np.concatenate([equations.ravel(), [phase], self.times - self.grid.mesh[1:-1]])
 
     @cached_property
     def _blocks(self) -> Array:
@@ -88,6 +77,7 @@ class Here:
         np.add.at(row, self.grid.index, each)
         return row.ravel()
 
+    @cached_property
     def matrices(self) -> tuple[sp.csc_array, Array]:
         """The derivative by the unknowns, sparse, and by p."""
         grid, n = self.grid, self.scale.size
@@ -105,41 +95,21 @@ class Here:
         return sp.csc_array((entries, (i, j)), shape=(whole, whole)), by_p
 
     @cached_property
-    def _condensed(self) -> tuple[Condensed, Array, Array]:
-        """The blocks in units, what the equations are divided by, and the units of (T, p)."""
+    def _condensed(self) -> Condensed:
+        """The blocks in units."""
         N, m, n = self._values.shape
         blocks = self._blocks * (self.scale / self.scale[:, None])[:, None, :]
-        equations = self.scale / self.grid.widths[:, None, None] + np.zeros_like(self.flow)
-        g = np.stack([-self.flow / equations, -self.T * self._derivatives[1] / equations], axis=-1)
-        largest = np.abs(g).max(axis=(0, 1, 2))
-        units = np.where(largest > 0.0, 1.0 / np.where(largest > 0.0, largest, 1.0), 1.0)
-        g = (g * units).reshape(N, m * n, 2)
-        return Condensed.of(blocks.reshape(N, m * n, -1), g), equations.ravel(), units
-
-    def bordered(self, border: Array) -> Bordered:
-        """The derivative with a border, factored."""
-        condensed, equations, units = self._condensed
-        scale = np.concatenate([np.tile(self.scale, len(self.X)), units])
-        size = self.X.size + 1
-        rows = np.stack([np.append(self._phase_row, [0.0, 0.0]), np.append(border[:size], border[-1])]) * scale
-        sizes = np.abs(rows).max(axis=1)
-        sizes = np.where(sizes > 0.0, sizes, 1.0)
-        system = Bordered(condensed, rows / sizes[:, None], sizes, scale, equations, border[size:-1])
-        assert system.small
-        return system
+        return Condensed.of(blocks.reshape(N, m * n, -1))
 
     @cached_property
     def multipliers(self) -> Multipliers:
         """The Floquet multipliers."""
-        A, B, _ = self._condensed[0].last
-        return Multipliers(A, B)
+        return Multipliers(self._condensed.A, self._condensed.B)
 
     def mode(self, mu: float) -> Array:
         """How the linearised equation moves the orbit along the multiplier nearest to a number, shape (N m, n)."""
         x = self.multipliers.vector(mu)
-        blocks = self._condensed[0]
-        ends = np.stack([x, mu * x])[:, :, None]
-        return blocks.backward(ends, np.zeros((blocks.k, 1)))[:, :, 0] * self.scale
+        return self._condensed.all_from(np.stack([x, mu * x])) * self.scale
 
     @property
     def amplitude(self) -> float:
@@ -154,16 +124,6 @@ class Here:
         root = np.sqrt(self.grid.quadrature)[:, :, None]
         own, reference = root * self.flow / self.scale, root * self.reference * self.scale
         return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
-
-    @property
-    def doubling(self) -> float:
-        """As of the multipliers."""
-        return self.multipliers.doubling
-
-    @property
-    def torus(self) -> float:
-        """As of the multipliers."""
-        return self.multipliers.torus
 
     def observed(self) -> dict[str, float]:
         """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""

@@ -19,12 +19,11 @@ OUTSIDE_CIRCLE = 1e-6
 known to the root of round-off, as the one that is always there is."""
 
 
-LEAST_DENOMINATOR = 1e-300
-"""The denominator of a multiplier that is beyond all numbers."""
-
-
 TRIVIAL_FOUND = 0.5
 """Multipliers of which the first, that is 1, is off by more are not known."""
+
+
+TINY = float(np.finfo(float).tiny)
 
 
 @frozen(eq=False, slots=False)
@@ -43,7 +42,8 @@ class Multipliers:
     def values(self) -> Array:
         """All of them, that of the phase, which is 1, first; shape (n,), complex."""
         alpha, beta = self._pencil[0]
-        found = alpha / np.where(np.abs(beta) < LEAST_DENOMINATOR, LEAST_DENOMINATOR, beta)
+        # One that is beyond all numbers is the largest.
+        found = alpha / np.where(np.abs(beta) < TINY, TINY, beta)
         first = int(np.argmin(np.abs(found - 1.0)))
         rest = np.delete(found, first)
         return np.append(found[first], rest[np.argsort(-np.abs(rest))])

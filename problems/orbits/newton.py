@@ -8,6 +8,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.linear import factor_bordered
 from continuation.metric import norm
 
 ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
@@ -24,8 +25,8 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
 
     def increment() -> Array:
         y, lam = found.x[:-1], float(found.x[-1])
-        step: Array = homotopy.bordered(y, lam, border).solve(-homotopy.residual(y, lam), 0.0)
-        return step
+        matrix, column = homotopy.jacobian(y, lam)
+        return factor_bordered(matrix, column, border).solve(-homotopy.residual(y, lam), 0.0)
 
     def done(size: float) -> bool:
         return size <= ORBIT_FOUND or (size <= ORBIT_NEAR and found.ratio >= HALVING)

@@ -18,8 +18,7 @@ from continuation.events import Event
 from continuation.metric import Weighted
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
-from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, beside_of, check_times, spread
-from problems.orbits.blocks import Bordered
+from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, check_times, spread
 from problems.orbits.equations import PHASE_COSINE, Equations, Watch
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
@@ -99,8 +98,7 @@ class PeriodicOrbit:
     @cached_property
     def equations(self) -> Equations:
         """The same as equations for other unknowns."""
-        beside = () if self.second is None else (self.second,)
-        f = field_of(self.f, self.jacobian_of_f, beside, self.states[0], self.scale, self.parameter)
+        f = field_of(self.f, self.jacobian_of_f, self.second, self.states[0], self.scale, self.parameter)
         return Equations(f, Grid(self.mesh, self.degree), self.scale, self.states)
 
     @classmethod
@@ -129,14 +127,13 @@ class PeriodicOrbit:
         """
         x, p = as_point(point, "point")
         grid = Asked(intervals, degree, radius).grid
-        field = field_of(f, beside.get("jacobian"), beside_of(beside), x, sizes(x), p)
-        circle = circle_at(field, x, p, grid)
-        states, mesh = x + radius * circle.motion, grid.mesh
+        field = field_of(f, beside.get("jacobian"), beside.get("second"), x, sizes(x), p)
+        motion, period, scale = circle_at(field, x, p, grid)
         given = cls(
-            f, states, circle.period, p, mesh, degree, smallest=radius / 4.0, scale=circle.scale, heading=circle.motion,
+            f, x + radius * motion, period, p, grid.mesh, degree, smallest=radius / 4.0, scale=scale, heading=motion,
             **beside,
         )  # fmt: skip
-        return given._corrected(circle.motion)
+        return given._corrected(motion)
 
     @classmethod
     def from_solution(
@@ -163,7 +160,7 @@ class PeriodicOrbit:
         """
         times, states = real_vector("t", t), as_table(x)
         check_times(times, states)
-        field = field_of(f, beside.get("jacobian"), beside_of(beside), states[-1], spread(states), parameter)
+        field = field_of(f, beside.get("jacobian"), beside.get("second"), states[-1], spread(states), parameter)
         cut, period, grid = one_period(field, times, states, parameter, Asked(intervals, degree).grid)
         found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
         for _ in range(MESHES):
@@ -269,19 +266,9 @@ class PeriodicOrbit:
         return self.equations.here(y, lam).residual()
 
     @quiet
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative applied to a direction."""
-        return self.equations.here(y, lam).applied(v)
-
-    @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
         """The derivative by (X, T), sparse, and by p."""
-        return self.equations.here(y, lam).matrices()
-
-    @quiet
-    def bordered(self, y: Array, lam: float, border: Array) -> Bordered:
-        """The derivative with a border, factored."""
-        return self.equations.here(y, lam).bordered(border)
+        return self.equations.here(y, lam).matrices
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
         """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
@@ -311,8 +298,8 @@ class PeriodicOrbit:
     def events(self) -> tuple[Event, ...]:
         """Period doublings and tori; where orbits shrink to a Hopf point, and where the phase condition fails."""
         return (
-            Watch(self, "doubling", "period doubling"),
-            Watch(self, "torus", "torus"),
+            Watch(self, "multipliers.doubling", "period doubling"),
+            Watch(self, "multipliers.torus", "torus"),
             Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
             Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
         )
@@ -346,5 +333,5 @@ class PeriodicOrbit:
 
     @property
     def references(self) -> tuple[str, ...]:
-        """Of collocation, of its linear algebra, and of derivatives where f has none."""
+        """Of collocation, of the multipliers, and of derivatives where f has none."""
         return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

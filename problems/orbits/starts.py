@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
@@ -32,20 +31,10 @@ MESHES = 4
 """Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
 
 
-@frozen(eq=False)
-class Circle:
+def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, float, Array]:
     """The orbits about a Hopf point to first order: x + radius Re (q exp(2 pi i t)), with q in units of `scale`.
 
-    `motion`, of shape (N m, n): Re q exp(2 pi i t) at the nodes.
-    """
-
-    motion: Array
-    period: float
-    scale: Array
-
-
-def circle_at(field: Field, x: Array, p: float, grid: Grid) -> Circle:
-    """The circle at a Hopf point.
+    Returns Re q exp(2 pi i t) at the nodes, shape (N m, n), the period and `scale`.
 
     Raises `ValueError` if no pair of eigenvalues is near the imaginary axis.
     """
@@ -59,7 +48,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> Circle:
     q, size = vectors[:, k], sizes(x)
     q = q / np.abs(q / size).max()
     motion = (q * np.exp(2j * np.pi * grid.nodes)[:, None]).real
-    return Circle(motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), LEAST_MOTION * size))
+    return motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), LEAST_MOTION * size)
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:

@@ -12,7 +12,7 @@ from attrs import evolve
 
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
-from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
+from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point, positive_point
 
 LARGEST_SUPPORTS = 10
 """Largest order of the tests with one exact linear program an index set (0.02 s for integers of one digit)."""
@@ -34,26 +34,17 @@ def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
     return tuple(known.get(i, Fraction(0)) for i in range(n))
 
 
-def _first_violation(matrix: ExactMatrix, build: Build) -> tuple[Indices, Point] | None:
-    """The smallest index set whose system has a positive solution, with that solution."""
-    for mask in index_sets(matrix.n):
-        support = indices(mask)
-        found = positive_point(build(matrix, support), len(support))
-        if found is not None:
-            return support, embed(matrix.n, support, found)
-    return None
-
-
 def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
     """No index set has a violating vector; `words` say what a violation shows and what its absence proves."""
     if matrix.n > LARGEST_SUPPORTS:
         return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
-    violation = _first_violation(matrix, build)
-    if violation is None:
-        return Membership(name, True, Evidence(words[1]), cited)
-    support, x = violation
-    sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
-    return Membership(name, False, Evidence(sentence, support, vector=x), cited)
+    for support in map(indices, index_sets(matrix.n)):
+        found = positive_point(build(matrix, support), len(support))
+        if found is not None:
+            x = embed(matrix.n, support, found)
+            sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
+            return Membership(name, False, Evidence(sentence, support, vector=x), cited)
+    return Membership(name, True, Evidence(words[1]), cited)
 
 
 def _all_at_most(bound: int) -> Build:
@@ -68,7 +59,8 @@ def _all_at_most(bound: int) -> Build:
 
 def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
     block = columns(matrix, support)
-    return [equal(row) if i in support else at_least(row) for i, row in enumerate(block)]
+    on, off = [at_least(block[i]) for i in support], [at_least(row) for i, row in enumerate(block) if i not in support]
+    return [*exactly(on), *off]
 
 
 @matrix_class

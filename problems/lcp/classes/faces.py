@@ -11,7 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, IntRow, consistent, over_common_denominator, solve
-from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point
+from problems.lcp.classes.simplex import Point, at_least, at_most, exactly, feasible_point
 from problems.lcp.data.problem import MixedLCP
 
 Bound = tuple[int | None, int | None]
@@ -111,32 +111,27 @@ def _nonsingular_piece(piece: Piece, columns: Sequence[Sequence[int]], d: int) -
 
 
 def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
-    """By linear programming, in distances from the lower bounds, or upper ones; of what has neither, in two parts."""
+    """By linear programming; an unknown that may be negative is a difference of two parts that are not."""
     if not consistent([[*piece.columns[i], -piece.constants[i]] for i in piece.inside]):
         return None
-    m = len(piece.inside)
-    signs = [1 if low is not None or high is None else -1 for low, high in piece.bounds]
-    origin = [low if low is not None else high if high is not None else 0 for low, high in piece.bounds]
-    parts = [j for j, ends in enumerate(piece.bounds) if ends == (None, None)]
+    m, parts = len(piece.inside), [j for j, (low, _) in enumerate(piece.bounds) if low != 0]
 
-    def row(values: Sequence[int]) -> list[int]:
-        return [s * v for s, v in zip(signs, values)] + [-values[j] for j in parts]
+    def split(row: Sequence[int]) -> list[int]:
+        return [*row, *(-row[j] for j in parts)]
 
-    def right(i: int) -> int:
-        return -piece.constants[i] - sum(a * v for a, v in zip(piece.columns[i], origin))
-
-    system = [equal(row(piece.columns[i]), right(i)) for i in piece.inside]
-    system += [at_least(row(piece.columns[i]), right(i)) for i in piece.below]
-    system += [at_most(row(piece.columns[i]), right(i)) for i in piece.above]
+    rows, sides = [split(row) for row in piece.columns], [-constant for constant in piece.constants]
+    system = exactly([at_least(rows[i], sides[i]) for i in piece.inside])
+    system += [at_least(rows[i], sides[i]) for i in piece.below] + [at_most(rows[i], sides[i]) for i in piece.above]
     for j, (low, high) in enumerate(piece.bounds):
-        if low is not None and high is not None:
-            system.append(at_most([int(k == j) for k in range(m + len(parts))], high - low))
+        unit = split([int(k == j) for k in range(m)])
+        system += [at_least(unit, low)] if low else []
+        system += [at_most(unit, high)] if high is not None else []
     found = feasible_point(system, m + len(parts))
     if found is None:
         return None
-    inside = [o + s * v for o, s, v in zip(origin, signs, found)]
-    for k, j in enumerate(parts):
-        inside[j] -= found[m + k]
+    inside = list(found[:m])
+    for j, part in zip(parts, found[m:]):
+        inside[j] -= part
     w = piece.w(inside)
     return tuple(inside), w, not _can_move(piece, inside, w)
 
@@ -148,7 +143,7 @@ def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
     def split(row: Sequence[int]) -> list[int]:
         return [*row, *(-v for v in row)]
 
-    cone: list[Constraint] = [equal(split(piece.columns[i])) for i in piece.inside]
+    cone = exactly([at_least(split(piece.columns[i])) for i in piece.inside])
     cone += [at_least(split(piece.columns[i])) for i in piece.below if w[i] == 0]
     cone += [at_most(split(piece.columns[i])) for i in piece.above if w[i] == 0]
     units = [split([int(j == k) for j in range(m)]) for k in range(m)]

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from attrs import define, evolve
+from attrs import evolve
 
 from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, over_common_denominator, simplest, solve
 from problems.lcp.classes.faces import face_point
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_vector
 from problems.lcp.classes.minors import is_p, is_z
-from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, feasible_point, positive_point
+from problems.lcp.classes.simplex import Point, at_least, at_most, feasible_point, positive_point
 from problems.lcp.classes.sufficiency import is_row_sufficient
 
 LARGEST_COVER = 5
@@ -64,10 +64,9 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
     if matrix.n > LARGEST_COVER:
         sentence = f"no criterion that we use applies, and the cover of cones is decided up to n = {LARGEST_COVER} only"
         return Membership(name, None, Evidence(sentence), cited)
-    search = _Subtraction(matrix)
     try:
-        witness = search.leftover([])
-    except _BudgetSpentError:
+        witness = _leftover(matrix, full_cones(matrix), [], iter(range(MOST_PROGRAMS)))
+    except StopIteration:
         sentence = f"the complementary cones were not subtracted within {MOST_PROGRAMS} linear programs"
         return Membership(name, None, Evidence(sentence), cited)
     if witness is None:
@@ -76,64 +75,41 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
     return Membership(name, False, Evidence(sentence, vector=witness), cited)
 
 
-class _BudgetSpentError(Exception):
-    """The subtraction has used its linear programs."""
-
-
-@define
-class _Subtraction:
-    """The cone pos[I, -A] minus the full complementary cones, as a search for a point left over.
+def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, programs: Iterator[int]) -> Point | None:
+    """A feasible q of a region with which the problem has no solution, or None if the cones cover the region.
 
     The cone of feasible right-hand sides is q = y - A x with x, y >= 0; a region is a list of normals r with r . q > 0.
-    Only interiors matter: the union of the cones is closed, so what it misses is open.
+    Only interiors matter: the union of the cones is closed, so what it misses is open. `programs`: As many as linear
+    programs may be solved; raises `StopIteration` if they do not suffice.
     """
-
-    matrix: ExactMatrix
-    spent: int = 0
-    cones: list[Normals] | None = None
-
-    def leftover(self, region: Normals) -> Point | None:
-        """A feasible q of the region with which the problem has no solution, or None if the cones cover the region."""
-        if self.cones is None:
-            self.cones = full_cones(self.matrix)
-        q = self._interior(region)
-        if q is None:
-            return None
-        cone = next((c for c in self.cones if all(_dot(r, q) >= 0 for r in c)), None)
-        if cone is None:
-            return self._unsolvable_near(q, region)
-        for i, normal in enumerate(cone):
-            rest = self.leftover([*region, *cone[:i], [-v for v in normal]])
-            if rest is not None:
-                return rest
+    next(programs)
+    n, entries = matrix.n, matrix.entries
+    through_a = [[sum(r[i] * entries[i][j] for i in range(n)) for j in range(n)] for r in region]
+    found = positive_point([at_most([*a, *(-v for v in r)], -1) for a, r in zip(through_a, region)], 2 * n)
+    if found is None:
         return None
+    q = tuple(b - _dot(row, found[:n]) for row, b in zip(entries, found[n:]))
+    cone = next((c for c in cones if all(_dot(r, q) >= 0 for r in c)), None)
+    if cone is None:
+        return _unsolvable_near(matrix, q, region)
+    for i, normal in enumerate(cone):
+        rest = _leftover(matrix, cones, [*region, *cone[:i], [-v for v in normal]], programs)
+        if rest is not None:
+            return rest
+    return None
 
-    def _interior(self, region: Normals) -> Point | None:
-        if self.spent >= MOST_PROGRAMS:
-            raise _BudgetSpentError
-        self.spent += 1
-        n, entries = self.matrix.n, self.matrix.entries
-        system: list[Constraint] = []
-        for normal in region:
-            through_a = [sum(normal[i] * entries[i][j] for i in range(n)) for j in range(n)]
-            system.append(at_most([*through_a, *(-v for v in normal)], -1))
-        found = positive_point(system, 2 * n)
-        if found is None:
-            return None
-        x, y = found[:n], found[n:]
-        return tuple(b - _dot(row, x) for row, b in zip(entries, y))
 
-    def _unsolvable_near(self, q: Point, region: Normals) -> Point:
-        """Move q off the lower-dimensional cones, staying in the open set that the full cones miss.
+def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
+    """Move q off the lower-dimensional cones, staying in the open set that the full cones miss.
 
-        The directions lie on the moment curve, which meets each hyperplane finitely often, so the search ends.
-        """
-        candidate, tries = q, 0
-        while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(self.matrix, candidate):
-            tries += 1
-            step = Fraction(1, (2 * tries) ** self.matrix.n)
-            candidate = tuple(v + step * Fraction(tries**i, 2**tries) for i, v in enumerate(q))
-        return simplest(candidate, lambda v: is_feasible(self.matrix, v) and not is_solvable(self.matrix, v))
+    The directions lie on the moment curve, which meets each hyperplane finitely often, so the search ends.
+    """
+    candidate, tries = q, 0
+    while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(matrix, candidate):
+        tries += 1
+        step = Fraction(1, (2 * tries) ** matrix.n)
+        candidate = tuple(v + step * Fraction(tries**i, 2**tries) for i, v in enumerate(q))
+    return simplest(candidate, lambda v: is_feasible(matrix, v) and not is_solvable(matrix, v))
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:

@@ -8,56 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Generic, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import define, frozen
+from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem, SingularError
 from continuation.linear.silence import without_warnings
 
-CORE_REFINEMENTS = 4
-"""Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""
-
-CONVERGED = 1e-9
-"""Relative size of a correction, component by component, after which the next would be below 1e-12 (`UNRELIABLE`)."""
-
-SMALL_COMPONENT = 1e-6
-"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy.
-
-What it does to the point is a millionth of what the step does.
-"""
+GAINED = 1e-3
+"""What a correction in the full system leaves of an error at least: a core whose first correction is larger, in the
+units of the point, is not believed, and four of them reach round-off. Its powers are all other limits here."""
 
 FIRM_CORRECTION = 1e-13
 """Relative size of the tangent's correction, round-off, below which the core's solutions are taken as they are."""
 
-FIRM_SPREAD = 1e3
-"""Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
-
-UNRELIABLE = 1e-3
-"""Relative size of the first correction, in the units of the point, above which a core is not believed."""
-
-
-System = TypeVar("System")
 
 _silently = without_warnings(all="ignore")
 """A pair of zeros gives an inf here, which the factorisation of the core then reports."""
-
-
-@define(eq=False)
-class Recent(Generic[System]):
-    """The system at the last point that was asked for: the engine asks for many products there, one by one."""
-
-    found: tuple[bytes, float, System] | None = None
-
-    def at(self, y: Array, lam: float, make: Callable[[Array, float], System]) -> System:
-        """The system at a point, made of a copy of y."""
-        found, entries = self.found, y.tobytes()
-        if found is None or found[:2] != (entries, lam):
-            self.found = found = entries, lam, make(y.copy(), lam)
-        return found[2]
 
 
 def in_full(apply: Callable[[Array], Array], size: int, sparse: bool) -> tuple[Matrix, Array]:
@@ -70,50 +39,42 @@ def in_full(apply: Callable[[Array], Array], size: int, sparse: bool) -> tuple[M
 
 @frozen(eq=False)
 class Pairs:
-    """The pairs ``s v + x p - c l = r`` solved for one unknown each.
+    """The pairs ``s v + x p = r`` solved for one unknown each: ``v = a k + e r`` and ``p = b k + f r``.
 
-    ``v = a k + e (r + c l)`` and ``p = b k + f (r + c l)``, where k is the unknown kept: v where p is eliminated, so
-    that e = 0, and p where v is, so that f = 0.
+    k is the unknown kept: v where p is eliminated, so that e = 0, and p where v is, so that f = 0.
     """
 
     a: Array
     b: Array
     e: Array
     f: Array
-    c: Array
     sign: int
     """Sign of the determinant of the eliminated part: that of the whole is this times the core's."""
 
-    def known(self, t: Array) -> tuple[Array, Array, Array]:
-        """What right-hand sides t add: to v, to p as it stands in other rows, and to p."""
-        p = self.f * t
-        return self.e * t, p, p
+    def known(self, r: Array) -> tuple[Array, Array, Array]:
+        """What right-hand sides add: to v, to p as it stands in other rows, and to p."""
+        p = self.f * r
+        return self.e * r, p, p
 
     def row(self, border: Array) -> Array:
         """The coefficients of k in border . p."""
         return border * self.b
 
-    def of(self, k: Array, r: Array, l: float) -> tuple[Array, Array]:
+    def of(self, k: Array, r: Array) -> tuple[Array, Array]:
         """The pair (v, p)."""
-        t = r + self.c * l
-        return self.a * k + self.e * t, self.b * k + self.f * t
-
-    def partner(self, k: Array, r: Array, l: float) -> Array:
-        """P alone."""
-        return self.b * k + self.f * (r + self.c * l)
+        return self.a * k + self.e * r, self.b * k + self.f * r
 
 
 @_silently
-def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate every p of the pairs ``s v + x p - c l = r``: what is left keeps the symmetry of the core."""
+def second_eliminated(s: Array, x: Array) -> Pairs:
+    """Eliminate every p of the pairs ``s v + x p = r``: what is left keeps the symmetry of the core."""
     f = 1.0 / x
-    ones, zeros = np.ones_like(x), np.zeros_like(x)
-    return Pairs(ones, -s * f, zeros, f, c, parity(np.count_nonzero(x < 0.0)))
+    return Pairs(np.ones_like(x), -s * f, np.zeros_like(x), f, parity(np.count_nonzero(x < 0.0)))
 
 
 @_silently
-def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate of ``s v + x p - c l = r`` the unknown with the larger coefficient.
+def larger_eliminated(s: Array, x: Array) -> Pairs:
+    """Eliminate of ``s v + x p = r`` the unknown with the larger coefficient.
 
     There is no cancellation, and either coefficient may be zero.
     """
@@ -129,7 +90,6 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
         np.where(swapped, ones, ratio),
         np.where(swapped, inverse, zeros),
         np.where(swapped, zeros, inverse),
-        c,
         sign,
     )
 
@@ -140,79 +100,28 @@ def parity(count: int | np.intp) -> int:
 
 
 @frozen(eq=False, slots=False)
-class Full:
-    """The full bordered system, known by its products: `apply` takes z to H' z, ``(N + 1,) -> (N,)``.
-
-    The point has the unknowns, block by block; the coefficients are more of what stands in the pairs.
-    """
-
-    apply: Callable[[Array], Array]
-    border: Array
-    point: tuple[Array, ...]
-    coefficients: tuple[Array, ...] = ()
-
-    @cached_property
-    def units(self) -> Array:
-        """Sizes of the unknowns, one for a zero and for the parameter, in which a correction is large or small."""
-        sizes: Array = np.abs(np.concatenate([*self.point, [1.0]]))
-        sizes[sizes == 0.0] = 1.0
-        return sizes
-
-    @cached_property
-    def spread(self) -> float:
-        """Ratio of the largest to the smallest coefficient in the pairs; inf if one is zero."""
-        sizes = np.abs(np.concatenate([*self.point, *self.coefficients, [1.0]]))
-        smallest = float(sizes.min())
-        if smallest == 0.0:
-            return np.inf
-        with np.errstate(over="ignore"):
-            return float(sizes.max()) / smallest
-
-    def residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
-        """``(r, rho) - M z``."""
-        return r - self.apply(z), rho - float(self.border.dot(z))
-
-
-@frozen(eq=False)
-class TangentSolve:
-    """The core to be used, its tangent (the solution for (0, 1)), and whether its solutions need no correction."""
-
-    core: BorderedSystem
-    tangent: Array
-    firm: bool
-
-
-@frozen(eq=False, slots=False)
 class CoreSystem:
     """A bordered system solved by its quick core and corrected in full, by its robust core where that fails.
+
+    The full system is known by its products: `apply` takes z to H' z, ``(N + 1,) -> (N,)``. `sizes`, of shape (N,): In
+    what the unknowns are large or small. `coefficients`: More of what stands in the pairs.
 
     The quick core is smaller and symmetric, and loses digits as a pair approaches zero; corrections regain them. The
     first solve is for the tangent, which the engine wants anyway: its corrections tell which core serves, and whether
     its solutions are at round-off as they are, as they are far from the boundary.
     """
 
-    full: Full
+    apply: Callable[[Array], Array]
+    border: Array
+    sizes: Array
+    coefficients: Array
     quick: BorderedSystem | None
     make_robust: Callable[[], BorderedSystem]
 
     @cached_property
-    def sign(self) -> int:
-        """Sign of the determinant of the full bordered matrix."""
-        return self._probe.core.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,)."""
-        probe = self._probe
-        if rho == 1.0 and not r.any():
-            return probe.tangent.copy()
-        if probe.firm:
-            return probe.core.solve(r, rho)
-        solution = self._refined(probe.core, r, rho)
-        return self._robustly(r, rho)[0] if solution is None else solution[0]
-
-    def approximate(self, r: Array, rho: float) -> Array:
-        """The solution by the core as it is: for an iteration that measures its own residual."""
-        return self._probe.core.solve(r, rho)
+    def units(self) -> Array:
+        """Sizes of the unknowns, one for a zero and for the parameter."""
+        return np.append(np.where(self.sizes == 0.0, 1.0, self.sizes), 1.0)
 
     @cached_property
     def robust(self) -> BorderedSystem:
@@ -220,21 +129,47 @@ class CoreSystem:
         return self.make_robust()
 
     @cached_property
-    def _probe(self) -> TangentSolve:
-        nothing = np.zeros(self.full.border.size - 1)
-        solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
-        if self.quick is None or solution is None:
-            tangent, moved = self._robustly(nothing, 1.0)
-            return TangentSolve(self.robust, tangent, self._firm(moved))
-        return TangentSolve(self.quick, solution[0], self._firm(solution[1]))
+    def sign(self) -> int:
+        """Sign of the determinant of the full bordered matrix."""
+        return self._probe[0].sign
 
-    def _firm(self, moved: float) -> bool:
-        return moved <= FIRM_CORRECTION and self.full.spread <= FIRM_SPREAD
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution z, shape (N + 1,)."""
+        core, tangent, firm = self._probe
+        if rho == 1.0 and not r.any():
+            return tangent.copy()
+        if firm:
+            return core.solve(r, rho)
+        solution = self._refined(core, r, rho)
+        return self._robustly(r, rho)[0] if solution is None else solution[0]
+
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The solution by the core as it is: for an iteration that measures its own residual."""
+        return self._probe[0].solve(r, rho)
+
+    @cached_property
+    def _probe(self) -> tuple[BorderedSystem, Array, bool]:
+        """The core to be used, its tangent (the solution for (0, 1)), and whether its solutions need no correction."""
+        nothing = np.zeros(self.sizes.size)
+        solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
+        core = self.robust if self.quick is None or solution is None else self.quick
+        tangent, moved = self._robustly(nothing, 1.0) if solution is None else solution
+        return core, tangent, moved <= FIRM_CORRECTION and self._even()
+
+    @_silently
+    def _even(self) -> bool:
+        """Whether all factors of the pairs are of like sizes: then the tangent's correction speaks for others."""
+        sizes = np.abs(np.concatenate([self.sizes, self.coefficients, [1.0]]))
+        return bool(GAINED * sizes.max() <= sizes.min())
+
+    def _residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
+        """``(r, rho) - M z``."""
+        return r - self.apply(z), rho - float(self.border.dot(z))
 
     def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
         """The solution by the robust core, corrected once whatever that does, and the size of the correction."""
         z = self.robust.solve(r, rho)
-        correction = self.robust.solve(*self.full.residual(z, r, rho))
+        correction = self.robust.solve(*self._residual(z, r, rho))
         return z + correction, self._moved(correction, z)[0]
 
     @_silently
@@ -245,43 +180,29 @@ class CoreSystem:
         condition: where they stall at a small size, the residual is as small as it can be.
         """
         try:
-            z = core.solve(r, rho)
-            changes: list[float] = []
-            while len(changes) < CORE_REFINEMENTS:
-                correction = core.solve(*self.full.residual(z, r, rho))
+            z, changes = core.solve(r, rho), [np.inf]
+            # Another correction than the fourth, or than one of nine digits, would be below round-off.
+            while len(changes) <= 4 and changes[-1] > GAINED**3:
+                correction = core.solve(*self._residual(z, r, rho))
                 z = z + correction
                 moved, overall = self._moved(correction, z)
-                if not overall <= UNRELIABLE:
+                if not overall <= GAINED:
                     return None
-                stalled = bool(changes) and moved > 0.5 * changes[-1]
                 changes.append(moved)
-                if moved <= CONVERGED or stalled:
+                if moved > 0.5 * changes[-2]:
                     break
         except SingularError:
             return None
-        return z, changes[0]
+        return z, changes[1]
 
     def _moved(self, correction: Array, z: Array) -> tuple[float, float]:
-        """How much a correction changes z: component by component, and in the units of the point."""
-        units = self.full.units
+        """How much a correction changes z: component by component, and in the units of the point.
+
+        What a component smaller than a millionth, in the units of the point, does to it is nothing to the step.
+        """
+        units = self.units
         size = float(np.abs(z / units).max())
         if size == 0.0:
             return 0.0, 0.0
-        relative = np.abs(correction) / (np.abs(z) + (SMALL_COMPONENT * size) * units)
+        relative = np.abs(correction) / (np.abs(z) + (GAINED**2 * size) * units)
         return float(relative.max()), float(np.abs(correction / units).max()) / size
-
-
-def core_system(
-    full: Full, quick: BorderedSystem | None, make_robust: Callable[[], BorderedSystem], refine: bool
-) -> BorderedSystem:
-    """The system to solve with: the quick core alone, or both, corrected; without `refine` the quick core as it is.
-
-    Raises `SingularError` if there is no quick core and the robust one has no factorisation: said here, not at the
-    first solve.
-    """
-    if quick is not None and not refine:
-        return quick
-    system = CoreSystem(full, quick, make_robust)
-    if quick is None:
-        _ = system.robust
-    return system

@@ -1,20 +1,37 @@
-"""What interior paths have in common: the ratio test, the relative metric, and the numbers worth watching."""
+"""What all homotopies of this package are: rows that blend two ends, and pairs whose products fade with lambda.
+
+    ((1 - lam) goal + lam origin,  p q + plain - lam c)
+
+with goal, origin, p, q and plain affine in u = (y, lam). A homotopy says those, as `parts`; its residual, derivative,
+series, longest step and proof follow from them here. Inside, p and q have the signs of their starts.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
-from attrs import cmp_using, field, frozen
+from attrs import cmp_using, define, field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE
-from continuation.arrays import Array
-from problems.lcp.data.problem import MixedLCP
+from continuation.arrays import Array, Matrix
+from continuation.point.linearization import Linearization
+from problems.lcp.homotopies.cores import in_full
+from problems.lcp.homotopies.quadratics import exact_end, form
+from problems.lcp.quadratic.engine import ByProducts
+from problems.options import quiet
+
+if TYPE_CHECKING:
+    from problems.lcp.homotopies.registry import LCPHomotopy
+
+Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
+"""(goal, origin, p, q, plain), at a point or, without constants, of a direction."""
 
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
 
-INVERTIBLE = 1e-150
+INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
 """Sizes below this count as this: its square can still be inverted."""
 
 
@@ -35,15 +52,18 @@ class RelativeMetric:
     upper: Array | None = field(default=None, eq=cmp_using(eq=np.array_equal))
     unit: float = 1.0
 
+    def sizes(self, u: Array) -> Array:
+        """In what each number is large or small."""
+        size: Array = np.abs(u)
+        if self.lower is not None and self.upper is not None:
+            n = self.lower.size
+            distance = np.abs(np.minimum(u[:n] - self.lower, self.upper - u[:n]))
+            size[:n] = np.where(np.isfinite(distance), distance, np.maximum(size[:n], self.unit))
+        return size
+
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """1/(N u_i^2), and `lam` for the parameter."""
-        n = u.size - 1
-        size = np.maximum(np.abs(u), INVERTIBLE)
-        if self.lower is not None and self.upper is not None:
-            x = u[: self.lower.size]
-            distance = np.minimum(x - self.lower, self.upper - x)
-            relative = np.where(np.isfinite(distance), np.abs(distance), np.maximum(np.abs(x), self.unit))
-            size[: self.lower.size] = np.maximum(relative, INVERTIBLE)
+        n, size = u.size - 1, np.maximum(self.sizes(u), INVERTIBLE)
         if current is not None:
             # The size one step before is 1 / sqrt(n current).
             np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
@@ -60,25 +80,120 @@ class OwnMetric:
         return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 
-def longest_step(value: Array, direction: Array) -> float:
-    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
-    falling = direction < 0.0
+@frozen(eq=False, slots=False)
+class System:
+    """H' at a point."""
+
+    of: Any
+    y: Array
+    lam: float
+    parts: Parts
+
+    @classmethod
+    def at(cls, homotopy: LCPHomotopy, y: Array, lam: float) -> System:
+        """That of a homotopy; nothing in it follows a caller that goes on to change its y in place."""
+        return cls(homotopy, y.copy(), lam, homotopy.parts(y.copy(), lam))
+
+    def apply(self, v: Array) -> Array:
+        """H' v, one shorter than v."""
+        (goal, origin, p, q, _), l = self.parts, v[-1]
+        to_goal, to_origin, dp, dq, plain = self.of.parts(v[:-1], l, 0.0)
+        rows = (1.0 - self.lam) * to_goal + self.lam * to_origin + (origin - goal) * l
+        return np.concatenate([rows, p * dq + q * dp + plain - self.of.c * l])
+
+    @cached_property
+    def column(self) -> Array:
+        """H_lam, shape (N,)."""
+        return self.apply(np.eye(1, self.y.size + 1, self.y.size)[0])
+
+    @property
+    def sizes(self) -> Array:
+        """In what changes of y are large or small."""
+        sizes: Array = self.of.metric.sizes(self.y)
+        return sizes
+
+
+@define(eq=False)
+class Recent:
+    """The system at the last point that was asked for: the engine asks for many products there, one by one."""
+
+    found: tuple[bytes, float, System] | None = None
+
+    def at(self, homotopy: LCPHomotopy, y: Array, lam: float) -> System:
+        """The system at a point."""
+        found, entries = self.found, y.tobytes()
+        if found is None or found[:2] != (entries, lam):
+            self.found = found = entries, lam, System.at(homotopy, y, lam)
+        return found[2]
+
+
+@quiet
+def residual(self: LCPHomotopy, y: Array, lam: float) -> Array:
+    """H, of the shape of y."""
+    goal, origin, p, q, plain = self.parts(y, lam)
+    return np.concatenate([(1.0 - lam) * goal + lam * origin, p * q + plain - lam * self.c])
+
+
+def jacobian(self: LCPHomotopy, y: Array, lam: float) -> tuple[Matrix, Array]:
+    """(H_y, H_lam) in full, sparse as A is: for reference, the engine uses `bordered`."""
+    return in_full(System.at(self, y, lam).apply, y.size, self.problem.sparse)
+
+
+@quiet
+def differential(self: LCPHomotopy, y: Array, lam: float, v: Array) -> Array:
+    """H' v, one shorter than v."""
+    return self._recent.at(self, y, lam).apply(v)
+
+
+@quiet
+def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
+    """Coefficients of the path in the pseudo-arclength of `point`, one a row.
+
+    H is quadratic, so that coefficient k solves H' c_k = -(products of lower ones): one solve and two products with A
+    an order (Cochelin's asymptotic numerical method).
+    """
+    n, size = self.n, point.u.size - 1
+    c = np.zeros((order + 1, size + 1))
+    c[0] = point.u
+    c[1:2] = point.tangent
+    first, second = np.zeros((2, order + 1, size))
+    for k in range(2, order + 1):
+        goal, origin, first[k - 1, n:], second[k - 1, n:], _ = self.parts(c[k - 1, :-1], c[k - 1, -1], 0.0)
+        first[k - 1, :n], second[k - 1, :n] = c[k - 1, -1], origin - goal
+        c[k] = point.solve(-np.einsum("jn,jn->n", first[1:k], second[k - 1 : 0 : -1]))
+    return c
+
+
+def proof_engine(self: LCPHomotopy) -> ByProducts:
+    """H as affine parts and one product of them, for proofs of paths."""
+    return ByProducts(form(self))
+
+
+def certify_end(self: LCPHomotopy, y: Array) -> str:
+    """A sentence on the exact solution at x, where there is one.
+
+    Parameters
+    ----------
+    y : ndarray
+        The end of a path.
+    """
+    return exact_end(self.problem, y[: self.n])
+
+
+def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
+    """How far along v, or inf, until a factor of the pairs vanishes; lambda itself is free."""
+    factors, changes = np.array([self.parts(u[:-1], u[-1])[2:4], self.parts(v[:-1], v[-1], 0.0)[2:4]]) * self.signs
+    falling = changes < 0.0
     if not falling.any():
         return np.inf
     with np.errstate(over="ignore"):
-        return max(0.0, float((value[falling] / -direction[falling]).min()))
+        return max(0.0, float((factors[falling] / -changes[falling]).min()))
 
 
-def observed(problem: MixedLCP, x: Array) -> dict[str, float]:
-    """The natural residual and the gap x'w; with bounds the distance to that to which w_i points in place of x_i."""
+def observe(self: LCPHomotopy, y: Array, lam: float) -> dict[str, float]:
+    """The natural residual and the gap x'w at x; with bounds x the distance to that to which w_i points."""
+    problem, x = self.problem, y[: self.n]
     w = problem.w(x)
-    distance = x
-    if not problem.standard:
-        distance = np.where(w > 0.0, x - problem.lower, x - problem.upper)
-        distance = np.where(np.isfinite(distance), distance, 0.0)
+    distance = np.where(w > 0.0, x - problem.lower, x - problem.upper)
+    distance = np.where(np.isfinite(distance), distance, 0.0) if not problem.standard else x
     return {"natural_residual": float(np.abs(problem.natural_map(x, w)).max()), "gap": float(distance @ w)}
-
-
-def convolved(a: Array, b: Array, k: int) -> Array:
-    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series."""
-    return np.asarray(np.einsum("jn,jn->n", a[1:k], b[k - 1 : 0 : -1]))

@@ -8,19 +8,16 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.linear import BorderedSystem
-from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.homotopies.cores import Recent, in_full
-from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
-from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
-from problems.lcp.homotopies.quadratics import exact_end, kkt_form
+from problems.lcp.homotopies import interior
+from problems.lcp.homotopies.elimination import factor_rows
+from problems.lcp.homotopies.interior import OwnMetric, Parts, Recent, RelativeMetric, System
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import Start, kkt_start, natural_units, require_interior
-from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
 GIVE = 0.1
@@ -93,7 +90,16 @@ class KKTHomotopy:
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (DUTTA_DAS_JANA,)
     metric: ClassVar[OwnMetric] = OwnMetric()
-    _recent: Recent[KKTSystem] = field(factory=Recent, init=False, repr=False)
+    _recent: Recent = field(factory=Recent, init=False, repr=False)
+
+    residual = interior.residual
+    jacobian = interior.jacobian
+    differential = interior.differential
+    taylor = interior.taylor
+    max_step = interior.max_step
+    observe = interior.observe
+    proof_engine = interior.proof_engine
+    certify_end = interior.certify_end
 
     def __init__(
         self,
@@ -131,41 +137,37 @@ class KKTHomotopy:
         return RelativeMetric(
             lower=np.concatenate([self.problem.lower, np.zeros(m), lower, np.zeros(t.size)]),
             upper=np.concatenate([self.problem.upper, above, upper, t]),
-            unit=self._units[0],
+            unit=natural_units(self.problem)[0],
         )
 
     @cached_property
-    def _units(self) -> tuple[float, float]:
-        return natural_units(self.problem)
+    def unit(self) -> float:
+        """A unit of w for one of x."""
+        x, w = natural_units(self.problem)
+        return w / x
 
-    @cached_property
+    @property
     def give(self) -> float:
         """How far an equation gives way, at lambda = 1, to a unit of its multiplier."""
-        return GIVE * self._units[1] / self._units[0]
+        return GIVE * self.unit
 
     @cached_property
+    def c(self) -> Array:
+        """The products of all pairs at the start, zero where there is no bound; for an LCP shape (2n,)."""
+        _, _, p, q, _ = self.parts(*self.start())
+        return np.where(self.signs == 0.0, 0.0, p * q)
+
+    @property
     def c1(self) -> Array:
-        """z1 times the distances from the bounds at the start."""
-        return self.origin.z1 * self.rows.sides.gaps(self.origin.x0)
+        """The products of z1 and the distances from the bounds."""
+        return self.c[: self.rows.sides.index.size]
 
     @cached_property
-    def c2(self) -> Array:
-        """z2 w, in boxes z2 s, at the start, shape (n,)."""
+    def signs(self) -> Array:
+        """Of the factors of all pairs; zero where there is no bound."""
         rows = self.rows
-        if self.problem.standard:
-            return self.origin.z2 * self.origin.w0
-        return self.origin.z2 * rows.raised(rows.sides.force(self.origin.w0), self.t0)
-
-    @cached_property
-    def c3(self) -> Array:
-        """(u - l - z2) t at the start, one a box."""
-        return (self.rows.width - self.origin.z2[self.rows.boxed]) * self.t0
-
-    @cached_property
-    def t0(self) -> Array:
-        """T at the start: of w0 what is of the upper bounds of boxes."""
-        sides = self.rows.sides
-        return self.origin.w0[sides.low.size :][np.isin(sides.high, self.rows.boxed)]
+        ones = np.ones(rows.sides.index.size), np.ones(rows.boxed.size)
+        return np.concatenate([ones[0], np.where(rows.free, 0.0, rows.signs), ones[1]])
 
     @cached_property
     def rho(self) -> Array:
@@ -173,8 +175,10 @@ class KKTHomotopy:
         return self.rows.sides.force(self.origin.w0) - self.problem.w(self.origin.x0)
 
     def start(self) -> tuple[Array, float]:
-        """(x0, z1, z2, t0) and 1."""
-        return np.concatenate([self.origin.x0, self.origin.z1, self.origin.z2, self.t0]), 1.0
+        """(x0, z1, z2, t0) and 1, where t0 is of w0 what is of the upper bounds of boxes."""
+        sides = self.rows.sides
+        t0 = self.origin.w0[sides.low.size :][np.isin(sides.high, self.rows.boxed)]
+        return np.concatenate([self.origin.x0, self.origin.z1, self.origin.z2, t0]), 1.0
 
     def at_solution(self, x: Array) -> Array:
         """The zero of H at lambda = 0 that a solution is: its multipliers are forces and distances.
@@ -203,121 +207,42 @@ class KKTHomotopy:
         """
         return self.rows.split(y)
 
-    @quiet
-    def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (3n,) for an LCP."""
-        x, z1, z2, t = self.split(y)
-        rows, w = self.rows, self.problem.w(x)
+    def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
+        """The stationarity F and x - x0; z1, z2, u - l - z2 and the distances, w, t: see `interior`.
+
+        Without bounds w = 0 is asked for: w plus lambda times ``give (z2 - z2_0)``.
+        """
+        rows, start = self.rows, self.origin
+        x, z1, z2, t = rows.split(y)
+        if one:
+            w, origin, gaps = self.problem.w(x), x - start.x0, rows.sides.gaps(x)
+            turned = self.structure.transpose @ (x - rows.end - z2)
+        else:
+            # For a few unknowns `@` of numpy takes four times as long.
+            w, origin, gaps = self.problem.A.dot(x), x, rows.sides.pull(x)
+            turned = self.structure.transpose.dot(x - z2)
+        goal = w + turned - rows.sides.force(z1)
         raised = w + lam * self.rho
-        parts = [
-            (1.0 - lam) * self._stationarity(x, z1, z2, w) + lam * (x - self.origin.x0),
-            z1 * rows.sides.gaps(x) - lam * self.c1,
-        ]
         if self.problem.standard:
-            return np.concatenate([*parts, z2 * raised - lam * self.c2])
-        free, boxed = rows.free, rows.boxed
-        raised[boxed] += t
-        second = z2 * raised - lam * self.c2
-        second[free] = (raised + lam * self.give * (z2 - self.origin.z2))[free]
-        return np.concatenate([*parts, second, (rows.width - z2[boxed]) * t - lam * self.c3])
+            return goal, origin, y[self.n :], np.concatenate([gaps, raised]), 0.0
+        raised[rows.boxed] += t
+        p = np.concatenate([z1, z2, one * rows.width - z2[rows.boxed]])
+        q, plain = np.concatenate([gaps, raised, t]), np.zeros_like(p)
+        free = np.flatnonzero(rows.free)
+        there = z1.size + free
+        plain[there], p[there] = raised[free], lam
+        q[there] = self.give * (z2 - one * start.z2)[free]
+        return goal, origin, p, q, plain
 
-    def _stationarity(self, x: Array, z1: Array, z2: Array, w: Array) -> Array:
-        """(A + A') x + q - z1 - A' z2, from w = A x + q."""
-        rows = self.rows
-        gradient: Array = w + self.structure.transpose @ (x - rows.end - z2) - rows.sides.force(z1)
-        return gradient
-
-    def _system(self, y: Array, lam: float) -> KKTSystem:
-        x, z1, z2, t = self.split(y)
-        rows, w = self.rows, self.problem.w(x)
-        column = x - self.origin.x0 - self._stationarity(x, z1, z2, w)
-        factor, rest, c2, sizes = z2, w + lam * self.rho, self.c2, (x, z2)
-        if not self.problem.standard:
-            free, give, unit = rows.free, self.give, self._units[0]
-            factor, rest = np.where(free, 1.0, z2), np.where(free, lam * give, rows.raised(rest, t))
-            c2 = np.where(free, give * (self.origin.z2 - z2), c2)
-            sizes = rows.sides.sizes(x, unit), np.where(free, np.maximum(np.abs(z2), unit), z2)
-        gap = rows.sides.gaps(x)
-        return KKTSystem(
-            self.structure, rows, lam, gap, z1, self.c1, factor, rest, c2, z2, t, self.c3, self.rho, column, sizes,
-            1.0 if self.problem.standard else self.give / GIVE,
-        )  # fmt: skip
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) in full, for an LCP of order 3n, sparse as A is: for reference, the engine uses `bordered`."""
-        return in_full(self._system(y, lam).apply, y.size, self.problem.sparse)
+    def rounded(self) -> tuple[str, Array, Array]:
+        """Which end of the rows is exact in floats; of the other sizes of what is summed, by x and for constants."""
+        A = self.problem.A.toarray() if self.problem.sparse else self.problem.A
+        # The sum of A'end has n terms, the error that goes with these is that of eight.
+        end = np.abs(A.T) @ np.abs(np.broadcast_to(self.rows.end, self.n))
+        return "origin", np.abs(A) + np.abs(A.T), np.abs(self.problem.q) + end * (1.0 + self.n / 4.0)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix, of order 3n + 1 for an LCP, by way of one of order n + 1; see `factor_kkt`."""
-        # Copied, as what is factored must not follow a caller that goes on to change its y in place.
-        return factor_kkt(self._system(y.copy(), lam), border.copy(), self.refine)
-
-    @quiet
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H' v, one shorter than v."""
-        return self._recent.at(y, lam, self._system).apply(v)
-
-    @quiet
-    def taylor(self, point: Linearization, order: int) -> Array:
-        """Coefficients of the path in the pseudo-arclength of `point`, one a row.
-
-        H is quadratic in its unknowns, lambda, w and F, so coefficient k solves H' c_k = -(products of lower ones):
-        one solve and two products with A an order (Cochelin's asymptotic numerical method).
-        """
-        rows, n = self.rows, self.n
-        c = np.zeros((order + 1, point.u.size))
-        c[0] = point.u
-        c[1:2] = point.tangent
-        lam, boxed = c[:, -1:], rows.boxed
-        x, z1, z2, t = (c[:, block] for block in self.places)
-        w, pull = np.zeros((order + 1, n)), np.zeros((order + 1, n))
-        defect = np.empty(point.u.size - 1)
-        first, forces, second, third = self.split(defect)
-        for k in range(2, order + 1):
-            j = k - 1
-            slope = self.problem.A @ x[j]
-            w[j] = rows.raised(slope + self.rho * lam[j], t[j])
-            gradient = slope + self.structure.transpose @ (x[j] - z2[j]) - rows.sides.force(z1[j])
-            pull[j] = x[j] - gradient
-            first[:] = convolved(lam, pull, k)
-            forces[:] = convolved(z1, rows.sides.pull(x), k)
-            second[:] = convolved(z2, w, k)
-            if not self.problem.standard:
-                second[rows.free] = self.give * convolved(lam, z2, k)[rows.free]
-                third[:] = -convolved(z2[:, boxed], t, k)
-            c[k] = point.solve(-defect)
-        return c
-
-    @cached_property
-    def places(self) -> tuple[slice, slice, slice, slice]:
-        """Where the blocks of y are in (y, lambda)."""
-        n, m = self.n, self.n + self.rows.sides.index.size
-        return slice(n), slice(n, m), slice(m, m + n), slice(m + n, -1)
-
-    def proof_engine(self) -> ByProducts:
-        """H as affine parts and one product of them, for proofs of paths."""
-        return ByProducts(kkt_form(self))
-
-    def certify_end(self, y: Array) -> str:
-        """A sentence on the exact solution at x, where there is one.
-
-        Parameters
-        ----------
-        y : ndarray
-            The end of a path.
-        """
-        return exact_end(self.problem, y[: self.n])
-
-    def max_step(self, u: Array, v: Array) -> float:
-        """How far along v until x, z1, z2, t or what z2 and t are complementary to ends; lambda itself is free."""
-        rows, sides = self.rows, self.rows.sides
-        (x, z1, z2, t), (dx, d1, d2, d3) = self.split(u[:-1]), self.split(v[:-1])
-        w, dw = self.problem.w(x) + u[-1] * self.rho, self.problem.A.dot(dx) + v[-1] * self.rho
-        value = [sides.gaps(x), z1, rows.inside(z2, rows.raised(w, t), t)]
-        change = [sides.pull(dx), d1, rows.moved(d2, rows.raised(dw, d3), d3)]
-        return longest_step(np.concatenate(value), np.concatenate(change))
-
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The natural residual and the gap x'w of the unrelaxed problem at x."""
-        return observed(self.problem, y[: self.n])
+        """Factor the bordered matrix, of order 3n + 1 for an LCP, by way of one of order n + 1; see `elimination`."""
+        # Copied, as what is factored must not follow a caller that goes on to change it in place.
+        return factor_rows(System.at(self, y, lam), border.copy())

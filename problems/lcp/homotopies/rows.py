@@ -46,7 +46,7 @@ class Rows:
     @cached_property
     def free(self) -> NDArray[np.bool_]:
         """Where there is no bound, shape (n,)."""
-        return np.zeros(self.problem.n, bool) if self.sides.free is None else self.sides.free > 0.0
+        return np.broadcast_to(np.greater(self.sides.free, 0), self.problem.n)
 
     @cached_property
     def end(self) -> Array | float:
@@ -82,7 +82,7 @@ class Rows:
     @property
     def size(self) -> int:
         """How many unknowns there are: 3 an index with one bound, 5 one with two, 2 one with none."""
-        return 2 * self.problem.n + self.sides.index.size + self.boxed.size
+        return self._ends[2] + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
         """What z is complementary to: w, and s = w + t in a box."""
@@ -92,35 +92,33 @@ class Rows:
         raised[self.boxed] += t
         return raised
 
-    def inside(self, z: Array, s: Array, t: Array) -> Array:
-        """What has to be positive: s, z and, in boxes, t and u - l - z."""
-        inside = self.moved(z, s, t)
-        if self.boxed.size:
-            inside[-self.boxed.size :] += self.width
-        return inside
-
-    def moved(self, z: Array, s: Array, t: Array) -> Array:
-        """How `inside` changes with increments of z, s and t."""
-        if self.problem.standard:
-            return np.concatenate([s, z])
-        bounded = ~self.free
-        return np.concatenate([(self.signs * s)[bounded], (self.signs * z)[bounded], t, -z[self.boxed]])
-
 
 @frozen(eq=False, slots=False)
 class RowPairs:
-    """The linearised rows, ``factor dw + rest k - c l = r``, for an unknown k of each, once those of boxes are solved.
+    """The linearised rows, ``factor dw + rest k = r``, for an unknown k of each, once those of boxes are solved.
 
-    In a box ``(u - l - z) dt - t dz - c3 l = r3`` gives dz = a k + e (r3 + c3 l) and dt = b k + f (r3 + c3 l); where
-    there is none, k = dz. `inner` has the a, b, e, f of boxes, `taken` what r3 takes from r in a box.
+    In a box ``(u - l - z) dt - t dz = r3`` gives dz = a k + e r3 and dt = b k + f r3; where there is none, k = dz.
+    `inner` has the a, b, e, f of boxes, `taken` what r3 takes from r in a box.
     """
 
     rows: Rows
     factor: Array
     rest: Array
-    c: Array
     inner: Pairs | None = None
     taken: Array = _NONE
+
+    @classmethod
+    def of_boxes(cls, rows: Rows, factor: Array, rest: Array, above: Array, t: Array) -> RowPairs:
+        """Solve the equations of boxes for the unknown with the larger coefficient.
+
+        The rows are ``factor (dw + dt) + rest dz``, with dt in boxes; t and `above` = u - l - z have one number a box.
+        """
+        boxed = rows.boxed
+        if not boxed.size:
+            return cls(rows, factor, rest)
+        inner, whole = larger_eliminated(-t, above), rest.copy()
+        whole[boxed] = rest[boxed] * inner.a + factor[boxed] * inner.b
+        return cls(rows, factor, whole, inner, rest[boxed] * inner.e + factor[boxed] * inner.f)
 
     @property
     def sign(self) -> int:
@@ -144,36 +142,18 @@ class RowPairs:
         right[self.rows.boxed] -= self.taken * r3
         return right
 
-    def of(self, k: Array, r3: Array, l: float) -> tuple[Array, Array]:
+    def of(self, k: Array, r3: Array) -> tuple[Array, Array]:
         """(dz, dt)."""
         if self.inner is None:
             return k, _NONE
         dz = k.copy()
-        dz[self.rows.boxed], dt = self.inner.of(k[self.rows.boxed], r3, l)
+        dz[self.rows.boxed], dt = self.inner.of(k[self.rows.boxed], r3)
         return dz, dt
 
     def row(self, b2: Array, b3: Array) -> Array:
         """The coefficients of k in ``b2 . dz + b3 . dt``."""
-        if self.inner is None:
+        if self.inner is None or self.turn is None:
             return b2
-        assert self.turn is not None
         row = b2 * self.turn
         row[self.rows.boxed] += self.inner.row(b3)
         return row
-
-
-def row_pairs(rows: Rows, factor: Array, rest: Array, c: Array, z: Array, t: Array, c3: Array) -> RowPairs:
-    """Solve the equations of boxes for the unknown with the larger coefficient.
-
-    The rows are ``factor (dw + dt) + rest dz - c l``, with dt in boxes, z their multipliers; t and c3 have one number a
-    box.
-    """
-    boxed = rows.boxed
-    if not boxed.size:
-        return RowPairs(rows, factor, rest, c)
-    inner = larger_eliminated(-t, rows.width - z[boxed], c3)
-    taken = rest[boxed] * inner.e + factor[boxed] * inner.f
-    rest, c = rest.copy(), c.copy()
-    rest[boxed] = rest[boxed] * inner.a + factor[boxed] * inner.b
-    c[boxed] -= taken * c3
-    return RowPairs(rows, factor, rest, c, inner, taken)

@@ -45,10 +45,10 @@ class Sides:
         return np.repeat([1.0, -1.0], [self.low.size, self.high.size])
 
     @cached_property
-    def free(self) -> Array | None:
-        """1 where an index has no bound, else 0; None where all have one."""
-        bounded = np.bincount(self.index, minlength=self.problem.n) > 0
-        return None if bounded.all() else np.where(bounded, 0.0, 1.0)
+    def free(self) -> int | Array:
+        """1 where an index has no bound, else 0: shape (n,), or 0 where all have one."""
+        free = np.bincount(self.index, minlength=self.problem.n) == 0
+        return 1.0 * free if free.any() else 0
 
     def gaps(self, x: Array) -> Array:
         """The distances from the bounds, one a pair."""
@@ -68,17 +68,10 @@ class Sides:
         # Times 1.0: of no values numpy counts in integers; and interval arrays are to pass.
         return np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
 
-    def sizes(self, x: Array, unit: float) -> Array:
-        """In what an unknown is large or small: its distance from the nearest bound, or itself but at least a unit."""
-        if self.problem.standard:
-            return x
-        distance = np.minimum(x - self.problem.lower, self.problem.upper - x)
-        return np.where(np.isfinite(distance), distance, np.maximum(np.abs(x), unit))
-
-    def eliminated(self, y: Array, gap: Array, c: Array, larger: bool) -> Pairs | BoundPairs:
+    def eliminated(self, y: Array, gap: Array, larger: bool) -> Pairs | BoundPairs:
         """Keep dx of each index, or, where `larger`, the change of a force that is larger than its distance."""
         if self.problem.standard:
-            return (larger_eliminated if larger else second_eliminated)(y, gap, c)
+            return (larger_eliminated if larger else second_eliminated)(y, gap)
         n = self.problem.n
         with np.errstate(all="ignore"):
             ratio = np.abs(y / gap)
@@ -95,7 +88,7 @@ class Sides:
         negative = np.count_nonzero(np.where(main, y, gap) < 0.0)
         total = self._summed(slope)
         pairs = negative + np.count_nonzero(main)
-        return BoundPairs(self, a, swapped - total * a, c, parity(pairs), main, slope, inverse, into_v, total)
+        return BoundPairs(self, a, swapped - total * a, parity(pairs), main, slope, inverse, into_v, total)
 
 
 @frozen(eq=False)
@@ -108,7 +101,6 @@ class BoundPairs:
     sides: Sides
     a: Array
     b: Array
-    c: Array
     sign: int
     main: NDArray[np.bool_]
     slope: Array
@@ -128,12 +120,8 @@ class BoundPairs:
         sides = self.sides
         return sides._summed(border * sides.sign * np.where(self.main, 1.0, -self.slope * self.a[sides.index]))
 
-    def of(self, k: Array, r: Array, l: float) -> tuple[Array, Array]:
+    def of(self, k: Array, t: Array) -> tuple[Array, Array]:
         """(dx, dy)."""
-        v, _, dy = self.known(r + self.c * l)
+        v, _, dy = self.known(t)
         kept = self.sides.sign * k[self.sides.index]
         return self.a * k + v, dy + np.where(self.main, kept, -self.slope * self.sides.pull(self.a * k))
-
-    def partner(self, k: Array, r: Array, l: float) -> Array:
-        """The dy alone."""
-        return self.of(k, r, l)[1]

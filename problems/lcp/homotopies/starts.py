@@ -30,9 +30,6 @@ those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100
 from 0.5 to 1, 4 from 0 to 0.5, and none from nearer.
 """
 
-SQUARED = 1e-140, 1e140
-"""Between these the largest entry of A can be squared, and what is less by ten digits or more too."""
-
 LOG_DEVIATION = 0.5
 """Standard deviation of the natural logarithms of the components; with 0 or 1 half as many paths solve (measured)."""
 
@@ -119,19 +116,12 @@ def typical_units(problem: MixedLCP) -> tuple[float, float]:
 
 
 def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, float]:
-    most = largest_entries(problem)[1]
     # Squares of what is far from 1 are no floats; over a power of two no digit is another one.
-    unit = 1.0 if SQUARED[0] < most < SQUARED[1] else 2.0 ** (math.frexp(most)[1] - 1)
-    A = problem.A if unit == 1.0 else problem.A / unit
+    unit = 2.0 ** (math.frexp(largest_entries(problem)[1])[1] - 1)
+    A = problem.A / unit
     row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w
-
-
-def relaxed_w(problem: MixedLCP, x0: Array, margin: float | Array) -> Array:
-    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin; with bounds a number for each of them."""
-    w = Sides(problem).pull(problem.w(x0))
-    return w if (w > 0.0).all() else np.maximum(w, 0.0) + margin
 
 
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
@@ -179,7 +169,9 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
     With s - t = w there paths of 24 monotone problems with all kinds of bounds take a tenth more factorisations.
     """
     sides = Sides(problem)
-    w0, gaps = relaxed_w(problem, x0, natural_units(problem)[1]), sides.gaps(x0)
+    w0, gaps = sides.pull(problem.w(x0)), sides.gaps(x0)
+    if not (w0 > 0.0).all():
+        w0 = np.maximum(w0, 0.0) + natural_units(problem)[1]
     boxed = (np.isfinite(problem.lower) & np.isfinite(problem.upper))[sides.index]
     return centred(problem, x0, np.where(boxed, _product(gaps, w0) / gaps, w0))
 
@@ -233,17 +225,13 @@ def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
         given["x0"] = inside_vector("x0", x0, problem)
     if z2 is not None:
         given["z2"] = inside_vector("z2", z2, problem, rows.bounds)
-    fallback = default_start(problem) if "x0" not in given else _from_point(problem, given["x0"])
+    fallback = relaxed_start(problem, given["x0"]) if "x0" in given else default_start(problem)
+    if "x0" in given and problem.standard and (problem.w(given["x0"]) > 0.0).all():
+        ones = np.ones(problem.n)
+        fallback = Start(given["x0"], ones, ones, problem.w(given["x0"]))
     if "w0" in given:
         fallback = centred(problem, fallback.x0, given["w0"])
     return evolve(fallback, **given)
-
-
-def _from_point(problem: MixedLCP, x0: Array) -> Start:
-    w = problem.w(x0)
-    if problem.standard and (w > 0.0).all():
-        return Start(x0, np.ones(problem.n), np.ones(problem.n), w)
-    return relaxed_start(problem, x0)
 
 
 def require_interior(problem: MixedLCP) -> None:

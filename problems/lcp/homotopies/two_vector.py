@@ -11,20 +11,33 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.linear import BorderedSystem
-from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.homotopies import references
-from problems.lcp.homotopies.cores import Recent, in_full
-from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
-from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
-from problems.lcp.homotopies.quadratics import exact_end, pairs_form
+from problems.lcp.homotopies import interior, references
+from problems.lcp.homotopies.elimination import factor_pairs
+from problems.lcp.homotopies.interior import OwnMetric, Parts, Recent, RelativeMetric, System
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import feasible_start, given_inside, made_of_x0, natural_units, positive_vector
-from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
+
+
+@frozen(kw_only=True)
+class Blend:
+    """``sign [(1 - lam) (A x + q - y) + lam (x_ (x - x0) + y_ (y0 - y) + A_ A (x - x0))]`` with these x_, y_, A_.
+
+    For y read s - t, the forces at lower and at upper bounds; x_ may differ from index to index.
+    """
+
+    sign: int
+    x: int | Array = 0
+    y: int = 0
+    A: int = 0
+
+    def slopes(self, lam: float) -> tuple[float, float | Array, float]:
+        """Alpha, beta and gamma of the derivatives of [...], alpha A + beta I by x and -gamma I by y."""
+        return 1.0 - lam + lam * self.A, lam * self.x, 1.0 - lam + lam * self.y
 
 
 @frozen(eq=False, slots=False)
@@ -61,8 +74,18 @@ class TwoVectorHomotopy:
     refine: bool = True
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
+    signs: ClassVar[float] = 1.0
     metric: ClassVar[OwnMetric] = OwnMetric()
-    _recent: Recent[PairSystem] = field(factory=Recent, init=False, repr=False)
+    _recent: Recent = field(factory=Recent, init=False, repr=False)
+
+    residual = interior.residual
+    jacobian = interior.jacobian
+    differential = interior.differential
+    taylor = interior.taylor
+    max_step = interior.max_step
+    observe = interior.observe
+    proof_engine = interior.proof_engine
+    certify_end = interior.certify_end
 
     @property
     def n(self) -> int:
@@ -79,12 +102,8 @@ class TwoVectorHomotopy:
         """Relative changes of the forces, and of the distances from the nearest bounds."""
         if self.problem.standard:
             return RelativeMetric()
-        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper, unit=self._unit)
-
-    @cached_property
-    def _unit(self) -> float:
-        """In what an unknown without bounds is large or small."""
-        return natural_units(self.problem)[0]
+        unit = natural_units(self.problem)[0]
+        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper, unit=unit)
 
     @cached_property
     def c(self) -> Array:
@@ -105,89 +124,32 @@ class TwoVectorHomotopy:
         forces = np.where(self.sides.gaps(x) > 0.0, 0.0, np.maximum(self.sides.pull(self.problem.w(x)), 0.0))
         return np.concatenate([x, forces])
 
-    @quiet
-    def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (2n,) for an LCP."""
-        n = self.n
-        goal, origin = self._ends(y)
-        products = self.sides.gaps(y[:n]) * y[n:] - lam * self.c
-        return np.concatenate([self.blend.sign * ((1.0 - lam) * goal + lam * origin), products])
-
-    def _ends(self, y: Array) -> tuple[Array, Array]:
-        """A x + q - y, and what the blend puts in its place at lambda = 1."""
-        n, blend = self.n, self.blend
-        dx, dy = y[:n] - self.x0, self.sides.force(self.y0 - y[n:])
-        origin = blend.x * dx + blend.y * dy
+    def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
+        """A x + q - y and what the blend puts in its place at lambda = 1; y and the distances: see `interior`."""
+        n, blend, sides = self.n, self.blend, self.sides
+        x, y = y[:n], y[n:]
+        if one:
+            w, dx, dy, gaps = self.problem.w(x), x - self.x0, self.y0 - y, sides.gaps(x)
+        else:
+            w, dx, dy, gaps = self.problem.A.dot(x), x, -y, sides.pull(x)
+        origin = blend.x * dx + blend.y * sides.force(dy)
         if blend.A:
-            origin += blend.A * (self.problem.A @ dx)
-        return self.problem.w(y[:n]) - self.sides.force(y[n:]), origin
+            origin = origin + blend.A * (self.problem.A @ dx)
+        return blend.sign * (w - sides.force(y)), blend.sign * origin, y, gaps, 0.0
 
-    def _system(self, y: Array, lam: float) -> PairSystem:
-        goal, origin = self._ends(y)
-        x, forces, sides = y[: self.n], y[self.n :], self.sides
-        sizes = x if self.problem.standard else sides.sizes(x, self._unit)
-        return PairSystem(self.structure, sides, self.blend, lam, sides.gaps(x), forces, self.c, origin - goal, sizes)
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) in full, for an LCP of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
-        return in_full(self._system(y, lam).apply, y.size, self.problem.sparse)
+    def rounded(self) -> tuple[str, Array, Array]:
+        """Which end of the rows is exact in floats; of the other sizes of what is summed, by x and for constants."""
+        A, blend = self.problem.A.toarray() if self.problem.sparse else self.problem.A, self.blend
+        by_x = np.abs(blend.x) * np.eye(self.n) + abs(blend.A) * np.abs(A)
+        # The sums of A x0 and of forces have many terms, the error that goes with these is that of eight.
+        constants = by_x @ np.abs(self.x0) + abs(blend.y) * np.bincount(self.sides.index, self.y0, self.n)
+        return "goal", by_x, constants * (1.0 + (self.n + self.y0.size) / 4.0)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix by way of one of order n + 1; see `factor_pairs`."""
-        # Copied, as what is factored must not follow a caller that goes on to change its y in place.
-        return factor_pairs(self._system(y.copy(), lam), border.copy(), self.refine)
-
-    @quiet
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H' v, one shorter than v."""
-        return self._recent.at(y, lam, self._system).apply(v)
-
-    @quiet
-    def taylor(self, point: Linearization, order: int) -> Array:
-        """Coefficients of the path in the pseudo-arclength of `point`, one a row."""
-        n, blend = self.n, self.blend
-        c = np.zeros((order + 1, point.u.size))
-        c[0] = point.u
-        c[1:2] = point.tangent
-        x, y, lam = c[:, :n], c[:, n:-1], c[:, -1:]
-        pull = np.zeros((order + 1, n))
-        defect = np.empty(point.u.size - 1)
-        for k in range(2, order + 1):
-            j = k - 1
-            slope = self.problem.A @ x[j]
-            force = self.sides.force(y[j])
-            pull[j] = blend.sign * (blend.x * x[j] - blend.y * force + blend.A * slope - (slope - force))
-            defect[:n] = convolved(lam, pull, k)
-            defect[n:] = convolved(self.sides.pull(x), y, k)
-            c[k] = point.solve(-defect)
-        return c
-
-    def proof_engine(self) -> ByProducts:
-        """H as affine parts and one product of them, for proofs of paths."""
-        return ByProducts(pairs_form(self))
-
-    def certify_end(self, y: Array) -> str:
-        """A sentence on the exact solution at x, where there is one.
-
-        Parameters
-        ----------
-        y : ndarray
-            The end of a path.
-        """
-        return exact_end(self.problem, y[: self.n])
-
-    def max_step(self, u: Array, v: Array) -> float:
-        """How far along v until a bound or a zero of y is reached; lambda itself is free."""
-        if self.problem.standard:
-            return longest_step(u[:-1], v[:-1])
-        n, sides = self.n, self.sides
-        inside = longest_step(sides.gaps(u[:n]), sides.pull(v[:n]))
-        return min(inside, longest_step(u[n:-1], v[n:-1]))
-
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The natural residual and the gap x'w at x."""
-        return observed(self.problem, y[: self.n])
+        # Copied, as what is factored must not follow a caller that goes on to change it in place.
+        return factor_pairs(System.at(self, y, lam), border.copy())
 
 
 def YuHomotopy(
@@ -290,7 +252,8 @@ def WangHomotopy(
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
-    return _made("Wang", problem, Blend(sign=1, x=_on_free(sides), y=1), x0, y0, references.WANG, structure)
+    # Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular.
+    return _made("Wang", problem, Blend(sign=1, x=sides.free, y=1), x0, y0, references.WANG, structure)
 
 
 def KojimaMegiddoMizunoHomotopy(
@@ -319,13 +282,8 @@ def KojimaMegiddoMizunoHomotopy(
     x0, sides = given_inside(problem, x0), Sides(problem)
     if y0 is None:
         y0 = np.maximum(sides.pull(problem.w(x0)), 0.0) + np.maximum(1.0, np.abs(problem.q))[sides.index]
-    blend, source = Blend(sign=1, x=_on_free(sides), y=1, A=1), references.KOJIMA_MEGIDDO_MIZUNO
+    blend, source = Blend(sign=1, x=sides.free, y=1, A=1), references.KOJIMA_MEGIDDO_MIZUNO
     return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, source, structure)
-
-
-def _on_free(sides: Sides) -> int | Array:
-    """Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular."""
-    return 0 if sides.free is None else sides.free
 
 
 def _made(

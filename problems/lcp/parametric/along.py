@@ -123,7 +123,7 @@ def along(
         else:
             status, message = trail.follow(walk, last, budget or Budget(steps=CORNERS))
         natural = NaturalMap(problem, slope, levels, trail.points[0])
-        steps, events = trail.steps(natural.largest(np.array(trail.points)))
+        steps, events = trail.steps(np.abs(natural.residuals(np.array(trail.points))).max(axis=1, initial=0.0))
     counts = Counts(accepted=len(steps))
     path = Path(steps, events, status, message, counts, time.perf_counter() - began, references=_CITED)
     if archive is not None:

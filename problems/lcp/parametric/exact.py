@@ -101,11 +101,13 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
         points.append(exact.point(before, after, u[k], tied.get(k, ())))
     points.append(exact.point(states[-1], states[-1], u[-1], held=_mostly(u[-1] - u[-2])))
     _as_listed(path, points, states)
-    single = True
+    single, every = True, np.arange(problem.n)
     for k, state in enumerate(states):
         at_corners = [exact.at_corners(state, points[k + end], k) for end in (0, 1)]
         first, last = k == 0, k == len(states) - 1
-        single &= (first or at_corners[0] == 1) and (last or at_corners[1] == 1) and exact.is_line(state)
+        equations = exact.equations(every, state.astype(np.intp) + 1)
+        # Where the equations of a piece are independent all of it is one line.
+        single &= (first or at_corners[0] == 1) and (last or at_corners[1] == 1) and full_row_rank(equations[:, :-1])
     return ExactPath(tuple(points), tuple(tuple(state.tolist()) for state in states), bool(single))
 
 
@@ -207,11 +209,6 @@ class _Exactly:
             i = int(np.argmax(beyond))
             raise UnprovenError(f"path: pair {i} is beyond its limits on stretch {stretch}, if by rounding only")
         return int(((low & (moved == least)) | (high & (moved == most))).sum())
-
-    def is_line(self, state: State) -> bool:
-        """Whether the equations of a piece are independent, so that all of it is one line."""
-        return full_row_rank(self.equations(np.arange(state.size), state.astype(np.intp) + 1)[:, :-1])
-
 
 def _mostly(change: Array) -> int:
     """Which number to hold at an end: t, unless that stands still."""

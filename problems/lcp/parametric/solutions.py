@@ -19,15 +19,13 @@ from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.parametric.along import along
+from problems.lcp.parametric.corner import LARGEST_LISTED
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.verdict import confirmed
 from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
 from problems.lcp.search.solver import solve
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
-
-LARGEST_TRIED = 10
-"""Orders up to which all faces are tried: 0.1 s for ten; about a second for twelve."""
 
 SAME_SOLUTION = 1e-7
 """Solutions whose every x_i agrees this well, relative to the largest, are the same."""
@@ -127,7 +125,7 @@ def solutions(
     check_seed(seed)
     check_budget(budget)
     check_flag("enumerate_faces", enumerate_faces)
-    if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_TRIED):
+    if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_LISTED):
         return _on_faces(problem, tolerance)
     search = _Search(Structure(problem), tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
     for k, given in enumerate(known):

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from continuation.arrays import Array
-from continuation.kinks.pivots import ZERO_COMPONENT
+from continuation.kinks.pivots import ZERO_COMPONENT, Ray
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
@@ -62,19 +62,16 @@ def from_solution(
         S, r, along = small(walk)
         if walk.tied.size > LARGEST_LISTED:
             grown = a_solution(S, r)
-            if grown is None:
-                return None
-            switched, chosen = grown > 0.0, along @ np.append(grown, 1.0)
+            found = [] if grown is None else [Ray(grown, 1.0)]
         else:
             found = rays(S, r)
-            directions = [along @ np.append(one.grown, one.driven) for one in found]
-            wanted = [_agreement(one, ray, sign) for one in directions]
-            if not wanted or max(wanted) <= 0.0:
-                return None
-            best = int(np.argmax(wanted))
-            switched, chosen = found[best].grown > 0.0, directions[best]
-        walk.switch_tied(switched)
-        aim(walk, chosen)
+        directions = [along @ np.append(one.grown, one.driven) for one in found]
+        wanted = [_agreement(one, ray, sign) for one in directions]
+        if not wanted or max(wanted) <= 0.0:
+            return None
+        best = int(np.argmax(wanted))
+        walk.switch(found[best].grown > 0.0)
+        aim(walk, directions[best])
         walk.locate()
     elif ray is not None and walk.u[1] @ ray < 0.0:
         walk.sign = -walk.sign

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.kinks.pivots import Ray, way
+from continuation.kinks.pivots import way
 from problems.lcp.parametric.corner import LARGEST_LISTED, rays
 from problems.lcp.parametric.walk import FLAT, SLOW_RATE, Walk
 
@@ -30,33 +30,27 @@ class Corner:
     dead: bool = False
 
 
-def turn(walk: Walk) -> Corner | None:
-    """Take the corner found; what it was, or None where no way on was found."""
-    if walk.tied.size == 1:
-        i = int(walk.tied[0])
-        walk.pivot(i)
-        return Corner((i,), [])
-    return _turn_tied(walk)
-
-
-def _turn_tied(walk: Walk) -> Corner | None:
-    tied, low = walk.tied, walk.low
-    walk.degenerate = True
-    S, r, along = small(walk)
-    on = way(S, r)
-    edges = rays(S, r) if tied.size <= LARGEST_LISTED else []
-    found = [_direction(ray, along) for ray in edges]
-    onward = [ray for ray in edges if not ray.back]
-    if on is None or on.ray.back:
-        if not onward:
+def turn(walk: Walk, step: float) -> Corner | None:
+    """Take the corner that so long a step leads to; what it was, or None where no way on was found."""
+    found: list[Array] = []
+    switched = np.ones(1, dtype=bool)
+    driver, switches = 0, tuple(walk.tied.tolist())
+    if len(switches) > 1:
+        S, r, along = small(walk)
+        on, edges = way(S, r), rays(S, r) if len(switches) <= LARGEST_LISTED else []
+        found = [along @ np.append(ray.grown, ray.driven) for ray in edges]
+        if on is None or on.ray.back:
+            onward = [k for k, ray in enumerate(edges) if not ray.back]
+            if onward:
+                walk.switch(edges[onward[0]].grown > 0.0)
+                aim(walk, found[onward[0]], step)
+                return Corner(switches, found)
             # That no other ray leaves may be said if the one come on is found.
-            return Corner(tuple(tied.tolist()), found, dead=True) if edges else None
-        walk.switch_tied(onward[0].grown > 0.0)
-        aim(walk, along @ np.append(onward[0].grown, onward[0].driven), walk.step)
-        return Corner(tuple(tied.tolist()), found)
-    walk.switch_tied(np.isin(np.arange(tied.size), on.switched))
-    walk.drive(int(tied[on.driver]), bool(low[on.driver]))
-    return Corner(tuple(tied.tolist()), found)
+            return Corner(switches, found, dead=True) if edges else None
+        switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
+    walk.switch(switched)
+    walk.drive(int(walk.tied[driver]), bool(walk.low[driver]))
+    return Corner(switches, found)
 
 
 def aim(walk: Walk, direction: Array, step: float = 0.0) -> None:
@@ -90,24 +84,11 @@ def small(walk: Walk) -> tuple[Array, Array, Array]:
         # Its w moves with the corner that it left.
         left[j] = (walk.d[j] - walk.shares[j]) * along[n, :m]
     rates = np.where(moving[:, None], along[tied, :m], left[tied])
-    rates = np.column_stack([rates, walk.dy[tied]])
-    rates -= walk.slopes[np.where(walk.low, 0, 1), tied][:, None] * along[n]
-    rates *= sign[:, None]
-    size = np.append(np.abs(along[:, :m]).max(axis=0, initial=0.0), walk.scale[1])
+    side = np.where(walk.low, 0, 1), tied
+    rates = sign[:, None] * (rates - walk.slopes[side][:, None] * along[n, :m])
+    size = np.abs(along[:, :m]).max(axis=0, initial=0.0)
     rates[np.abs(rates) <= FLAT * size * walk.terms[tied][:, None]] = 0.0
     fixed = np.flatnonzero(~moving)
     along[tied[fixed], fixed] = sign[fixed]
-    rates[:, m] = np.minimum(rates[:, m], 0.0)
-    return rates[:, :m], rates[:, m], along
-
-
-def snap(walk: Walk, pairs: tuple[int, ...]) -> None:
-    """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
-    at = list(pairs)
-    corners = walk.stairs.corner_x[:, at]
-    walk.u[0, at] = corners[np.abs(walk.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]
-
-
-def _direction(ray: Ray, along: Array) -> Array:
-    direction: Array = along @ np.append(ray.grown, ray.driven)
-    return direction / np.linalg.norm(direction)
+    r = walk.rates[side]
+    return rates, np.where(r < -FLAT * walk.noise[1, tied], r, 0.0), along

@@ -11,15 +11,13 @@ from attrs import define, field
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.counts import Counts
+from continuation.kinks.pivots import ZERO_COMPONENT
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.ties import Corner, snap, turn
-from problems.lcp.parametric.walk import SWITCH_TIE, Walk
-
-SAME_DIRECTION = 1e-9
-"""Two unit directions, or two points relative to their size, that differ by less are the same."""
+from problems.lcp.parametric.ties import Corner, turn
+from problems.lcp.parametric.walk import FLAT, Walk
 
 
 @define(eq=False)
@@ -54,7 +52,7 @@ class Trail:
             if not inside:
                 return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
             if corner is not None and len(corner.switches) > 1:
-                snap(walk, corner.switches)
+                walk.snap(corner.switches)
             u, direction = walk.u * self.units
             if walk.still:
                 direction[-1] = 0.0
@@ -78,7 +76,7 @@ class Trail:
             if spent:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
             t = walk.t if walk.still else walk.t + step * walk.dt
-            corner = turn(walk)
+            corner = turn(walk, step)
             if corner is None:
                 return _no_way(t)
             if corner.dead:
@@ -141,7 +139,7 @@ class Trail:
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
         """Whether it has left this kink in this direction before, as it may where more than two rays meet."""
-        size = SAME_DIRECTION * (1.0 + largest(u))
+        size = ZERO_COMPONENT * (1.0 + largest(u))
         been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
         self._left.append((u, unit))
         return been
@@ -154,10 +152,9 @@ class Trail:
             return False
         gap = first - last
         ahead = float(gap @ unit)
-        size = 1.0 + largest(first)
-        if not 0.0 < ahead <= length * (1.0 + SAME_DIRECTION) or largest(gap - ahead * unit) > SAME_DIRECTION * size:
+        if not 0.0 < ahead <= length * (1.0 + ZERO_COMPONENT) or not _same(unit, self.tangents[0]):
             return False
-        if not _same(unit, self.tangents[0]):
+        if largest(gap - ahead * unit) > ZERO_COMPONENT * (1.0 + largest(first)):
             return False
         self.points.append(first)
         self.tangents.append(unit)
@@ -175,7 +172,7 @@ def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
     if math.isinf(last) or math.isinf(step):
         return 0.0 <= to_last < math.inf
     off = abs(walk.t + step * walk.dt - last)
-    return 0.0 <= to_last <= step or off <= SWITCH_TIE * max(abs(walk.t), abs(last), abs(step * walk.dt))
+    return 0.0 <= to_last <= step or off <= FLAT * max(abs(walk.t), abs(last), abs(step * walk.dt))
 
 
 def _no_way(t: float) -> tuple[Status, str]:
@@ -188,4 +185,5 @@ def _unit(a: Array) -> Array:
 
 
 def _same(a: Array, b: Array) -> bool:
-    return largest(a - b) <= SAME_DIRECTION
+    """Whether two unit directions are one."""
+    return largest(a - b) <= ZERO_COMPONENT

@@ -12,17 +12,13 @@ from problems.lcp.parametric.basis import Basis
 from problems.lcp.parametric.stairs import Stairs
 
 FLAT = 1e-11
-"""A rate below this, relative to its row's entries and the direction, is rounding: it leads to no corner."""
-
-SWITCH_TIE = 1e-10
-"""Switches that vanish so near to each other, relative to the step and to t, vanish at once. On 10,000 problems of
-integers (n <= 6) anything from 1e-13 to 1e-7 gives the same; 1e-6 is too loose for cond X = 1e6."""
+"""A rate below this, relative to its row's entries and the direction, is rounding: it leads to no corner. Switches that
+vanish so near to each other, relative to the step and to t, vanish at once: on 10,000 problems of integers (n <= 6)
+anything from 1e-13 to 1e-7 gives the same; 1e-6 is too loose for cond X = 1e6."""
 
 ZERO_SWITCH = 1e-14
-"""Relative to the terms of its row, what of a switch is zero whether it falls or not."""
-
-RATE_NOISE = 1e-15
-"""A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
+"""Relative to the terms of its row, what of a switch is zero whether it falls or not; and what of a rate of t is, which
+then stands still."""
 
 SLOW_RATE = 1e-6
 """Whether a rate of t is rounding is looked at where it is this much smaller than the largest, and t does not drive."""
@@ -41,11 +37,10 @@ class Walk:
     [A, d]. `moves_x`, of shape (n,): Where x moves, and w is fixed. `basis`: Its rows are those whose w is fixed, its
     columns the x that move, and t; but for the driver. `shares`, of shape (n,): The column of t. `u`, of shape
     (2, n + 1): (x, t) at the last corner, and how it moves. `t`, `dt`: Its last numbers. `still`: Whether t stands
-    still. `limits`, `slopes`, of shape (2, n): The limits of all that moves at t = 0, and how they move with t. `gaps`,
-    `rates`, of shape (2, n): How far all that moves is from its lower limits, and from its upper ones, and how fast
-    that grows. `tied`: The pairs at the next corner, and in `low` whether at their lower limit. `dy`, `scale`, `terms`:
-    How all that moves does so; the largest number of u and of its rate; the sizes of the entries of each row. `step`:
-    How far the driver goes to the next corner. `degenerate`: Whether several switches have vanished at once before.
+    still. `slopes`, of shape (2, n): How the limits of all that moves move with t. `gaps`, `rates`, of shape (2, n):
+    How far all that moves is from its lower limits, and from its upper ones, and how fast that grows. `tied`: The pairs
+    at the next corner, and in `low` whether at their lower limit. `terms`: The sizes of the entries of each row.
+    `noise`, of shape (2, n): What gaps and rates are differences of.
     """
 
     problem: MixedLCP
@@ -63,18 +58,13 @@ class Walk:
     t: float = field(init=False, default=0.0)
     dt: float = field(init=False, default=0.0)
     still: bool = field(init=False, default=False)
-    limits: Array = field(init=False)
     slopes: Array = field(init=False)
     gaps: Array = field(init=False)
     rates: Array = field(init=False)
     tied: NDArray[np.intp] = field(init=False)
     low: NDArray[np.bool_] = field(init=False)
     terms: Array = field(init=False)
-    _constant: Array = field(init=False)
-    dy: Array = field(init=False)
-    scale: list[float] = field(init=False)
-    step: float = field(init=False, default=0.0)
-    degenerate: bool = field(init=False, default=False)
+    noise: Array = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.sizes = np.maximum(np.abs(self.problem.A).max(axis=1, initial=0.0), np.abs(self.d))
@@ -90,10 +80,9 @@ class Walk:
         row, every = self.state.astype(np.intp) + 1, np.arange(n)
         self.moves_x = self.stairs.moves_x[row, every]
         fixed, slope, *ends = self.stairs.values[:, row, every]
-        self.limits, self.slopes = np.array(ends[:2]), np.array(ends[2:])
+        limits, self.slopes = np.array(ends[:2]), np.array(ends[2:])
         # What a gap is a difference of: entries of its row times the largest number, and q; of x that number itself.
         self.terms = np.where(self.moves_x, 1.0, self.sizes)
-        self._constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
         by_x, self.shares = j == n or bool(self.moves_x[j]), self.d - slope
         rows = np.flatnonzero(self.moves_x)
         columns = np.append(rows[rows != j], np.full(int(j != n), n))
@@ -123,68 +112,51 @@ class Walk:
         y = np.where(self.moves_x, whole[:, :n], left.T)
         if not by_x:
             y[:, j] = np.array([self.value, self.sign]) + (self.d[j] - self.shares[j]) * whole[:, n]
-        self.dy = dy = y[1]
-        self.scale = [largest(whole[0]), largest(whole[1])]
-        self.still = j != n and abs(self.dt) <= SLOW_RATE * self.scale[1] and self._stands()
+        place, motion = largest(whole[0]), largest(whole[1])
+        self.noise = np.array([[place], [motion]]) * self.terms
+        self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
+        self.still = False
+        if j != n and abs(self.dt) <= SLOW_RATE * motion:
+            # Whether the rate of t is no more than rounding.
+            of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
+            self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += fixed
-        if self.degenerate:
-            self._settle(y)
-        self.gaps = y[0] - self.limits - self.t * self.slopes
-        self.rates = dy - self.dt * self.slopes
-        for part in (self.gaps, self.rates):
-            np.negative(part[1], out=part[1])
-        return bool((self.gaps >= -OUTSIDE_LIMITS * self._terms(0.0)).all())
+        self.gaps, self.rates = y[0] - limits - self.t * self.slopes, y[1] - self.dt * self.slopes
+        np.negative(self.gaps[1], out=self.gaps[1])
+        np.negative(self.rates[1], out=self.rates[1])
+        return bool((self.gaps >= -OUTSIDE_LIMITS * self.noise[0]).all())
 
-    def _settle(self, y: Array) -> None:
-        """What is basic and stays at its limit, as x of columns that are alike, is there exactly."""
-        for limit in self.limits:
-            near = self.moves_x & (np.abs(y[0] - limit) <= ZERO_SWITCH * self.scale[0])
-            y[0, near] = self.u[0, :-1][near] = limit[near]
-            near &= np.abs(y[1]) <= FLAT * self.scale[1]
-            y[1, near] = self.u[1, :-1][near] = 0.0
-
-    def _stands(self) -> bool:
-        """Whether the rate of t is no more than rounding."""
-        of_t = np.abs(self.basis.row_of_inverse(self.problem.n))
-        return bool(abs(self.dt) <= RATE_NOISE * (of_t @ self.sizes[self.basis.rows]) * self.scale[1])
-
-    def find_tied(self) -> None:
-        """Which switches vanish where it is."""
-        self._tie(self.gaps <= ZERO_SWITCH * self._terms(0.0))
+    def find_tied(self, vanishing: NDArray[np.bool_] | None = None) -> None:
+        """Which switches vanish: where it is, or at the next corner those that are told."""
+        found = self.gaps <= ZERO_SWITCH * self.noise[0] if vanishing is None else vanishing
+        self.tied = np.flatnonzero(found[0] | found[1])
+        self.low = found[0, self.tied]
 
     def next_corner(self) -> float:
         """How far the driver goes until a switch vanishes, and which do then; infinite where nothing stops it."""
         gaps, rates = self.gaps.ravel(), self.rates.ravel()
-        falling = np.flatnonzero(self.rates < -FLAT * self.scale[1] * self.terms)
+        falling = np.flatnonzero(self.rates < -FLAT * self.noise[1])
         steps = np.maximum(gaps[falling], 0.0) / -rates[falling]
         step = float(steps.min(initial=np.inf))
         if step == np.inf:
             return step
         reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
-        self.step = step
-        vanishing = self.gaps + step * self.rates <= ZERO_SWITCH * self._terms(step)
+        vanishing = self.gaps + step * self.rates <= ZERO_SWITCH * (self.noise[0] + step * self.noise[1])
         # The driver has left its corner, however short the step was.
         if self.driver < self.problem.n:
             vanishing[:, self.driver] = False
-        vanishing.ravel()[falling[steps <= step + SWITCH_TIE * reach]] = True
-        self._tie(vanishing)
+        vanishing.ravel()[falling[steps <= step + FLAT * reach]] = True
+        self.find_tied(vanishing)
         return step
 
-    def _terms(self, step: float) -> Array:
-        return (self.scale[0] + step * self.scale[1]) * self.terms + self._constant
-
-    def _tie(self, vanishing: NDArray[np.bool_]) -> None:
-        self.tied = np.flatnonzero(vanishing[0] | vanishing[1])
-        self.low = vanishing[0, self.tied]
+    def snap(self, pairs: tuple[int, ...]) -> None:
+        """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
+        at = list(pairs)
+        corners = self.stairs.corner_x[:, at]
+        self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]
 
     # -- round the corner -----------------------------------------------------------------------------------------
-
-    def pivot(self, i: int) -> None:
-        """Pair i goes on to the piece beyond its limit, and its complement drives."""
-        low = bool(self.low[self.tied == i][0])
-        self.switch(i, low)
-        self.drive(i, low)
 
     def drive(self, i: int, low: bool) -> None:
         """Pair i drives, away from the corner to which it came from above its limit, or from below."""
@@ -192,11 +164,7 @@ class Walk:
         row = int(self.state[i]) + 1
         self.value = float(self.stairs.values[2 if low else 3, row, i]) if self.stairs.moves_x[row, i] else 0.0
 
-    def switch(self, i: int, low: bool) -> None:
-        """Pair i is on the piece beyond its lower, or upper, limit."""
-        self.state[i] += 1 if low != bool(self.moves_x[i]) else -1
-
-    def switch_tied(self, which: NDArray[np.bool_]) -> None:
-        """Of the switches that vanish some are passed."""
-        for i, low in zip(self.tied[which], self.low[which]):
-            self.switch(int(i), bool(low))
+    def switch(self, which: NDArray[np.bool_]) -> None:
+        """Of the switches that vanish some are passed: their pairs are on the pieces beyond."""
+        for i, low in zip(self.tied[which].tolist(), self.low[which].tolist()):
+            self.state[i] += 1 if low != bool(self.moves_x[i]) else -1

@@ -14,10 +14,10 @@ from continuation.numbers.ends import EPS, Ends, accumulated, up_sum
 
 Single = NDArray[np.float32]
 
-UNIT = 2.0**-24
+UNIT = float(np.finfo(np.float32).epsneg)
 """Relative error of one operation in single precision."""
 
-SINGLE_UNDERFLOW = 2.0**-126
+SINGLE_UNDERFLOW = float(np.finfo(np.float32).tiny)
 """What underflow costs one operation there, also where such numbers are flushed to zero."""
 
 

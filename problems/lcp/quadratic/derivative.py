@@ -13,14 +13,6 @@ from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 def _apply(part: Affine, q: Ends) -> Ends:
     """The part along a cubic, shape (slabs, 4, N) for coefficients of shape (slabs, 4, N + 1)."""
-    image = _linear(part, q)
-    value = image[:, 0] + part.constant_ends
-    image[:, 0] = value
-    return image
-
-
-def _linear(part: Affine, q: Ends) -> Ends:
-    """The matrix of the part times intervals, shape (slabs, any, N + 1)."""
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
     # The matrix is off by its errors, q by its radius; products are rounded.
@@ -28,7 +20,9 @@ def _linear(part: Affine, q: Ends) -> Ends:
     if part.sizes is not None:
         room = room + part.linear_error(size + q.radius(middle))
     room, centre = up_by(room, 2 * count), part.linear(middle)
-    return Ends(-up_sum(room - centre), up_sum(centre + room))
+    image = Ends(-up_sum(room - centre), up_sum(centre + room))
+    image[:, 0] = image[:, 0] + part.constant_ends
+    return image
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])

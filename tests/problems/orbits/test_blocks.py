@@ -1,9 +1,8 @@
-"""The condensed factorisation against a dense one."""
+"""The equations as matrices, and their condensed form."""
 
 import numpy as np
 import pytest
 
-from continuation.linear import SingularError
 from problems.orbits import PeriodicOrbit
 from problems.orbits.grid import Grid
 from problems.orbits.models import lorenz, normal_form
@@ -23,29 +22,24 @@ def orbit(f, n, intervals, degree, seed):
 
 @pytest.mark.parametrize(("f", "n"), [(normal_form, 2), (lorenz, 3), (two_circles, 4)])
 @pytest.mark.parametrize(("intervals", "degree"), [(2, 2), (3, 4), (5, 3), (8, 2), (11, 5)])
-def test_solves_and_sign_are_those_of_the_matrix(f, n, intervals, degree):
+def test_the_derivative_as_a_matrix_and_condensed(f, n, intervals, degree):
     for seed in range(3):
         given = orbit(f, n, intervals, degree, seed)
         y, p = given.start()
         generator = np.random.default_rng(seed)
-        border, r = generator.standard_normal(y.size + 1), generator.standard_normal(y.size)
         H_y, H_p = given.jacobian(y, p)
-        full = np.vstack([np.column_stack([H_y.toarray(), H_p]), border])
-        system = given.bordered(y, p, border)
-        z = system.solve(r, 0.7)
-        left = np.abs(full @ z - np.append(r, 0.7))
-        assert (left <= 1e-9 * (np.abs(full) @ np.abs(z) + 1.0)).all()
-        assert system.sign == np.linalg.slogdet(full)[0]
-        v = generator.standard_normal(y.size + 1)
-        applied, terms = given.differential(y, p, v), np.abs(full[:-1]) @ np.abs(v)
-        assert (np.abs(applied - full[:-1] @ v) <= 1e-13 * terms).all()
-
-
-def test_what_is_singular_is_said_to_be():
-    given = orbit(normal_form, 2, 4, 3, 0)
-    y, p = given.start()
-    with pytest.raises(SingularError):
-        given.bordered(y, p, np.zeros(y.size + 1))
+        full = np.column_stack([H_y.toarray(), H_p])
+        v, h = generator.standard_normal(y.size + 1), 1e-6
+        ahead, behind = (given.residual(y + k * h * v[:-1], p + k * h * v[-1]) for k in (1.0, -1.0))
+        assert np.allclose(full @ v, (ahead - behind) / (2.0 * h), rtol=1e-5, atol=1e-6 * np.abs(full @ v).max())
+        # What follows from ends that A and B allow satisfies all blocks but the last, where x_N is not x_0.
+        condensed = given.equations.here(y, p)._condensed
+        x = generator.standard_normal(n)
+        ends = np.stack([x, np.linalg.solve(condensed.B, -condensed.A @ x)])
+        X = condensed.all_from(ends) * given.scale
+        blocks = full[: -degree * n - intervals, : X.size] @ X.ravel()
+        size = np.abs(full[: -degree * n - intervals, : X.size]) @ np.abs(X.ravel())
+        assert (np.abs(blocks) <= 1e-9 * size).all()
 
 
 def test_small_multipliers_keep_their_digits_beside_large_ones():

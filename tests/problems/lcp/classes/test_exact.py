@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from problems.lcp import classes
 from problems.lcp.classes import ExactMatrix
 from problems.lcp.classes.exact import consistent, principal_minors
-from problems.lcp.classes.simplex import at_least, equal, feasible_point
+from problems.lcp.classes.simplex import at_least, exactly, feasible_point
 from problems.lcp.strategies import matrices
 
 from ....exact import determinant
@@ -42,7 +42,7 @@ def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m
     entry = st.integers(-3, 3)
     M = [[data.draw(entry) for _ in range(n)] for _ in range(m)]
     b = [data.draw(entry) for _ in range(m)]
-    x = feasible_point([equal(row, right) for row, right in zip(M, b, strict=True)], n)
+    x = feasible_point(exactly([*zip(M, b, strict=True)]), n)
     transposed = [[*column, *(-v for v in column)] for column in zip(*M, strict=True)]
     alternative = [at_least(row) for row in transposed] + [at_least([-v for v in b] + b, 1)]
     y = feasible_point(alternative, 2 * m)
@@ -52,7 +52,7 @@ def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m
         assert times(M, x) == b
     else:
         assert min(y) >= 0
-        assert all(times([c.row], y)[0] >= c.right for c in alternative)
+        assert all(times([row], y)[0] >= right for row, right in alternative)
 
 
 def test_bland_ends_on_beales_cycling_problem():

@@ -74,7 +74,7 @@ def test_an_approximate_solve_is_one_of_the_core_and_makes_refinement_contract(m
         system, M, rhs = bordered_at(homotopy, y, lam, rng)
         units = np.append(np.abs(y), 1.0)
         assert system.sign in (-1, 1)
-        alone = system._probe.core.solve(rhs[:-1], rhs[-1])
+        alone = system._probe[0].solve(rhs[:-1], rhs[-1])
         assert np.array_equal(system.approximate(rhs[:-1], rhs[-1]), alone)
         z, exact = np.zeros(y.size + 1), system.solve(rhs[:-1], rhs[-1])
         for _ in range(4):

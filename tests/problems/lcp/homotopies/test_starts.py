@@ -49,7 +49,7 @@ def test_relaxed_start():
     homotopy = lcp.KKTHomotopy(problem, [1.0, 1.0])
     assert np.array_equal(homotopy.origin.w0, [3.0, 6.0])
     assert np.array_equal(homotopy.rho, [5.0, 3.0])
-    assert np.ptp(np.append(homotopy.c1, homotopy.c2)) < 1e-15 * homotopy.c1[0]
+    assert np.ptp(homotopy.c) < 1e-15 * homotopy.c[0]
     given_w0 = lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0])
     assert np.array_equal(given_w0.origin.w0, [1.0, 2.0])
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import continuation
 from continuation.testing import check_homotopy
 from problems import lcp
-from problems.lcp.homotopies import kkt_system
+from problems.lcp.homotopies import elimination
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps
 from problems.lcp.proof.verdict import stationary
@@ -105,13 +105,14 @@ def test_the_order_of_what_the_kkt_path_factors_is_n(monkeypatch, banded):
 
 
 def test_without_the_finish_the_robust_core_of_order_2n_is_for_the_end_alone(monkeypatch):
-    real, found = kkt_system._augmented, []
+    found, real = [], elimination.Core.of
 
-    def spy(system, border):
-        found.append(system.lam)
-        return real(system, border)
+    def spy(way, *arguments, **given):
+        if getattr(way, "second", way) is None:
+            found.append(way.system.lam)
+        return real(way, *arguments, **given)
 
-    monkeypatch.setattr(kkt_system, "_augmented", spy)
+    monkeypatch.setattr(elimination.Core, "of", spy)
     for seed in range(8):
         assert lcp.solve(drawn(np.random.default_rng(seed), 12), "kkt", finish=False).success
     assert len(found) <= 20

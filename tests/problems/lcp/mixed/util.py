@@ -5,7 +5,7 @@ import numpy as np
 from continuation.linear.factoring import Factoring
 from problems.lcp import MixedLCP
 from problems.lcp.active_set import face
-from problems.lcp.homotopies import kkt_system, pair_system
+from problems.lcp.homotopies import elimination
 
 
 def orders(monkeypatch):
@@ -25,8 +25,7 @@ def orders(monkeypatch):
     for name in ("factor_lu", "factor_cholesky", "factor_band"):
         spy(face, name)
     spy(Factoring, "factor")
-    for module in (pair_system, kkt_system):
-        spy(module, "factor_bordered")
+    spy(elimination, "factor_bordered")
     return found
 
 
