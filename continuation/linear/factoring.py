@@ -3,51 +3,13 @@
 from __future__ import annotations
 
 from importlib.util import find_spec
-from typing import Protocol
 
-from attrs import define, field
+from attrs import define, evolve, field
 
 from continuation.arrays import Matrix
-from continuation.linear.cholmod import CholmodMethod
+from continuation.linear.extras import EXTRAS, Extra
 from continuation.linear.look import Look
-from continuation.linear.multigrid import MultigridMethod
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
-
-
-class SparseMethod(Protocol):
-    """A way to factor sparse matrices."""
-
-    @property
-    def name(self) -> str:
-        """By which it is asked for."""
-        ...
-
-    @property
-    def needs(self) -> str:
-        """The package that has to be installed."""
-        ...
-
-    @property
-    def signed(self) -> bool:
-        """Whether its factors tell the sign of the determinant."""
-        ...
-
-    @property
-    def least(self) -> float:
-        """The order from which on it is chosen by itself."""
-        ...
-
-    def suits(self, look: Look) -> bool:
-        """Whether it may do for a matrix."""
-        ...
-
-    def factor(self, look: Look) -> SparseFactor | None:
-        """The factors; None where it cannot do it after all."""
-        ...
-
-
-EXTRAS: tuple[SparseMethod, ...] = (MultigridMethod(), CholmodMethod())
-"""What may be installed besides, in the order in which it is chosen."""
 
 METHODS = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))
 """What may be asked for."""
@@ -68,15 +30,9 @@ def check_method(argument: str, name: object) -> str:
     return name
 
 
-def installed(method: SparseMethod) -> bool:
+def installed(method: Extra) -> bool:
     """Whether the package of a method is there; it is not imported."""
     return find_spec(method.needs) is not None
-
-
-def negated(factor: SparseFactor, n: int) -> SparseFactor:
-    """Factors of -A, of order n, as those of A; det A = (-1)^n det(-A)."""
-    solve, sign = factor.solve, factor.tell_sign
-    return SparseFactor(factor.name, lambda rhs: -solve(rhs), factor.fill, lambda: -sign() if n % 2 else sign())
 
 
 @define(eq=False)
@@ -91,7 +47,7 @@ class Factoring:
         What is left where nothing else suits.
     signed : bool
         Whether the sign of the determinant is needed.
-    extras : tuple of SparseMethod
+    extras : tuple of Extra
         In the order in which they are chosen.
     used : dict
         By name, how many matrices were factored, and the largest fill.
@@ -100,7 +56,7 @@ class Factoring:
     method: str = "auto"
     direct: SuperLUMethod = field(factory=SuperLUMethod)
     signed: bool = False
-    extras: tuple[SparseMethod, ...] = EXTRAS
+    extras: tuple[Extra, ...] = EXTRAS
     used: dict[str, tuple[int, int]] = field(factory=dict, init=False)
 
     def factor(self, matrix: Matrix) -> SparseFactor | None:
@@ -122,16 +78,17 @@ class Factoring:
 
     def _by_extras(self, look: Look) -> SparseFactor | None:
         asked = [one for one in self.extras if self._asked(one, look.n)]
-        # A discretised Laplacian is negative definite.
+        # A discretised Laplacian is negative definite; det A = (-1)^n det(-A).
         negative = bool(asked) and bool((look.diagonal < 0.0).all())
-        positive = Look(-look.matrix) if negative else look
-        for one in asked:
-            factor = one.factor(positive) if one.suits(positive) else None
-            if factor is not None:
-                return negated(factor, look.n) if negative else factor
-        return None
+        look = Look(-look.matrix) if negative else look
+        factors = (one.factor(look) for one in asked if one.suits(look))
+        factor = next((factor for factor in factors if factor is not None), None)
+        if factor is None or not negative:
+            return factor
+        solve, sign, way = factor.solve, factor.tell_sign, -1 if look.n % 2 else 1
+        return evolve(factor, solve=lambda rhs: -solve(rhs), tell_sign=lambda: way * sign())
 
-    def _asked(self, one: SparseMethod, n: int) -> bool:
+    def _asked(self, one: Extra, n: int) -> bool:
         if self.signed and not one.signed:
             return False
         return one.name == self.method if self.method != "auto" else n >= one.least and installed(one)

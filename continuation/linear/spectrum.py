@@ -33,7 +33,7 @@ LEAST_SHIFT = 1e-6
 """At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
 
 KNOWN_TO = 1e-12
-"""Errors of eigenvalues, relative to their distance from the shift: an event is located to 1e-10 by their real parts."""
+"""Errors of eigenvalues, relative to their distance from the shift: their real parts locate an event to 1e-10."""
 
 
 @frozen(eq=False)

@@ -1,6 +1,5 @@
 """The door to sparse factorisations: what is chosen, by a method of the test's own; the extras where they are there."""
 
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -8,9 +7,9 @@ from attrs import evolve, field, frozen
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.linear import factor_bordered
-from continuation.linear.factoring import EXTRAS, Factoring, check_method
+from continuation.linear.extras import EXTRAS, Multigrid
+from continuation.linear.factoring import Factoring, check_method
 from continuation.linear.look import Look
-from continuation.linear.multigrid import Multigrid
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
 
