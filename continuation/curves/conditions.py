@@ -11,7 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
-from continuation.curves.local import Local, Scaled, ScaledBase, Tangential, last_column
+from continuation.curves.local import Local, Scaled, Tangential, last_column
 from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import null_vectors
 
@@ -53,7 +53,7 @@ class Singular:
         scaled, calculus = self.scaled, self.scaled.calculus
         full = full_derivative(calculus.evaluator(mu), u)
         near = null_vectors(scaled.times(full[:, :-1]), self.b, self.c)
-        base = ScaledBase(near.factors, scaled)
+        base = scaled.unscaled(near.factors)
         sign = base.sign
         v, w = np.append(scaled.extent * near.right, 0.0), near.left / scaled.rows
 

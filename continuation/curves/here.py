@@ -16,8 +16,10 @@ from continuation.curves.local import Local
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import full_derivative
-from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.linear import BorderedSystem
+from continuation.linear.elimination import eliminated
 from continuation.linear.entries import extended
+from continuation.linear.system import System
 
 
 @frozen(eq=False, slots=False)
@@ -89,60 +91,27 @@ class Here:
         return extended(full, column, rows[:, :-1]), last
 
     def bordered(self, border: Array) -> BorderedSystem:
-        """The derivative with a border, factored by elimination."""
-        local, n = self.local, self.u.size
+        """The derivative with a border, by elimination of y.
+
+        The member's own factors are of F = [[H_y, b], [c', d]]. With a further unknown sigma the equations are those of
+        F (y, s) = (r, sigma), s = 0, the conditions and the border: four blocks, of which F is the first.
+        """
+        local, base, n, hidden = self.local, self.local.base, self.u.size, self.local.hidden is not None
         columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
-        hidden = local.hidden is not None
-        last = np.insert(border, n, 0.0) if hidden else border
-        return eliminated(local.base, columns, np.vstack([local.rows, last]), hidden)
+        below = np.vstack([local.rows, np.insert(border, n, 0.0) if hidden else border])
 
+        def first(rhs: Array) -> Array:
+            return base.solve(rhs[:-1], float(rhs[-1]))
 
-@frozen(eq=False)
-class Eliminated:
-    """[[H_y, P], [G_y, G_p], [B_y, B_p]] of order N + m: P has the m columns of lam, the unknown beside, and mu.
+        W = np.column_stack([-first(np.append(np.zeros(n - 1), 1.0)), *(first(np.append(p, 0.0)) for p in columns.T)])
+        # Behind the unknowns y, the columns of s and sigma; above the conditions, the row s = 0.
+        rows = np.insert(np.insert(below, n - 1, np.zeros((2, 1)), axis=1), 0, np.arange(len(below[0]) + 2) == n - 1, 0)
+        whole = eliminated(first, W, rows)
 
-    With F = [[H_y, b], [c', d]] factored, y and s follow from c'y + d s = sigma and p; s = 0, the conditions and the
-    border are m + 1 equations in sigma and p, and det = det F times the determinant of these.
+        def solve(r: Array, rho: float) -> Array:
+            z = whole.solve(np.concatenate([r[: n - 1], [0.0, 0.0], r[n - 1 :], np.zeros(int(hidden)), [rho]]))
+            z = np.concatenate([z[: n - 1], z[n + 1 :]])
+            # What is hidden follows from the others.
+            return np.delete(z, -2) if hidden else z
 
-    `base`: F. `solved`, of shape (N + 1, m + 1): (y, s) that follow from sigma = 1, and from each of p. `rows`, of
-    shape (m, N + m): The conditions and the border. `small`: The m + 1 equations. `hidden`: Whether the unknown beside
-    follows from the others and is not asked for, nor the condition that it follows from.
-    """
-
-    base: BorderedSystem
-    solved: Array
-    rows: Array
-    small: BorderedSystem
-    hidden: bool
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant."""
-        return self.base.sign * self.small.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + m,), or (N + m - 1,) without what is hidden."""
-        n, r = len(self.solved) - 1, np.append(r, 0.0) if self.hidden else r
-        x = self.base.solve(r[:n], 0.0)
-        left = np.append(r[n:], rho) - self.rows[:, :n] @ x[:n]
-        q = self.small.solve(np.append(-x[n], left[:-1]), float(left[-1]))
-        y = x[:n] + self.solved[:n] @ q
-        z = np.concatenate([y, q[1:]])
-        return np.delete(z, -2) if self.hidden else z
-
-
-def eliminated(base: BorderedSystem, columns: Array, rows: Array, hidden: bool = False) -> Eliminated:
-    """Eliminate y.
-
-    `columns` of shape (N, m). `rows` of shape (m, N + m). `hidden`: As of `Eliminated`. Raises `SingularError` if the
-    whole is singular.
-    """
-    n = len(columns)
-    first = base.solve(np.zeros(n), 1.0)
-    solved = np.column_stack([first, *(-base.solve(column, 0.0) for column in columns.T)])
-    below = rows[:, :n] @ solved[:n]
-    below[:, 1:] += rows[:, n:]
-    matrix = np.vstack([solved[n], below])
-    if not np.isfinite(matrix).all():
-        raise SingularError("the bordered solution is not finite")
-    return Eliminated(base, solved, rows, factor_bordered(matrix[:-1, :-1], matrix[:-1, -1], matrix[-1]), hidden)
+        return System(solve, lambda: base.sign * whole.sign)

@@ -17,7 +17,8 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
 from continuation.events.singularity import row_sizes
 from continuation.linear import BorderedSystem
-from continuation.linear.nullspace import LONG, REFRESHED, Factors, null_vectors
+from continuation.linear.nullspace import LONG, REFRESHED, Bordered, null_vectors
+from continuation.linear.system import System
 
 
 @frozen(eq=False, slots=False)
@@ -99,24 +100,15 @@ class Scaled:
             b, c = near.left, near.right
         return b / np.linalg.norm(b), c / np.linalg.norm(c)
 
+    def unscaled(self, factors: Bordered) -> BorderedSystem:
+        """The factors of a scaled matrix, as those of the matrix: scaling is by positive numbers."""
 
-@frozen(eq=False)
-class ScaledBase:
-    """The factors of a scaled matrix, as those of the matrix."""
+        def solve(r: Array, rho: float) -> Array:
+            x = factors.solve(np.append(r / self.rows, rho))
+            x[:-1] *= self.extent
+            return x
 
-    factors: Factors
-    scaled: Scaled
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant: scaling is by positive numbers."""
-        return self.factors.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """(x, s), shape (N + 1,)."""
-        x = self.factors.solve(np.append(r / self.scaled.rows, rho))
-        x[:-1] *= self.scaled.extent
-        return x
+        return System(solve, lambda: factors.sign)
 
 
 @frozen(eq=False)

@@ -15,8 +15,7 @@ from continuation.curves.local import Local, Scaled, Tangential, last_column
 from continuation.evaluation.products import by_differences
 from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
-from continuation.linear.entries import extended
-from continuation.linear.nullspace import factor
+from continuation.linear.nullspace import Bordered
 
 
 @frozen(eq=False)
@@ -78,8 +77,8 @@ class AlongTangent:
             by_u, by_t = np.split(self.gradient(np.append(u, t)), 2)
             full, border = full_derivative(calculus.evaluator(mu), u), t / extent
             H_lam = extent[-1] * last_column(full) / rows
-            M = extended(self.scaled.times(full[:, :-1]), H_lam[:, None], border[None])
-            left = factor(M).solve(extent * by_t, adjoint=True)[:-1] / rows
+            M = Bordered.of(self.scaled.times(full[:, :-1]), H_lam[:, None], border[None])
+            left = M.solve(extent * by_t, adjoint=True)[:-1] / rows
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 
         values = np.array([self.function(np.append(u, t))])

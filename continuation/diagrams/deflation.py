@@ -13,6 +13,8 @@ from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
+from continuation.linear.elimination import eliminated
+from continuation.linear.system import System
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
@@ -128,33 +130,17 @@ class Deflated:
         H_y, H_lam = self._evaluator.derivative(y, lam)
         system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
         turned = system.solve(np.asarray(self.homotopy.residual(y, lam), dtype=float), 0.0)
-        deflated = DeflatedSystem(system, value, slope, turned)
-        return deflated if abs(deflated.pivot) < CANCELS else factor_bordered(*self.jacobian(y, lam), border)
+        # With q = g'v the change H q is a column more.
+        changed = eliminated(
+            lambda rhs: system.solve(rhs[:-1], rhs[-1]), turned[:, None], np.append(slope, [0.0, -1.0])[None]
+        )
+        if not abs(changed.schur[0, 0]) < CANCELS:
+            return factor_bordered(*self.jacobian(y, lam), border)
 
+        def solve(r: Array, rho: float) -> Array:
+            return changed.solve(np.concatenate([r / value, [rho, 0.0]]))[:-1]
 
-@frozen(eq=False)
-class DeflatedSystem:
-    """[[M (H_y + H g'), M H_lam], [border]], by the factors of [[H_y, H_lam], [border]]."""
-
-    system: BorderedSystem
-    value: float
-    slope: Array
-    turned: Array
-
-    @property
-    def pivot(self) -> float:
-        """By what the change of rank one divides."""
-        return 1.0 + float(self.slope @ self.turned[:-1])
-
-    @property
-    def sign(self) -> int:
-        """M is positive: that of the homotopy's own matrix, times that of the change."""
-        return self.system.sign * (1 if self.pivot > 0.0 else -1)
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The bordered solve."""
-        z = self.system.solve(r / self.value, rho)
-        return z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
+        return System(solve, lambda: -system.sign * changed.sign)
 
 
 def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:

@@ -1,4 +1,4 @@
-"""Banded H_y: LU within the band, bordered by elimination, in O(N)."""
+"""Banded H_y: LU within the band, in O(N)."""
 
 from __future__ import annotations
 
@@ -15,9 +15,6 @@ from continuation.arguments.checks import integer
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
-from continuation.linear.refine import BorderedMatrix, eliminate
-from continuation.linear.sparse import factor_whole
-from continuation.linear.system import BorderedSystem
 
 
 def _diagonals(ab: Any) -> Array:
@@ -61,6 +58,9 @@ class Banded:
         dense: Array = self.tosparse().toarray()
         return dense
 
+    def __abs__(self) -> Banded:
+        return Banded(np.abs(self.ab), self.lower, self.upper)
+
     def __matmul__(self, other: Array) -> Array:
         n = self.ab.shape[1]
         if len(other) != n:
@@ -90,22 +90,6 @@ class BandedLU:
         """The solution of A x = rhs, shape (N,)."""
         x: Array = dgbtrs(self.lu, self.lower, self.upper, rhs, self.pivots)[0].ravel()
         return x
-
-
-def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
-    """Factor H_y within its band and border it; at a fold factor the whole matrix as a sparse one.
-
-    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
-    """
-    n, lower, upper = len(column), matrix.lower, matrix.upper
-    magnitudes = Banded(np.abs(matrix.ab), lower, upper)
-    bordered = BorderedMatrix(matrix, column, row, magnitudes @ np.ones(n))
-
-    def whole() -> BorderedSystem:
-        return factor_whole(matrix.tosparse(), column, row)
-
-    factor = factor_band(matrix)
-    return whole() if factor is None else eliminate(bordered, factor, whole)
 
 
 def factor_band(matrix: Banded) -> BandedLU | None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
+
+from attrs import frozen
 
 from continuation.arrays import Array
 
@@ -35,3 +38,19 @@ class BorderedSystem(Protocol):
         ndarray, shape (N + 1,)
         """
         ...
+
+
+@frozen(eq=False)
+class System:
+    """A bordered system that another one solves.
+
+    `solve`: As of `BorderedSystem`. `tell_sign`: The sign, worked out when it is asked for.
+    """
+
+    solve: Callable[[Array, float], Array]
+    tell_sign: Callable[[], int]
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return self.tell_sign()
