@@ -40,8 +40,11 @@ class Elimination:
         """The solution, shape (n + k,)."""
         n = len(self.W)
         x = self.first(rhs[:n])
-        q = self.small(rhs[n:] - self.R @ x)
-        return np.concatenate([x - self.W @ q, q])
+        q = self.small(rhs[n:] - self.R.dot(x))
+        z = np.empty(rhs.size)
+        z[:n] = x - self.W.dot(q)
+        z[n:] = q
+        return z
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
