@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import frozen
+from attrs import field, frozen
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
-from continuation.curves.local import Local
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import full_derivative
@@ -24,16 +23,34 @@ from continuation.linear.system import System
 
 @frozen(eq=False, slots=False)
 class Here:
-    """All that is known of a curve at a point; worked out once.
+    """All that is known of a curve at a point; what a residual does not need is worked out when it is asked for.
 
-    `u` of shape (N + 1,), `beside` of shape (0,) or (1,).
+    `u`, of shape (N + 1,): (y, lam). `values`, of shape (k,): What is to vanish. `gradients`: Makes `rows`. `factored`:
+    Makes `base`: [[H_y, b], [c', d]] for some border, factored. `column`, of shape (N, k - 1): Derivative of the
+    equations H = 0 by the unknown beside. `hidden`: The unknown beside where it is none, but a number that is added to
+    H along the column: the last of the rows is how it follows from the others. `signs`: Numbers whose signs tell
+    degenerate points, from the rows.
     """
 
     calculus: Calculus
     u: Array
-    beside: Array
     mu: float
-    local: Local
+    values: Array
+    gradients: Callable[[], Array]
+    factored: Callable[[], BorderedSystem]
+    column: Array
+    hidden: float | None = None
+    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
+
+    @cached_property
+    def rows(self) -> Array:
+        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
+        return self.gradients()
+
+    @cached_property
+    def base(self) -> BorderedSystem:
+        """The factorisation."""
+        return self.factored()
 
     @cached_property
     def evaluator(self) -> Evaluator:
@@ -56,23 +73,22 @@ class Here:
     @cached_property
     def _rows(self) -> tuple[Array, Array | None]:
         """Gradients of what vanishes, and of the unknown that is hidden, over those that are not."""
-        rows, n = self.local.rows, self.u.size
-        if self.local.hidden is None:
+        rows, n = self.rows, self.u.size
+        if self.hidden is None:
             return rows, None
         return np.delete(rows[:1], n, axis=1), -np.delete(rows[1], n)
 
     def residual(self) -> Array:
         """The equations."""
-        hidden = self.local.hidden
-        beside = self.beside if hidden is None else np.array([hidden])
-        return np.concatenate([self.evaluator.residual(self.u) + self.local.column @ beside, self.local.values])
+        H = self.evaluator.residual(self.u)
+        return np.append(H if self.hidden is None else H + self.column[:, 0] * self.hidden, self.values)
 
     def times(self, v: Array) -> Array:
         """The derivative applied to a direction."""
         n, (rows, follows) = self.u.size, self._rows
         beside = v[n:-1] if follows is None else np.array([follows @ v])
-        H = self.apply(v[:n]) + self.local.column @ beside + v[-1] * self.by_parameter
-        return np.concatenate([H, rows @ v])
+        H = self.apply(v[:n]) + self.column @ beside + v[-1] * self.by_parameter
+        return np.append(H, rows @ v)
 
     def matrices(self) -> tuple[Matrix, Array]:
         """The derivative by the unknowns, dense or sparse as the family's, and by mu.
@@ -80,7 +96,7 @@ class Here:
         Where a number is hidden it is H' and a matrix of rank one: an operator, if H' is sparse.
         """
         full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
-        column = self.local.column
+        column = self.column
         last = np.append(self.by_parameter, rows[:, -1])
         if follows is not None:
             last[:-1] += column[:, 0] * follows[-1]
@@ -96,9 +112,9 @@ class Here:
         The member's own factors are of F = [[H_y, b], [c', d]]. With a further unknown sigma the equations are those of
         F (y, s) = (r, sigma), s = 0, the conditions and the border: four blocks, of which F is the first.
         """
-        local, base, n, hidden = self.local, self.local.base, self.u.size, self.local.hidden is not None
-        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
-        below = np.vstack([local.rows, np.insert(border, n, 0.0) if hidden else border])
+        base, n, hidden = self.base, self.u.size, self.hidden is not None
+        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), self.column, self.by_parameter])
+        below = np.vstack([self.rows, np.insert(border, n, 0.0) if hidden else border])
 
         def first(rhs: Array) -> Array:
             return base.solve(rhs[:-1], float(rhs[-1]))

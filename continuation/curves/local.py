@@ -1,17 +1,12 @@
-"""What a condition along a curve is made of: its values and gradients at a point, and factorisations with H_y in them.
-
-Vectors that have units are scaled by those of the start.
-"""
+"""Factorisations with H_y in them along a curve; vectors that have units are scaled by those of the start."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
@@ -19,51 +14,6 @@ from continuation.events.singularity import row_sizes
 from continuation.linear import BorderedSystem
 from continuation.linear.nullspace import LONG, REFRESHED, Bordered, null_vectors
 from continuation.linear.system import System
-
-
-@frozen(eq=False, slots=False)
-class Local:
-    """A condition at a point; what a residual does not need is worked out when it is asked for.
-
-    `values` of shape (k,). `gradients`: Makes `rows`. `factored`: Makes `base`: [[H_y, b], [c', d]] for some border,
-    factored. `column`, of shape (N, k - 1): Derivative of the equations H = 0 by the unknown beside. `hidden`: The
-    unknown beside where it is none, but a number that is added to H along the column: the last of the rows is how it
-    follows from the others. `signs`: Numbers whose signs tell degenerate points, from the rows.
-    """
-
-    values: Array
-    gradients: Callable[[], Array]
-    factored: Callable[[], BorderedSystem]
-    column: Array
-    hidden: float | None = None
-    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
-
-    @cached_property
-    def rows(self) -> Array:
-        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
-        return self.gradients()
-
-    @cached_property
-    def base(self) -> BorderedSystem:
-        """The factorisation."""
-        return self.factored()
-
-    def sign(self, name: str) -> float:
-        """One of the signs."""
-        return self.signs[name](self.rows)
-
-
-class Condition(Protocol):
-    """What holds along the curve: at a point (u, extra, mu)."""
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """The name of the unknown beside (y, lam), if there is one."""
-        ...
-
-    def at(self, u: Array, beside: float, mu: float) -> Local:
-        """The condition at a point."""
-        ...
 
 
 @frozen(eq=False, slots=False)

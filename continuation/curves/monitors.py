@@ -11,7 +11,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.curves.calculus import Calculus
-from continuation.curves.local import Local, Scaled, Tangential, last_column
+from continuation.curves.here import Here
+from continuation.curves.local import Scaled, Tangential, last_column
 from continuation.evaluation.products import by_differences
 from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
@@ -35,11 +36,11 @@ class Vanishing:
         """With a gradient that is right at the start."""
         return cls(Tangential.at_start(calculus), function, gradient_of(function, calculus.u0))
 
-    def at(self, u: Array, beside: float, mu: float) -> Local:
+    def at(self, u: Array, beside: float, mu: float) -> Here:
         """The condition at a point."""
-        U = np.append(u, mu)
-        values, empty = np.array([float(self.function(U))]), np.empty((u.size - 1, 0))
-        return Local(values, lambda: self.gradient(U)[None, :], lambda: self.tangential.factored(u, mu)[0], empty)
+        U, one = np.append(u, mu), np.empty((u.size - 1, 0))
+        values, gradients = np.array([float(self.function(U))]), lambda: self.gradient(U)[None, :]
+        return Here(self.tangential.calculus, u, mu, values, gradients, lambda: self.tangential.factored(u, mu)[0], one)
 
 
 @frozen(eq=False)
@@ -68,7 +69,7 @@ class AlongTangent:
         """The tangent of the member's path at a point of the curve, behind which is mu; in the extents of the start."""
         return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.scaled.calculus.extent
 
-    def at(self, u: Array, beside: float, mu: float) -> Local:
+    def at(self, u: Array, beside: float, mu: float) -> Here:
         """The condition at a point."""
         calculus, extent, rows = self.scaled.calculus, self.scaled.calculus.extent, self.scaled.rows
         system, t = self.tangential.factored(u, mu)
@@ -82,7 +83,7 @@ class AlongTangent:
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 
         values = np.array([self.function(np.append(u, t))])
-        return Local(values, gradients, lambda: system, np.empty((rows.size, 0)))
+        return Here(calculus, u, mu, values, gradients, lambda: system, np.empty((rows.size, 0)))
 
 
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:

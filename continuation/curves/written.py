@@ -19,7 +19,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.curves.conditions import HopfCondition
 from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
@@ -48,7 +47,7 @@ class WrittenOut:
         Of all c of length one, that of a Hopf curve is the one which is nearest to the null vectors of all points.
         """
         vectors, c = np.array([condition.null_vector(u) for u in points]), None
-        if isinstance(condition, HopfCondition):
+        if condition.beside:
             c = np.linalg.svd(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))[2][0]
             # Known up to a phase, by which its largest entry becomes real.
             largest = c[np.argmax(np.abs(c))]
