@@ -63,6 +63,10 @@ class BorderedMatrix:
         with np.errstate(over="ignore"):
             return cls(matrix, column, row, abs(matrix) @ np.ones(len(column)))
 
+    def times(self, z: Array) -> Array:
+        """``M z``, shape (N + 1,)."""
+        return -self.residual(z, np.zeros(len(z)))
+
     def residual(self, z: Array, rhs: Array) -> Array:
         """``rhs - M z``, shape (N + 1,)."""
         gap = rhs.copy()
