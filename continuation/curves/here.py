@@ -18,7 +18,7 @@ from continuation.events.singularity import full_derivative
 from continuation.linear import BorderedSystem
 from continuation.linear.elimination import eliminated
 from continuation.linear.entries import extended
-from continuation.linear.system import System
+from continuation.linear.system import Solver
 
 
 @frozen(eq=False, slots=False)
@@ -130,4 +130,4 @@ class Here:
             # What is hidden follows from the others.
             return np.delete(z, -2) if hidden else z
 
-        return System(solve, lambda: base.sign * whole.sign)
+        return Solver(solve, lambda: base.sign * whole.sign)

@@ -13,7 +13,7 @@ from continuation.curves.calculus import Calculus
 from continuation.events.singularity import row_sizes
 from continuation.linear import BorderedSystem
 from continuation.linear.nullspace import LONG, REFRESHED, Bordered, null_vectors
-from continuation.linear.system import System
+from continuation.linear.system import Solver
 
 
 @frozen(eq=False, slots=False)
@@ -58,7 +58,7 @@ class Scaled:
             x[:-1] *= self.extent
             return x
 
-        return System(solve, lambda: factors.sign)
+        return Solver(solve, lambda: factors.sign)
 
 
 @frozen(eq=False)

@@ -14,7 +14,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
 from continuation.linear.elimination import eliminated
-from continuation.linear.system import System
+from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
@@ -140,7 +140,7 @@ class Deflated:
         def solve(r: Array, rho: float) -> Array:
             return changed.solve(np.concatenate([r / value, [rho, 0.0]]))[:-1]
 
-        return System(solve, lambda: -system.sign * changed.sign)
+        return Solver(solve, lambda: -system.sign * changed.sign)
 
 
 def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:

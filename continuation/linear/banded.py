@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from attrs import field, frozen
-from numpy.typing import NDArray
 from scipy.linalg.blas import dgbmv
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
@@ -15,6 +14,7 @@ from continuation.arguments.checks import integer
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
+from continuation.linear.system import Solver
 
 
 def _diagonals(ab: Any) -> Array:
@@ -72,31 +72,18 @@ class Banded:
         return product
 
 
-@frozen(eq=False)
-class BandedLU:
-    """LU factors of a banded matrix, with partial pivoting."""
-
-    lu: Array
-    pivots: NDArray[np.int32]
-    lower: int
-    upper: int
-
-    @property
-    def sign(self) -> int:
-        """Sign of det A."""
-        return lu_sign(self.pivots, self.lu[self.lower + self.upper])
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = dgbtrs(self.lu, self.lower, self.upper, rhs, self.pivots)[0].ravel()
-        return x
-
-
-def factor_band(matrix: Banded) -> BandedLU | None:
-    """LU factors of a banded matrix by itself; None where a pivot is exactly zero."""
+def factor_band(matrix: Banded) -> Solver | None:
+    """LU factors of a banded matrix by itself, with partial pivoting; None where a pivot is exactly zero."""
     lower, upper = matrix.lower, matrix.upper
     # Row exchanges fill as many diagonals more as there are below the main one.
     room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")
     room[lower:] = matrix.ab
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
-    return BandedLU(lu, pivots, lower, upper) if info == 0 else None
+    if info > 0:
+        return None
+
+    def solve(rhs: Array) -> Array:
+        x: Array = dgbtrs(lu, lower, upper, rhs, pivots)[0].ravel()
+        return x
+
+    return Solver(solve, lambda: lu_sign(pivots, lu[lower + upper]))

@@ -10,7 +10,7 @@ from continuation.linear.entries import extended
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import BorderedMatrix, join, refined
 from continuation.linear.superlu import SparseFactor
-from continuation.linear.system import BorderedSystem, SingularError, System
+from continuation.linear.system import BorderedSystem, SingularError, Solver
 
 
 def canonical(matrix: Matrix) -> Matrix:
@@ -51,7 +51,7 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
 
-    return System(solve, factor.tell_sign)
+    return Solver(solve, factor.tell_sign)
 
 
 def factor_square(matrix: Matrix) -> SparseFactor | None:

@@ -41,13 +41,14 @@ class BorderedSystem(Protocol):
 
 
 @frozen(eq=False)
-class System:
-    """A bordered system that another one solves.
+class Solver:
+    """A matrix that is factored, or a bordered system that another one solves.
 
-    `solve`: As of `BorderedSystem`. `tell_sign`: The sign, worked out when it is asked for.
+    `solve`: The solution for a right-hand side, or for that of a `BorderedSystem`. `tell_sign`: The sign of the
+    determinant, worked out when it is asked for.
     """
 
-    solve: Callable[[Array, float], Array]
+    solve: Callable[..., Array]
     tell_sign: Callable[[], int]
 
     @property
