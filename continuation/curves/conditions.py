@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
 from continuation.curves.here import Here
-from continuation.curves.local import Scaled, Tangential, last_column
+from continuation.curves.local import Tangential, last_column
 from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import NearlySingular, null_vectors
 from continuation.status import Kind
@@ -31,7 +31,7 @@ class Eigenvalue:
     do, w'H_lam is zero all along. (Moore, SIAM J. Numer. Anal. 17, 1980, has an unknown of its own for that number.)
     """
 
-    scaled: Scaled
+    calculus: Calculus
     kind: Kind
     tangential: Tangential | None
     b: Array
@@ -41,9 +41,9 @@ class Eigenvalue:
     def at_start(cls, calculus: Calculus, kind: Kind, frequency: float) -> Eigenvalue:
         """With borders made for the start."""
         tangential = Tangential.at_start(calculus) if kind == Kind.HOPF else None
-        found = cls(Scaled.at_start(calculus), kind, tangential, np.empty(0), np.empty(0))
+        found = cls(calculus, kind, tangential, np.empty(0), np.empty(0))
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
-        b, c = found.scaled.first(found.matrix(full_derivative(calculus.evaluator(mu), u), frequency))
+        b, c = calculus.borders(found.matrix(full_derivative(calculus.evaluator(mu), u), frequency))
         return evolve(found, b=b, c=c)
 
     @property
@@ -56,9 +56,9 @@ class Eigenvalue:
         matrix = full[:, :-1]
         if self.kind == Kind.HOPF:
             matrix = matrix - 1j * omega * (
-                sp.eye_array(len(self.scaled.rows)) if sp.issparse(full) else np.eye(len(full))
+                sp.eye_array(len(self.calculus.rows)) if sp.issparse(full) else np.eye(len(full))
             )
-        return self.scaled.times(matrix)
+        return self.calculus.scaled(matrix)
 
     def near(self, full: Matrix, omega: float) -> NearlySingular:
         """The null vectors."""
@@ -66,17 +66,17 @@ class Eigenvalue:
 
     def null_vector(self, u: Array) -> Array:
         """At a point of the curve, behind which is mu; of length one in the extents of the start."""
-        member, beside = np.split(u[:-1], [self.scaled.calculus.extent.size])
-        full = full_derivative(self.scaled.calculus.evaluator(float(u[-1])), member)
+        member, beside = np.split(u[:-1], [self.calculus.extent.size])
+        full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
         right = self.near(full, float(beside.sum())).right
         return right / float(np.linalg.norm(right))
 
     def at(self, u: Array, beside: float, mu: float) -> Here:
         """The condition at a point."""
-        scaled, calculus = self.scaled, self.scaled.calculus
+        calculus = self.calculus
         full = full_derivative(calculus.evaluator(mu), u)
         near = self.near(full, beside)
-        v, w = np.append(scaled.extent * near.right, 0.0), near.left.conj() / scaled.rows
+        v, w = np.append(calculus.extent[:-1] * near.right, 0.0), near.left.conj() / calculus.rows
 
         def gradient(part: Array) -> Array:
             return -calculus.second(u, mu, part, w)
@@ -90,7 +90,7 @@ class Eigenvalue:
 
             values, signs = np.array([near.s.real, near.s.imag]), {"zero-Hopf": lambda _: float(kernel()[1][-1])}
             return Here(calculus, u, mu, values, both, lambda: kernel()[0], np.zeros((w.size, 1)), signs=signs)
-        base = scaled.unscaled(near.factors)
+        base = calculus.unscaled(near.factors)
         sign = base.sign
         values = np.array([sign * near.s.real])
         if self.kind == Kind.TURNING_POINT:
@@ -109,5 +109,5 @@ class Eigenvalue:
             other = gradient(np.append(-z[:-1], reach))
             return np.array([np.insert(sign * gradient(v), u.size, 0.0), np.insert(other, u.size, 1.0)])
 
-        column = (scaled.rows * near.border)[:, None]
+        column = (calculus.rows * near.border)[:, None]
         return Here(calculus, u, mu, values, gradients, lambda: base, column, hidden=float(z[-1]))

@@ -17,7 +17,7 @@ from continuation.curves.beginning import as_event, as_point, as_size, corrected
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import Eigenvalue
 from continuation.curves.here import Here
-from continuation.curves.monitors import AlongTangent, Vanishing, plainly, without_tangent
+from continuation.curves.monitors import Vanishing, plainly, without_tangent
 from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
@@ -189,13 +189,12 @@ class Curve:
         return calculus_at(self._member, np.append(*self.at), self.mu, self.size)
 
     @cached_property
-    def _condition(self) -> Eigenvalue | Vanishing | AlongTangent:
+    def _condition(self) -> Eigenvalue | Vanishing:
         calculus, event = self._calculus, self.event
         if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.HOPF):
             return Eigenvalue.at_start(calculus, event, self._frequency if event == Kind.HOPF else 0.0)
-        if self._plain is not None:
-            return Vanishing.at_start(calculus, self._plain)
-        return AlongTangent.at_start(calculus, lambda x: plainly(event)(*np.split(x, 2)))
+        plain = self._plain
+        return Vanishing.at_start(calculus, plain or (lambda x: plainly(event)(*np.split(x, 2))), plain is None)
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:

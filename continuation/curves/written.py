@@ -52,7 +52,7 @@ class WrittenOut:
             # Known up to a phase, by which its largest entry becomes real.
             largest = c[np.argmax(np.abs(c))]
             c = np.round(c * (largest.conj() / abs(largest)), DECIMALS)
-        extent = condition.scaled.calculus.extent
+        extent = condition.calculus.extent
         beside, far = np.abs(points[:, extent.size : -1]).max(axis=0), float(np.ptp(points[:, -1]))
         count = vectors.shape[1] * (1 if c is None else 2)
         sizes = np.concatenate([np.ones(count), extent, np.where(beside > 0.0, beside, 1.0)])
@@ -81,7 +81,7 @@ class WrittenOut:
 
         `y`: The vector, and the unknowns of the curve. `lam`: The second parameter, mu.
         """
-        calculus = self.condition.scaled.calculus
+        calculus = self.condition.calculus
         extent, mu = calculus.extent, np.stack([lam])
 
         def along(U: Any, v: Any) -> Any:

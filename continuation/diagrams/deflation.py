@@ -76,8 +76,8 @@ class Deflated:
 
     def start(self) -> tuple[Array, float]:
         """That of the homotopy."""
-        y, lam = self.homotopy.start()
-        return np.atleast_1d(np.asarray(y, dtype=float)), float(lam)
+        u = self._evaluator.start()
+        return u[:-1], float(u[-1])
 
     def factor(self, y: Array) -> tuple[float, Array]:
         """M, and the gradient of log M, at a point.
@@ -86,18 +86,15 @@ class Deflated:
         ----------
         y : ndarray, shape (N,)
         """
-        value, slope = 1.0, np.zeros_like(y)
         scale = np.ones_like(y) if self.scale is None else np.asarray(self.scale, dtype=float)
-        for other in self.known:
-            way = (y - other) / scale
-            distance = float(np.linalg.norm(way))
-            if distance == 0.0:
-                # There is no value at a known solution: as at the edge of a domain.
-                return float("inf"), slope
-            one = distance**-self.power
-            value *= one + self.shift
-            slope = slope - self.power * one / (one + self.shift) / distance**2 * way / scale
-        return value, slope
+        ways = (y - np.reshape(self.known, (-1, y.size))) / scale
+        distances = np.linalg.norm(ways, axis=1)
+        if not distances.all():
+            # There is no value at a known solution: as at the edge of a domain.
+            return float("inf"), np.zeros_like(y)
+        ones = distances**-self.power
+        shares = ones / (ones + self.shift) / distances**2
+        return float(np.prod(ones + self.shift)), -self.power * (shares @ ways) / scale
 
     def residual(self, y: Array, lam: float) -> Array:
         """M(y) H(y, lam); infinite at a known solution."""
