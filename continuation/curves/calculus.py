@@ -97,8 +97,7 @@ class Calculus:
             from continuation import jets
 
             U = np.append(u, mu)
-            slope: Array = jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1]
-            return slope
+            return np.asarray(jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1])
         h = self.reach * self._size(mu)
         ahead, behind = (np.array(self.family(m).residual(u[:-1], float(u[-1]))) for m in (mu + h, mu - h))
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)

@@ -44,5 +44,4 @@ class Tangential:
 
 def last_column(full: Matrix) -> Array:
     """H_lam of [H_y, H_lam], dense."""
-    column: Array = full[:, [-1]].toarray().ravel() if sp.issparse(full) else full[:, -1]
-    return column
+    return np.asarray(full[:, [-1]].toarray().ravel() if sp.issparse(full) else full[:, -1])

@@ -115,8 +115,7 @@ class Deflated:
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
-        image: Array = value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1]))
-        return image
+        return np.asarray(value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1])))
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison).

@@ -55,8 +55,7 @@ class Banded:
 
     def toarray(self) -> Array:
         """A dense copy, shape (N, N)."""
-        dense: Array = self.tosparse().toarray()
-        return dense
+        return np.asarray(self.tosparse().toarray())
 
     def __abs__(self) -> Banded:
         return Banded(np.abs(self.ab), self.lower, self.upper)
@@ -66,10 +65,8 @@ class Banded:
         if len(other) != n:
             raise ValueError(f"the operand of Banded @ has shape {other.shape}; expected ({n},) or ({n}, k)")
         if other.ndim == 1 and len(self.ab) <= n:
-            image: Array = dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other)
-            return image
-        product: Array = self.tosparse() @ other
-        return product
+            return np.asarray(dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other))
+        return np.asarray(self.tosparse() @ other)
 
 
 def factor_band(matrix: Banded) -> Solver | None:
@@ -81,9 +78,6 @@ def factor_band(matrix: Banded) -> Solver | None:
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
     if info > 0:
         return None
-
-    def solve(rhs: Array) -> Array:
-        x: Array = dgbtrs(lu, lower, upper, rhs, pivots)[0].ravel()
-        return x
-
-    return Solver(solve, lambda: lu_sign(pivots, lu[lower + upper]))
+    return Solver(
+        lambda rhs: dgbtrs(lu, lower, upper, rhs, pivots)[0].ravel(), lambda: lu_sign(pivots, lu[lower + upper])
+    )

@@ -56,6 +56,6 @@ class FollowedEigenvalue:
         def measure(step: Array) -> float:
             return float(abs(step[-1]) / abs(pair.x[-1]))
 
-        if not (pair.run(increment, measure, lambda size: size <= np.finfo(float).eps) or pair.size <= OFF_AXIS):
+        if not (pair.run(increment, measure, lambda size: size <= 2.0**-52) or pair.size <= OFF_AXIS):
             raise ArithmeticError("an eigenvalue is not followed from one matrix to the other")
         return complex(pair.x[-1]), pair.count

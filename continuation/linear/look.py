@@ -36,8 +36,7 @@ class Look:
     @cached_property
     def diagonal(self) -> Array:
         """The diagonal, shape (N,)."""
-        entries: Array = self.matrix.diagonal()
-        return entries
+        return np.asarray(self.matrix.diagonal())
 
     @cached_property
     def symmetric_pattern(self) -> bool:
@@ -69,8 +68,7 @@ class Look:
     @cached_property
     def row_sums(self) -> Array:
         """Of magnitudes, shape (N,)."""
-        sums: Array = abs(self.matrix) @ np.ones(self.n)
-        return sums
+        return np.asarray(abs(self.matrix) @ np.ones(self.n))
 
     @cached_property
     def dominant(self) -> bool:

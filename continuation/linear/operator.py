@@ -48,19 +48,15 @@ class Operator:
     @property
     def shape(self) -> tuple[int, int]:
         """(N, N)."""
-        n: int
-        m: int
         n, m = self.operator.shape
-        return (n, m)
+        return int(n), int(m)
 
     def toarray(self) -> Array:
         """A dense copy, shape (N, N), for N products."""
-        dense: Array = self.operator @ np.eye(self.shape[0])
-        return dense
+        return np.asarray(self.operator @ np.eye(self.shape[0]))
 
     def __matmul__(self, other: Array) -> Array:
-        product: Array = self.operator @ other
-        return product
+        return np.asarray(self.operator @ other)
 
 
 @frozen(eq=False)
@@ -107,8 +103,7 @@ class Krylov:
         order = len(rhs)
         product = LinearOperator((order, order), matvec=self.bordered.times, dtype=float)
         restart = min(RESTART, order)
-        z: Array = gmres(product, rhs, M=self.inverse, rtol=TRUSTED, restart=restart, maxiter=CYCLES)[0]
-        return z
+        return np.asarray(gmres(product, rhs, M=self.inverse, rtol=TRUSTED, restart=restart, maxiter=CYCLES)[0])
 
 
 def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:

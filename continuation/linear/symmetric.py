@@ -52,8 +52,7 @@ class Symmetric:
         return np.abs(self.matrix)
 
     def __matmul__(self, other: Array) -> Array:
-        product: Array = self.matrix @ other
-        return product
+        return np.asarray(self.matrix @ other)
 
 
 @frozen(eq=False)
@@ -102,8 +101,7 @@ class LDL:
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""
-        x: Array = dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel()
-        return x
+        return np.asarray(dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel())
 
 
 def factor_symmetric(symmetric: Symmetric) -> Factored | None:
