@@ -1,4 +1,4 @@
-"""What the adapters share: a homotopy made of functions, where it starts, and entries that are known by their places."""
+"""What the adapters share: a homotopy made of functions, its start, and entries that are known by their places."""
 
 from __future__ import annotations
 

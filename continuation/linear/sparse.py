@@ -61,4 +61,4 @@ def factor_square(matrix: Matrix) -> SparseFactor | None:
     ----------
     matrix : csc_array of shape (N, N)
     """
-    return Factoring(signed=True).factor(matrix)
+    return Factoring().factor(matrix)

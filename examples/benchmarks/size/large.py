@@ -62,8 +62,6 @@ ROWS = {"obstacle": obstacle_2d, "torsion": torsion, "put": put}
 def measured(row: str, m: int, way: str) -> dict[str, Any]:
     """One solve in numbers."""
     problem = ROWS[row](m)
-    if way == "amg":
-        import pyamg  # noqa: F401
     began = time.process_time()
     found = lcp.solve(problem, sparse=way)
     seconds = time.process_time() - began
@@ -80,7 +78,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("row", choices=[*ROWS])
     parser.add_argument("--size", type=int, default=316)
-    parser.add_argument("--way", default="auto", help="superlu, cholmod, amg, auto")
+    parser.add_argument("--way", default="auto", help="superlu, cholmod, auto")
     arguments = parser.parse_args()
     for name, value in measured(arguments.row, arguments.size, arguments.way).items():
         print(f"{name}: {value}")
