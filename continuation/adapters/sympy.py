@@ -107,7 +107,7 @@ def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
     def value(u: Any) -> Any:
         if not isinstance(u, Jet):
             return derivative(0)(u)
-        at, found = u.coefficient(0), 0.0 * u
+        at, found = u.c[0], 0.0 * u
         for k in range(u.order, -1, -1):
             found = found * (u - at) + derivative(k)(at) / factorial(k)
         return found

@@ -10,12 +10,10 @@ from attrs import define, field
 
 from continuation.arrays import Array, generic_vector
 from continuation.metric import norm
+from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
 """How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
-
-PRODUCT_ROUNDING = 1e-12
-"""Of the sum of a product of vectors, far more than its rounding."""
 
 Item = TypeVar("Item")
 
@@ -45,7 +43,7 @@ class PointIndex(Generic[Item]):
         if not self._sorted:
             return []
         number = float(self._axis @ u)
-        reach = self._reach + PRODUCT_ROUNDING * float(np.abs(self._axis) @ np.abs(u))
+        reach = self._reach + accumulated(u.size) * float(np.abs(self._axis) @ np.abs(u))
         first, last = (bisect(self._sorted, end, key=_number) for end in (number - reach, number + reach))
         close = sorted(self._sorted[first:last], key=lambda found: found[1])
         return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SAME_PLACE]
