@@ -9,7 +9,6 @@ import numpy as np
 from attrs import evolve, frozen
 from scipy.linalg import eigvals
 from scipy.sparse import csc_array, eye_array, issparse
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigs
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
@@ -34,8 +33,17 @@ SHIFT = 0.517
 LEAST_SHIFT = 1e-6
 """At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
 
-KNOWN_TO = 1e-12
-"""Errors of eigenvalues, relative to their distance from the shift: their real parts locate an event to 1e-10."""
+SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
+"""Eigenvalues are computed until the error of their real parts, relative to these, is the first, so that it is known on
+which side they are; for the rightmost and the one nearest to the axis, the second. Near the axis that is as good as an
+event needs that is located to 1e-10: down to the last, relative to the eigenvalue."""
+
+DIMENSIONS, LOOK_EVERY = 40, 6
+"""At most so many dimensions of the Krylov space for each eigenvalue and one more; 30 in all are usual for six.
+After so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
+
+LOST_DIRECTION = 1e-14
+"""A vector that loses all but this to the ones before it has no direction of its own."""
 
 
 @frozen(eq=False)
@@ -120,7 +128,11 @@ def nearest_zero(matrix: Matrix, k: int) -> Any:
     if n <= ALL_OF_DENSE:
         return _all(matrix)
     shift = LEAST_SHIFT * float(np.abs(matrix.diagonal()).max())
-    return _arnoldi(_solver(matrix, shift), n, shift, k)
+
+    def known(theta: Any, error: Array) -> bool:
+        return bool((error <= DIGITS * np.abs(theta)).all())
+
+    return shift + 1.0 / dominant(_solver(matrix, shift), generic_vector(n), min(k, n), known)[0]
 
 
 def _all(matrix: Matrix) -> Any:
@@ -160,33 +172,59 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     real, imaginary = bounds(matrix)
     # Where all are stable the shift is not much farther away than what oscillates, and no eigenvalue itself.
     shift = SHIFT * max(real, 0.1 * imaginary, LEAST_SHIFT * float(np.abs(matrix.diagonal()).max()))
-    corner = float(np.hypot(max(shift, real - shift), imaginary))
-    solve, solves = _solver(matrix, shift), 0
+    inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
+    wanted, solves = min(k, n), 0
 
-    def counted(rhs: Array) -> Array:
-        nonlocal solves
-        solves += 1
-        return solve(rhs)
+    def known(theta: Any, error: Array) -> bool:
+        real_parts = (shift + 1.0 / theta).real
+        off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
+        # The ones that are stored, and that cross: the rightmost, and the nearest to the axis.
+        kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
+        wanted = np.full(theta.size, SURE)
+        wanted[kept] = DIGITS
+        return bool(((off <= wanted) | (error <= LAST_DIGITS * np.abs(theta))).all())
 
-    # Where all that were asked for are unstable there may be more.
-    while k < n - 1:
-        found = _arnoldi(counted, n, shift, k)
-        covered = real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
+    while True:
+        theta, more = dominant(inverse, generic_vector(n), wanted, known)
+        solves += more
+        found = shift + 1.0 / theta
+        covered = wanted == n or real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
         if covered or not (found.real > 0.0).all():
             return evolve(_counted(found, covered), solves=solves)
-        k *= 2
-    return _counted(_all(matrix))
+        # There are more on the right than were asked for.
+        wanted = min(2 * wanted, n)
 
 
-def _arnoldi(solve: Callable[[Array], Array], n: int, shift: float, k: int) -> Any:
-    """The k eigenvalues nearest to the shift, by ARPACK; three to five vectors for each, and seldom a restart."""
-    inverse = LinearOperator((n, n), matvec=solve, dtype=float)
-    start, vectors = generic_vector(n).copy(), min(n, max(30, 3 * k))
-    try:
-        turned = eigs(inverse, k, v0=start, ncv=vectors, tol=KNOWN_TO, return_eigenvectors=False)
-    except ArpackError as error:
-        raise ArithmeticError(f"the {k} eigenvalues nearest to {shift:.3g} are not found: {error}") from error
-    return shift + 1.0 / turned
+def dominant(
+    apply: Callable[[Array], Array], start: Array, k: int, known: Callable[[Any, Array], bool]
+) -> tuple[Any, int]:
+    """The k eigenvalues of largest modulus, by Arnoldi's method, and how often the operator was applied.
+
+    `start` of shape (N,). `known`: Of eigenvalues and bounds on their errors: whether they are good enough. Raises
+    `ArithmeticError` if they do not converge.
+    """
+    n = start.size
+    most = min(n, DIMENSIONS * (k + 1))
+    Q, H = np.zeros((most + 1, n)), np.zeros((most + 1, most))
+    Q[0] = start / np.linalg.norm(start)
+    for j in range(1, most + 1):
+        x = apply(Q[j - 1])
+        size = float(np.linalg.norm(x))
+        # Always twice: once leaves copies of eigenvalues that are none.
+        for _ in range(2):
+            part = Q[:j] @ x
+            H[:j, j - 1] += part
+            x = x - part @ Q[:j]
+        H[j, j - 1] = float(np.linalg.norm(x))
+        exhausted = j == n or H[j, j - 1] <= LOST_DIRECTION * size
+        if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK_EVERY == 0):
+            theta, vectors = np.linalg.eig(H[:j, :j])
+            largest = np.argsort(-np.abs(theta))[:k]
+            error = H[j, j - 1] * np.abs(vectors[-1, largest])
+            if exhausted or known(theta[largest], error):
+                return theta[largest], j
+        Q[j] = x / H[j, j - 1]
+    raise ArithmeticError(f"the {k} eigenvalues on the right are not found in {most} steps of Arnoldi's method")
 
 
 def _solver(matrix: Matrix, shift: float) -> Callable[[Array], Array]:
