@@ -68,7 +68,7 @@ def test_more_are_computed_where_all_that_were_asked_for_are_unstable():
 
 @pytest.mark.parametrize("make", [np.asarray, sp.csc_array])
 def test_an_eigenvalue_of_many_unknowns_does_not_hide_the_pairs_of_a_few(make):
-    """Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, nearer to any shift than the pairs."""
+    """Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs."""
     U = np.linalg.qr(np.random.default_rng(0).standard_normal((150, 4)))[0]
     turn = np.zeros((4, 4))
     turn[[0, 1, 2, 3], [1, 0, 3, 2]] = [3.0, -3.0, 1.0, -1.0]
