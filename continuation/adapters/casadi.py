@@ -2,44 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
-from attrs import frozen
 
-from continuation.adapters.given import filled, library, started
+from continuation.adapters.given import Adapted, filled, library, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import Pattern
 
 
-@frozen(eq=False)
-class CasadiHomotopy:
-    """A homotopy whose residual is a function of CasADi; see `from_casadi`."""
-
-    function: Any
-    slope: Any
-    """(H_y, H_lam), of CasADi too."""
-    pattern: Pattern
-    y0: Array
-    lam0: float
-    target: float | None
-
-    def start(self) -> tuple[Array, float]:
-        """The given start."""
-        return self.y0.copy(), self.lam0
-
-    def residual(self, y: Array, lam: float) -> Array:
-        """H."""
-        return np.asarray(self.function(np.asarray(y, dtype=float), float(lam)).full()).ravel()
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam): dense, `Banded` or sparse, as it is."""
-        H_y, H_lam = self.slope(y, lam)
-        return filled(self.pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
-
-
-def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None = 0.0) -> CasadiHomotopy:
+def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None = 0.0) -> Adapted:
     """Make a homotopy of a function of CasADi.
 
     Parameters
@@ -71,4 +45,14 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
     H_y = ca.jacobian(r, y)
     slope = ca.Function("slope", [y, lam], [H_y, ca.densify(ca.jacobian(r, lam))])
     rows, columns = (np.array(places, dtype=np.intp) for places in H_y.sparsity().get_triplet())
-    return CasadiHomotopy(function, slope, Pattern(rows, columns, n), y0, lam0, target)
+    pattern = Pattern(rows, columns, n)
+
+    def residual(y: Array, lam: float) -> Array:
+        return np.asarray(function(np.asarray(y, dtype=float), float(lam)).full()).ravel()
+
+    def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
+        H_y, H_lam = slope(y, lam)
+        return filled(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
+
+    again = partial(from_casadi, target=target), (function, start)
+    return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)

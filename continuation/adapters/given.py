@@ -1,16 +1,45 @@
-"""What the adapters share: where a path starts, and a derivative whose entries are known by their places."""
+"""What the adapters share: a homotopy made of functions, its start, and entries that are known by their places."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
 import numpy as np
+from attrs import frozen
 
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import SPARSE_FROM
 from continuation.evaluation.pattern import Pattern
+
+
+@frozen(eq=False, slots=False)
+class Adapted:
+    """A homotopy whose functions another library computes; see `from_jax`, `from_casadi` and `from_sympy`.
+
+    `more`: What it can do besides, by name: jacobian, differential, taylor. `again`: A function and its arguments that
+    make it anew, in another process say.
+    """
+
+    residual: Callable[[Any, Any], Any]
+    more: Mapping[str, Any]
+    y0: Array
+    lam0: float
+    target: float | None
+    again: tuple[Any, ...]
+
+    def __attrs_post_init__(self) -> None:
+        for name, capability in self.more.items():
+            object.__setattr__(self, name, capability)
+
+    def __reduce__(self) -> Any:
+        return self.again
+
+    def start(self) -> tuple[Array, float]:
+        """The given start."""
+        return self.y0.copy(), self.lam0
 
 
 def library(name: str) -> Any:

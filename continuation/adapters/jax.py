@@ -8,104 +8,14 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
 from scipy.sparse.linalg import LinearOperator
 
-from continuation.adapters.given import library, started
+from continuation.adapters.given import Adapted, library, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
 from continuation.homotopy import TangentPoint
 
 KINDS = ("dense", "sparse", "operator")
-
-
-@frozen(eq=False)
-class JaxHomotopy:
-    """A homotopy whose residual is JAX's; see `from_jax`."""
-
-    function: Callable[[Any, Any], Any]
-    y0: Array
-    lam0: float
-    target: float | None
-    kind: str
-    jacobian: Callable[[Array, float], tuple[Matrix, Array]] = field(init=False)
-    """Not there where products make it."""
-    taylor: Callable[[TangentPoint, int], Array] = field(init=False)
-    """Not there where `jax.experimental.jet` does not know a function that is used."""
-    _residual: Any = field(init=False)
-    _whole: Any = field(init=False)
-    _product: Any = field(init=False)
-    _series: Any = field(init=False)
-
-    def __attrs_post_init__(self) -> None:
-        jax, jet = library("jax"), library("jax.experimental.jet")
-
-        def at(u: Any) -> Any:
-            return self.function(u[:-1], u[-1])
-
-        def product(u: Any, v: Any) -> Any:
-            return jax.jvp(at, (u,), (v,))[1]
-
-        def series(u: Any, terms: Any) -> Any:
-            return jax.numpy.stack(jet.jet(at, (u,), (list(terms),))[1])
-
-        put = partial(object.__setattr__, self)
-        put("_residual", jax.jit(at))
-        put("_whole", jax.jit(jax.jacfwd(at)))
-        put("_product", jax.jit(product))
-        put("_series", jax.jit(series))
-        u = np.append(self.y0, self.lam0)
-        found = jax.eval_shape(at, u)
-        if getattr(found, "shape", None) != self.y0.shape or found.dtype != np.float64:
-            wanted = f"a function of (y, lam) that gives float64 numbers, shape {self.y0.shape}"
-            raise complain(ValueError, "residual", wanted, found)
-        try:
-            jax.eval_shape(series, u, np.zeros((2, u.size)))
-            put("taylor", self._taylor)
-        except (KeyError, NotImplementedError, TypeError, ValueError):
-            # A function without a rule in jet: points of the path serve then. Nested forward derivatives would, too,
-            # but of three unknowns order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
-            pass
-        if self.kind != "sparse":
-            put("jacobian", self._dense if self.kind == "dense" else self._operator)
-
-    def __reduce__(self) -> Any:
-        more = partial(from_jax, target=self.target, jacobian=self.kind)
-        return more, (self.function, (self.y0, self.lam0))
-
-    def start(self) -> tuple[Array, float]:
-        """The given start."""
-        return self.y0.copy(), self.lam0
-
-    def residual(self, y: Array, lam: float) -> Array:
-        """H, compiled."""
-        return np.asarray(self._residual(np.append(np.asarray(y, dtype=float), lam)))
-
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H'(y, lam) v, one forward derivative."""
-        return np.asarray(self._product(np.append(y, lam), v))
-
-    def _dense(self, y: Array, lam: float) -> tuple[Array, Array]:
-        whole = np.asarray(self._whole(np.append(y, lam)))
-        return whole[:, :-1], whole[:, -1]
-
-    def _operator(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        n, u = y.size, np.append(y, lam)
-
-        def matvec(v: Array) -> Array:
-            return np.asarray(self._product(u, np.append(np.ravel(v), 0.0)))
-
-        return LinearOperator((n, n), matvec=matvec, dtype=float), np.asarray(self._product(u, np.eye(n + 1)[n]))
-
-    def _taylor(self, point: TangentPoint, order: int) -> Array:
-        coefficients = np.zeros((order + 1, point.u.size))
-        coefficients[:2] = point.u, point.tangent
-        factorials = np.array([float(factorial(k)) for k in range(order + 1)])[:, None]
-        for k in range(2, order + 1):
-            # All orders each time, zeros beyond k: a series of another length would be compiled anew.
-            defect = self._series(point.u, (coefficients * factorials)[1:])[k - 1]
-            coefficients[k] = point.solve(-np.asarray(defect) / factorials[k, 0])
-        return coefficients
 
 
 def from_jax(
@@ -114,7 +24,7 @@ def from_jax(
     *,
     target: float | None = 0.0,
     jacobian: str = "dense",
-) -> JaxHomotopy:
+) -> Adapted:
     """Make a homotopy of a residual in JAX.
 
     It is compiled; the derivative, products with it, and the coefficients of SERIES are JAX's, and leave its device
@@ -146,4 +56,63 @@ def from_jax(
         raise complain(TypeError, "residual", "a function of (y, lam)", residual)
     if jacobian not in KINDS:
         raise complain(ValueError, "jacobian", f"one of {', '.join(KINDS)}", jacobian)
-    return JaxHomotopy(residual, *started(start), target, jacobian)
+    y0, lam0 = started(start)
+
+    def at(u: Any) -> Any:
+        return residual(u[:-1], u[-1])
+
+    value, whole = jax.jit(at), jax.jit(jax.jacfwd(at))
+    product = jax.jit(lambda u, v: jax.jvp(at, (u,), (v,))[1])
+    series = _series(jax, at)
+    u = np.append(y0, lam0)
+    found = jax.eval_shape(at, u)
+    if getattr(found, "shape", None) != y0.shape or found.dtype != np.float64:
+        wanted = f"a function of (y, lam) that gives float64 numbers, shape {y0.shape}"
+        raise complain(ValueError, "residual", wanted, found)
+
+    def differential(y: Array, lam: float, v: Array) -> Array:
+        return np.asarray(product(np.append(y, lam), v))
+
+    def dense(y: Array, lam: float) -> tuple[Array, Array]:
+        full = np.asarray(whole(np.append(y, lam)))
+        return full[:, :-1], full[:, -1]
+
+    def operator(y: Array, lam: float) -> tuple[Matrix, Array]:
+        def matvec(v: Array) -> Array:
+            return differential(y, lam, np.append(np.ravel(v), 0.0))
+
+        by_lam = differential(y, lam, np.append(np.zeros(y.size), 1.0))
+        return LinearOperator((y.size, y.size), matvec=matvec, dtype=float), by_lam
+
+    more: dict[str, Any] = {"differential": differential}
+    if jacobian != "sparse":
+        more["jacobian"] = dense if jacobian == "dense" else operator
+    try:
+        jax.eval_shape(series, u, np.zeros((2, u.size)))
+        more["taylor"] = partial(_taylor, series)
+    except (KeyError, NotImplementedError, TypeError, ValueError):
+        # A function without a rule in jet: points of the path serve then. Nested forward derivatives would, too,
+        # but of three unknowns order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
+        pass
+    again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
+    return Adapted(
+        lambda y, lam: np.asarray(value(np.append(np.asarray(y, dtype=float), lam))), more, y0, lam0, target, again
+    )
+
+
+def _series(jax: Any, at: Callable[[Any], Any]) -> Any:
+    """Taylor coefficients of the residual along a curve, from those of the curve, times factorials."""
+    jet = library("jax.experimental.jet")
+    return jax.jit(lambda u, terms: jax.numpy.stack(jet.jet(at, (u,), (list(terms),))[1]))
+
+
+def _taylor(series: Callable[[Any, Any], Any], point: TangentPoint, order: int) -> Array:
+    """Those of the path."""
+    coefficients = np.zeros((order + 1, point.u.size))
+    coefficients[:2] = point.u, point.tangent
+    factorials = np.array([float(factorial(k)) for k in range(order + 1)])[:, None]
+    for k in range(2, order + 1):
+        # All orders each time, zeros beyond k: a series of another length would be compiled anew.
+        defect = series(point.u, (coefficients * factorials)[1:])[k - 1]
+        coefficients[k] = point.solve(-np.asarray(defect) / factorials[k, 0])
+    return coefficients

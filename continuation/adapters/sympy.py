@@ -8,54 +8,20 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from attrs import frozen
 
-from continuation.adapters.given import filled, library, started
+from continuation.adapters.given import Adapted, filled, library, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
-from continuation.evaluation.pattern import Pattern, pattern_of
+from continuation.evaluation.pattern import pattern_of
 from continuation.jets import Jet
 
 MODULES = ["scipy", "numpy"]
 
 
-@frozen(eq=False)
-class SympyHomotopy:
-    """A homotopy of expressions of SymPy; see `from_sympy`."""
-
-    given: tuple[Any, ...]
-    """Expressions, unknowns, parameter: what the rest is made of."""
-    values: Callable[..., Any]
-    slopes: Callable[..., Any]
-    """Entries of H_y in the order of the pattern, then H_lam."""
-    pattern: Pattern
-    y0: Array
-    lam0: float
-    target: float | None
-
-    def __reduce__(self) -> Any:
-        return partial(from_sympy, start=(self.y0, self.lam0), target=self.target), self.given
-
-    def start(self) -> tuple[Array, float]:
-        """The given start."""
-        return self.y0.copy(), self.lam0
-
-    def residual(self, y: Any, lam: Any) -> Any:
-        """H, of numbers or jets."""
-        # What is added makes arrays, or jets, of equations that are constant.
-        return np.stack([value + 0.0 * lam for value in self.values(*y, lam)])
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam): dense, `Banded` or sparse, as it is."""
-        found = np.array(self.slopes(*y, lam), dtype=float)
-        size = self.pattern.rows.size
-        return filled(self.pattern, found[:size]), found[size:]
-
-
 def from_sympy(
     expressions: Sequence[Any], unknowns: Sequence[Any], parameter: Any, start: tuple[Any, float],
     *, target: float | None = 0.0,
-) -> SympyHomotopy:  # fmt: skip
+) -> Adapted:  # fmt: skip
     """Make a homotopy of expressions of SymPy.
 
     Its derivative is symbolic; SERIES expands the compiled expressions by `continuation.jets`, special functions in
@@ -90,7 +56,7 @@ def from_sympy(
     if others:
         wanted = "no symbols but the unknowns and the parameter"
         raise complain(ValueError, "expressions", wanted, sorted(map(str, others)))
-    given = rows, symbols, parameter
+    again = partial(from_sympy, start=start, target=target), (rows, symbols, parameter)
     # Of a symbol that may be complex |x| has no derivative.
     real = [sp.Dummy(str(symbol), real=True) for symbol in (*symbols, parameter)]
     rows = [one.xreplace(dict(zip((*symbols, parameter), real))) for one in rows]
@@ -112,8 +78,17 @@ def from_sympy(
 
     values = [one.replace(special, renamed) for one in rows]
     compiled = partial(sp.lambdify, real, modules=[expanded, *MODULES], cse=True)
-    slopes = [*entries, *(_slope(sp, one, real[-1]) for one in rows)]
-    return SympyHomotopy(given, compiled(values), compiled(slopes), pattern, y0, lam0, target)
+    value, slope = compiled(values), compiled([*entries, *(_slope(sp, one, real[-1]) for one in rows)])
+
+    def residual(y: Any, lam: Any) -> Any:
+        # What is added makes arrays, or jets, of equations that are constant.
+        return np.stack([part + 0.0 * lam for part in value(*y, lam)])
+
+    def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
+        found = np.array(slope(*y, lam), dtype=float)
+        return filled(pattern, found[: pattern.rows.size]), found[pattern.rows.size :]
+
+    return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)
 
 
 def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
@@ -132,7 +107,7 @@ def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
     def value(u: Any) -> Any:
         if not isinstance(u, Jet):
             return derivative(0)(u)
-        at, found = u.coefficient(0), 0.0 * u
+        at, found = u.c[0], 0.0 * u
         for k in range(u.order, -1, -1):
             found = found * (u - at) + derivative(k)(at) / factorial(k)
         return found

@@ -4,27 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, Matrix, generic_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
 from continuation.evaluation.products import difference_along, sizes
-from continuation.events.singularity import SECOND, full_derivative
-
-JET_COLUMNS = 128
-"""Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
+from continuation.events.singularity import SECOND, full_derivative, row_sizes
+from continuation.linear import BorderedSystem
+from continuation.linear.nullspace import Bordered, null_vectors
+from continuation.linear.system import Solver
+from continuation.numbers.derivatives import BLOCK
 
 Member = Callable[[Any], Any]
 """From mu to the homotopy."""
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Calculus:
     """How a family is differentiated: decided once, at a point.
 
@@ -53,6 +56,37 @@ class Calculus:
         """The same as the engine sees it."""
         return Evaluator(self.member(mu), Counts())
 
+    @cached_property
+    def rows(self) -> Array:
+        """The sizes of the rows of H' at the start, by which equations are divided, shape (N,)."""
+        return row_sizes(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))
+
+    def scaled(self, matrix: Matrix) -> Matrix:
+        """H_y, say, in units of the start: columns multiplied by extents, rows divided by their sizes."""
+        extent = self.extent[:-1]
+        if sp.issparse(matrix):
+            return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(extent))
+        return matrix * extent / self.rows[:, None]
+
+    def borders(self, matrix: Matrix) -> tuple[Array, Array]:
+        """For a scaled matrix its null vectors, about, by inverse iteration from vectors in general position."""
+        n = self.rows.size
+        b, c = generic_vector(n), generic_vector(2 * n)[n:]
+        for _ in range(2):
+            near = null_vectors(matrix, b / np.linalg.norm(b), c / np.linalg.norm(c))
+            b, c = near.left, near.right
+        return b / np.linalg.norm(b), c / np.linalg.norm(c)
+
+    def unscaled(self, factors: Bordered) -> BorderedSystem:
+        """The factors of a scaled matrix with a border, as those of the matrix: scaling is by positive numbers."""
+
+        def solve(r: Array, rho: float) -> Array:
+            x = factors.solve(np.append(r / self.rows, rho))
+            x[:-1] *= self.extent[:-1]
+            return x
+
+        return Solver(solve, lambda: factors.sign)
+
     def residual(self, U: Any) -> Any:
         """H(y, lam; mu) of one vector, or jet."""
         return self.family(U[-1]).residual(U[:-2], U[-2])
@@ -63,8 +97,7 @@ class Calculus:
             from continuation import jets
 
             U = np.append(u, mu)
-            slope: Array = jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1]
-            return slope
+            return np.asarray(jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1])
         h = self.reach * self._size(mu)
         ahead, behind = (np.array(self.family(m).residual(u[:-1], float(u[-1]))) for m in (mu + h, mu - h))
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
@@ -116,7 +149,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     first = Calculus(family, derivative, False, U, extent, reach, reach)
     plain = evolve(first, bend=difference_along(bent, U, along)[1])
     with_jets = evolve(plain, jets=True)
-    if U.size > JET_COLUMNS:
+    if U.size > BLOCK:  # Jets make all columns of second derivatives: of more than one block two Jacobians are cheaper.
         return plain
     with suppress(TypeError, ArithmeticError, ValueError, AttributeError), np.errstate(all="ignore"):
         if np.isfinite(with_jets.by_parameter(u, mu)).all():

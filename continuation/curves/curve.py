@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,9 @@ from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
-from continuation.curves.conditions import HopfCondition, Singular
+from continuation.curves.conditions import Eigenvalue
 from continuation.curves.here import Here
-from continuation.curves.local import Condition
-from continuation.curves.monitors import AlongTangent, Vanishing, plainly, without_tangent
+from continuation.curves.monitors import Vanishing, plainly, without_tangent
 from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
@@ -95,8 +94,6 @@ class Curve:
     frequency: float | None
     size: Array = field(repr=False)
     target: None = field(default=None, init=False, repr=False)
-    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
-    _members: dict[float, Any] = field(factory=dict, init=False, repr=False)
 
     def __init__(
         self,
@@ -141,7 +138,7 @@ class Curve:
         y = self._corrected.copy()
         if self.event == Kind.BRANCH_POINT:
             here = self._at(y, self.mu)
-            found = abs(float(here.local.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.local.column).max()
+            found = abs(float(here.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.column).max()
             if found > PERSISTS * np.abs(here.by_parameter).max():
                 raise ValueError("family: expected branch points for every mu, as in symmetric problems; these part")
         return y, self.mu
@@ -177,28 +174,27 @@ class Curve:
         return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at)))) if self.event == Kind.KINK else None
 
     def _member(self, mu: Any) -> Any:
-        if isinstance(mu, float) and mu in self._members:
-            return self._members[mu]
+        return self._members(mu) if isinstance(mu, float) else self._made(mu)
+
+    @cached_property
+    def _members(self) -> Callable[[float], Any]:
+        return lru_cache(POINTS_KEPT)(self._made)
+
+    def _made(self, mu: Any) -> Any:
         member = self.family(mu)
-        member = member if self._signs is None else member.piece(self._signs)
-        if isinstance(mu, float):
-            _keep(self._members, mu, member)
-        return member
+        return member if self._signs is None else member.piece(self._signs)
 
     @cached_property
     def _calculus(self) -> Calculus:
         return calculus_at(self._member, np.append(*self.at), self.mu, self.size)
 
     @cached_property
-    def _condition(self) -> Condition:
+    def _condition(self) -> Eigenvalue | Vanishing:
         calculus, event = self._calculus, self.event
-        if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT):
-            return Singular.at_start(calculus, event == Kind.BRANCH_POINT)
-        if event == Kind.HOPF:
-            return HopfCondition.at_start(calculus, self._frequency)
-        if self._plain is not None:
-            return Vanishing.at_start(calculus, self._plain)
-        return AlongTangent.at_start(calculus, lambda x: plainly(event)(*np.split(x, 2)))
+        if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.HOPF):
+            return Eigenvalue.at_start(calculus, event, self._frequency if event == Kind.HOPF else 0.0)
+        plain = self._plain
+        return Vanishing.at_start(calculus, plain or (lambda x: plainly(event)(*np.split(x, 2))), plain is None)
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
@@ -278,13 +274,16 @@ class Curve:
 
     def _at(self, y: Array, lam: float) -> Here:
         """What is known at a point, kept for a while."""
-        key = np.append(y, lam).tobytes()
-        if key not in self._recent:
-            u, beside = np.split(np.array(y, dtype=float), [self.size.size])
+        return self._points(np.append(y, lam).tobytes())
+
+    @cached_property
+    def _points(self) -> Callable[[bytes], Here]:
+        def at(coordinates: bytes) -> Here:
+            u, beside, mu = np.split(np.frombuffer(coordinates).copy(), [self.size.size, -1])
             with np.errstate(all="ignore"):
-                local = self._condition.at(u, float(beside[0]) if beside.size else 0.0, float(lam))
-            _keep(self._recent, key, Here(self._calculus, u, beside, float(lam), local))
-        return self._recent[key]
+                return self._condition.at(u, float(beside.sum()), float(mu[0]))
+
+        return lru_cache(POINTS_KEPT)(at)
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
@@ -297,7 +296,8 @@ class Curve:
 
     def _sign(self, name: str, u: Array, v: Array) -> float:
         """A number of the condition's."""
-        return self._at(u[:-1], float(u[-1])).local.sign(name)
+        here = self._at(u[:-1], float(u[-1]))
+        return here.signs[name](here.rows)
 
     def _other(self, i: int, u: Array, v: Array) -> float:
         """A switch of the family's member."""
@@ -334,13 +334,6 @@ class Curve:
     def _room(self, u: Array, v: Array) -> float:
         """How far the member's path may go: mu stands still for it."""
         return float(self._member(u[-1]).max_step(u[: self.size.size], v[: self.size.size]))
-
-
-def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:
-    """Put it beside the last few."""
-    recent[key] = value
-    if len(recent) > POINTS_KEPT:
-        del recent[next(iter(recent))]
 
 
 def _frequency(u: Array, v: Array) -> float:

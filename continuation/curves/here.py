@@ -2,36 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import frozen
+from attrs import field, frozen
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
-from continuation.curves.local import Local
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import full_derivative
-from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.linear import BorderedSystem
+from continuation.linear.elimination import eliminated
 from continuation.linear.entries import extended
+from continuation.linear.system import Solver
 
 
 @frozen(eq=False, slots=False)
 class Here:
-    """All that is known of a curve at a point; worked out once.
+    """All that is known of a curve at a point; what a residual does not need is worked out when it is asked for.
 
-    `u` of shape (N + 1,), `beside` of shape (0,) or (1,).
+    `u`, of shape (N + 1,): (y, lam). `values`, of shape (k,): What is to vanish. `gradients`: Makes `rows`. `factored`:
+    Makes `base`: [[H_y, b], [c', d]] for some border, factored. `column`, of shape (N, k - 1): Derivative of the
+    equations H = 0 by the unknown beside. `hidden`: The unknown beside where it is none, but a number that is added to
+    H along the column: the last of the rows is how it follows from the others. `signs`: Numbers whose signs tell
+    degenerate points, from the rows.
     """
 
     calculus: Calculus
     u: Array
-    beside: Array
     mu: float
-    local: Local
+    values: Array
+    gradients: Callable[[], Array]
+    factored: Callable[[], BorderedSystem]
+    column: Array
+    hidden: float | None = None
+    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
+
+    @cached_property
+    def rows(self) -> Array:
+        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
+        return self.gradients()
+
+    @cached_property
+    def base(self) -> BorderedSystem:
+        """The factorisation."""
+        return self.factored()
 
     @cached_property
     def evaluator(self) -> Evaluator:
@@ -54,23 +73,22 @@ class Here:
     @cached_property
     def _rows(self) -> tuple[Array, Array | None]:
         """Gradients of what vanishes, and of the unknown that is hidden, over those that are not."""
-        rows, n = self.local.rows, self.u.size
-        if self.local.hidden is None:
+        rows, n = self.rows, self.u.size
+        if self.hidden is None:
             return rows, None
         return np.delete(rows[:1], n, axis=1), -np.delete(rows[1], n)
 
     def residual(self) -> Array:
         """The equations."""
-        hidden = self.local.hidden
-        beside = self.beside if hidden is None else np.array([hidden])
-        return np.concatenate([self.evaluator.residual(self.u) + self.local.column @ beside, self.local.values])
+        H = self.evaluator.residual(self.u)
+        return np.append(H if self.hidden is None else H + self.column[:, 0] * self.hidden, self.values)
 
     def times(self, v: Array) -> Array:
         """The derivative applied to a direction."""
         n, (rows, follows) = self.u.size, self._rows
         beside = v[n:-1] if follows is None else np.array([follows @ v])
-        H = self.apply(v[:n]) + self.local.column @ beside + v[-1] * self.by_parameter
-        return np.concatenate([H, rows @ v])
+        H = self.apply(v[:n]) + self.column @ beside + v[-1] * self.by_parameter
+        return np.append(H, rows @ v)
 
     def matrices(self) -> tuple[Matrix, Array]:
         """The derivative by the unknowns, dense or sparse as the family's, and by mu.
@@ -78,7 +96,7 @@ class Here:
         Where a number is hidden it is H' and a matrix of rank one: an operator, if H' is sparse.
         """
         full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
-        column = self.local.column
+        column = self.column
         last = np.append(self.by_parameter, rows[:, -1])
         if follows is not None:
             last[:-1] += column[:, 0] * follows[-1]
@@ -89,60 +107,27 @@ class Here:
         return extended(full, column, rows[:, :-1]), last
 
     def bordered(self, border: Array) -> BorderedSystem:
-        """The derivative with a border, factored by elimination."""
-        local, n = self.local, self.u.size
-        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
-        hidden = local.hidden is not None
-        last = np.insert(border, n, 0.0) if hidden else border
-        return eliminated(local.base, columns, np.vstack([local.rows, last]), hidden)
+        """The derivative with a border, by elimination of y.
 
+        The member's own factors are of F = [[H_y, b], [c', d]]. With a further unknown sigma the equations are those of
+        F (y, s) = (r, sigma), s = 0, the conditions and the border: four blocks, of which F is the first.
+        """
+        base, n, hidden = self.base, self.u.size, self.hidden is not None
+        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), self.column, self.by_parameter])
+        below = np.vstack([self.rows, np.insert(border, n, 0.0) if hidden else border])
 
-@frozen(eq=False)
-class Eliminated:
-    """[[H_y, P], [G_y, G_p], [B_y, B_p]] of order N + m: P has the m columns of lam, the unknown beside, and mu.
+        def first(rhs: Array) -> Array:
+            return base.solve(rhs[:-1], float(rhs[-1]))
 
-    With F = [[H_y, b], [c', d]] factored, y and s follow from c'y + d s = sigma and p; s = 0, the conditions and the
-    border are m + 1 equations in sigma and p, and det = det F times the determinant of these.
+        W = np.column_stack([-first(np.append(np.zeros(n - 1), 1.0)), *(first(np.append(p, 0.0)) for p in columns.T)])
+        # Behind the unknowns y, the columns of s and sigma; above the conditions, the row s = 0.
+        rows = np.insert(np.insert(below, n - 1, np.zeros((2, 1)), axis=1), 0, np.arange(len(below[0]) + 2) == n - 1, 0)
+        whole = eliminated(first, W, rows)
 
-    `base`: F. `solved`, of shape (N + 1, m + 1): (y, s) that follow from sigma = 1, and from each of p. `rows`, of
-    shape (m, N + m): The conditions and the border. `small`: The m + 1 equations. `hidden`: Whether the unknown beside
-    follows from the others and is not asked for, nor the condition that it follows from.
-    """
+        def solve(r: Array, rho: float) -> Array:
+            z = whole.solve(np.concatenate([r[: n - 1], [0.0, 0.0], r[n - 1 :], np.zeros(int(hidden)), [rho]]))
+            z = np.concatenate([z[: n - 1], z[n + 1 :]])
+            # What is hidden follows from the others.
+            return np.delete(z, -2) if hidden else z
 
-    base: BorderedSystem
-    solved: Array
-    rows: Array
-    small: BorderedSystem
-    hidden: bool
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant."""
-        return self.base.sign * self.small.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + m,), or (N + m - 1,) without what is hidden."""
-        n, r = len(self.solved) - 1, np.append(r, 0.0) if self.hidden else r
-        x = self.base.solve(r[:n], 0.0)
-        left = np.append(r[n:], rho) - self.rows[:, :n] @ x[:n]
-        q = self.small.solve(np.append(-x[n], left[:-1]), float(left[-1]))
-        y = x[:n] + self.solved[:n] @ q
-        z = np.concatenate([y, q[1:]])
-        return np.delete(z, -2) if self.hidden else z
-
-
-def eliminated(base: BorderedSystem, columns: Array, rows: Array, hidden: bool = False) -> Eliminated:
-    """Eliminate y.
-
-    `columns` of shape (N, m). `rows` of shape (m, N + m). `hidden`: As of `Eliminated`. Raises `SingularError` if the
-    whole is singular.
-    """
-    n = len(columns)
-    first = base.solve(np.zeros(n), 1.0)
-    solved = np.column_stack([first, *(-base.solve(column, 0.0) for column in columns.T)])
-    below = rows[:, :n] @ solved[:n]
-    below[:, 1:] += rows[:, n:]
-    matrix = np.vstack([solved[n], below])
-    if not np.isfinite(matrix).all():
-        raise SingularError("the bordered solution is not finite")
-    return Eliminated(base, solved, rows, factor_bordered(matrix[:-1, :-1], matrix[:-1, -1], matrix[-1]), hidden)
+        return Solver(solve, lambda: base.sign * whole.sign)

@@ -1,122 +1,16 @@
-"""What a condition along a curve is made of: its values and gradients at a point, and factorisations with H_y in them.
-
-Vectors that have units are scaled by those of the start.
-"""
+"""Factorisations with H_y in them along a curve; vectors that have units are scaled by those of the start."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
-from continuation.events.singularity import row_sizes
-from continuation.linear import BorderedSystem
-from continuation.linear.nullspace import LONG, REFRESHED, Factors, null_vectors
-
-
-@frozen(eq=False, slots=False)
-class Local:
-    """A condition at a point; what a residual does not need is worked out when it is asked for.
-
-    `values` of shape (k,). `gradients`: Makes `rows`. `factored`: Makes `base`: [[H_y, b], [c', d]] for some border,
-    factored. `column`, of shape (N, k - 1): Derivative of the equations H = 0 by the unknown beside. `hidden`: The
-    unknown beside where it is none, but a number that is added to H along the column: the last of the rows is how it
-    follows from the others. `signs`: Numbers whose signs tell degenerate points, from the rows.
-    """
-
-    values: Array
-    gradients: Callable[[], Array]
-    factored: Callable[[], BorderedSystem]
-    column: Array
-    hidden: float | None = None
-    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
-
-    @cached_property
-    def rows(self) -> Array:
-        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
-        return self.gradients()
-
-    @cached_property
-    def base(self) -> BorderedSystem:
-        """The factorisation."""
-        return self.factored()
-
-    def sign(self, name: str) -> float:
-        """One of the signs."""
-        return self.signs[name](self.rows)
-
-
-class Condition(Protocol):
-    """What holds along the curve: at a point (u, extra, mu)."""
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """The name of the unknown beside (y, lam), if there is one."""
-        ...
-
-    def at(self, u: Array, beside: float, mu: float) -> Local:
-        """The condition at a point."""
-        ...
-
-
-@frozen(eq=False, slots=False)
-class Scaled:
-    """H_y in units of the start: columns multiplied by extents, rows divided by what they are made of."""
-
-    calculus: Calculus
-    rows: Array
-
-    @classmethod
-    def at_start(cls, calculus: Calculus) -> Scaled:
-        """Measured where the calculus was decided."""
-        u0 = calculus.u0
-        sizes = row_sizes(calculus.evaluator(float(u0[-1])), calculus.extent, (u0[:-1],))
-        return cls(calculus, sizes)
-
-    @property
-    def extent(self) -> Array:
-        """Of y, shape (N,)."""
-        return self.calculus.extent[:-1]
-
-    def times(self, matrix: Matrix) -> Matrix:
-        """The scaled matrix."""
-        if sp.issparse(matrix):
-            return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(self.extent))
-        return matrix * self.extent / self.rows[:, None]
-
-    def first(self, matrix: Matrix) -> tuple[Array, Array]:
-        """Borders for a matrix: its null vectors, about, by inverse iteration from vectors in general position."""
-        n = self.rows.size
-        b, c = generic_vector(n), generic_vector(2 * n)[n:]
-        for _ in range(2):
-            near = null_vectors(matrix, b / np.linalg.norm(b), c / np.linalg.norm(c))
-            b, c = near.left, near.right
-        return b / np.linalg.norm(b), c / np.linalg.norm(c)
-
-
-@frozen(eq=False)
-class ScaledBase:
-    """The factors of a scaled matrix, as those of the matrix."""
-
-    factors: Factors
-    scaled: Scaled
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant: scaling is by positive numbers."""
-        return self.factors.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """(x, s), shape (N + 1,)."""
-        x = self.factors.solve(np.append(r / self.scaled.rows, rho))
-        x[:-1] *= self.scaled.extent
-        return x
+from continuation.linear.nullspace import LONG, REFRESHED
 
 
 @frozen(eq=False)
@@ -150,5 +44,4 @@ class Tangential:
 
 def last_column(full: Matrix) -> Array:
     """H_lam of [H_y, H_lam], dense."""
-    column: Array = full[:, [-1]].toarray().ravel() if sp.issparse(full) else full[:, -1]
-    return column
+    return np.asarray(full[:, [-1]].toarray().ravel() if sp.issparse(full) else full[:, -1])

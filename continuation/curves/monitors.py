@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,79 +12,62 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.curves.calculus import Calculus
-from continuation.curves.local import Local, Scaled, Tangential, last_column
+from continuation.curves.here import Here
+from continuation.curves.local import Tangential, last_column
 from continuation.evaluation.products import by_differences
 from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
-from continuation.linear.entries import extended
-from continuation.linear.nullspace import factor
+from continuation.linear.nullspace import Bordered
 
 
 @frozen(eq=False)
 class Vanishing:
-    """A function of (y, lam), and of mu, vanishes: a target value, a switch, a monitor of the caller's.
+    """A function vanishes: a target value, a switch, a monitor of the caller's.
 
-    `function`: Of (y, lam, mu) as one vector, or jet. `gradient`: Of the vector.
+    Where it looks at the tangent t, as where an unknown turns, the tangent's derivative comes from M dt = -H''[t, .],
+    M = [H_y, H_lam] with a border, by one solve with M'.
+
+    `function`: Of (y, lam, mu) as one vector, or jet; or of (y, lam) and the tangent, if it is `along` that.
+    `gradient`: Of the vector.
     """
 
+    calculus: Calculus
     tangential: Tangential
     function: Callable[[Any], Any]
     gradient: Callable[[Array], Array]
+    along: bool
     beside: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> Vanishing:
+    def at_start(cls, calculus: Calculus, function: Callable[[Any], Any], along: bool) -> Vanishing:
         """With a gradient that is right at the start."""
-        return cls(Tangential.at_start(calculus), function, gradient_of(function, calculus.u0))
-
-    def at(self, u: Array, beside: float, mu: float) -> Local:
-        """The condition at a point."""
-        U = np.append(u, mu)
-        values, empty = np.array([float(self.function(U))]), np.empty((u.size - 1, 0))
-        return Local(values, lambda: self.gradient(U)[None, :], lambda: self.tangential.factored(u, mu)[0], empty)
-
-
-@frozen(eq=False)
-class AlongTangent:
-    """A function of (y, lam) and of the tangent there vanishes: where an unknown turns, say.
-
-    The tangent's derivative comes from M dt = -H''[t, .], M = [H_y, H_lam] with a border, by one solve with M'.
-
-    `function`: Of u and v as one vector. `gradient`: Of the vector.
-    """
-
-    scaled: Scaled
-    tangential: Tangential
-    function: Callable[[Array], float]
-    gradient: Callable[[Array], Array]
-    beside: ClassVar[tuple[str, ...]] = ()
-
-    @classmethod
-    def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> AlongTangent:
-        """With a gradient that is right at the start."""
-        tangential, u, mu = Tangential.at_start(calculus), calculus.u0[:-1], float(calculus.u0[-1])
-        gradient = gradient_of(function, np.append(u, tangential.factored(u, mu)[1]))
-        return cls(Scaled.at_start(calculus), tangential, function, gradient)
+        tangential, x = Tangential.at_start(calculus), calculus.u0
+        if along:
+            x = np.append(x[:-1], tangential.factored(x[:-1], float(x[-1]))[1])
+        return cls(calculus, tangential, function, gradient_of(function, x), along)
 
     def null_vector(self, u: Array) -> Array:
         """The tangent of the member's path at a point of the curve, behind which is mu; in the extents of the start."""
-        return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.scaled.calculus.extent
+        return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.calculus.extent
 
-    def at(self, u: Array, beside: float, mu: float) -> Local:
+    def at(self, u: Array, beside: float, mu: float) -> Here:
         """The condition at a point."""
-        calculus, extent, rows = self.scaled.calculus, self.scaled.calculus.extent, self.scaled.rows
-        system, t = self.tangential.factored(u, mu)
+        calculus, extent = self.calculus, self.calculus.extent
+        kernel = cache(lambda: self.tangential.factored(u, mu))
+        x = np.append(u, kernel()[1] if self.along else mu)
 
         def gradients() -> Array:
-            by_u, by_t = np.split(self.gradient(np.append(u, t)), 2)
-            full, border = full_derivative(calculus.evaluator(mu), u), t / extent
+            if not self.along:
+                return self.gradient(x)[None, :]
+            by_u, by_t = np.split(self.gradient(x), 2)
+            full, t, rows = full_derivative(calculus.evaluator(mu), u), kernel()[1], calculus.rows
             H_lam = extent[-1] * last_column(full) / rows
-            M = extended(self.scaled.times(full[:, :-1]), H_lam[:, None], border[None])
-            left = factor(M).solve(extent * by_t, adjoint=True)[:-1] / rows
+            M = Bordered.of(calculus.scaled(full[:, :-1]), H_lam[:, None], (t / extent)[None])
+            left = M.solve(extent * by_t, adjoint=True)[:-1] / rows
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 
-        values = np.array([self.function(np.append(u, t))])
-        return Local(values, gradients, lambda: system, np.empty((rows.size, 0)))
+        values = np.array([float(self.function(x))])
+        return Here(calculus, u, mu, values, gradients, lambda: kernel()[0], np.empty((u.size - 1, 0)))
 
 
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:

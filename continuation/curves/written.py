@@ -19,7 +19,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.curves.conditions import HopfCondition
 from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
@@ -48,12 +47,12 @@ class WrittenOut:
         Of all c of length one, that of a Hopf curve is the one which is nearest to the null vectors of all points.
         """
         vectors, c = np.array([condition.null_vector(u) for u in points]), None
-        if isinstance(condition, HopfCondition):
+        if condition.beside:
             c = np.linalg.svd(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))[2][0]
             # Known up to a phase, by which its largest entry becomes real.
             largest = c[np.argmax(np.abs(c))]
             c = np.round(c * (largest.conj() / abs(largest)), DECIMALS)
-        extent = condition.scaled.calculus.extent
+        extent = condition.calculus.extent
         beside, far = np.abs(points[:, extent.size : -1]).max(axis=0), float(np.ptp(points[:, -1]))
         count = vectors.shape[1] * (1 if c is None else 2)
         sizes = np.concatenate([np.ones(count), extent, np.where(beside > 0.0, beside, 1.0)])
@@ -82,7 +81,7 @@ class WrittenOut:
 
         `y`: The vector, and the unknowns of the curve. `lam`: The second parameter, mu.
         """
-        calculus = self.condition.scaled.calculus
+        calculus = self.condition.calculus
         extent, mu = calculus.extent, np.stack([lam])
 
         def along(U: Any, v: Any) -> Any:

@@ -13,6 +13,8 @@ from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
+from continuation.linear.elimination import eliminated
+from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
@@ -74,8 +76,8 @@ class Deflated:
 
     def start(self) -> tuple[Array, float]:
         """That of the homotopy."""
-        y, lam = self.homotopy.start()
-        return np.atleast_1d(np.asarray(y, dtype=float)), float(lam)
+        u = self._evaluator.start()
+        return u[:-1], float(u[-1])
 
     def factor(self, y: Array) -> tuple[float, Array]:
         """M, and the gradient of log M, at a point.
@@ -84,18 +86,15 @@ class Deflated:
         ----------
         y : ndarray, shape (N,)
         """
-        value, slope = 1.0, np.zeros_like(y)
         scale = np.ones_like(y) if self.scale is None else np.asarray(self.scale, dtype=float)
-        for other in self.known:
-            way = (y - other) / scale
-            distance = float(np.linalg.norm(way))
-            if distance == 0.0:
-                # There is no value at a known solution: as at the edge of a domain.
-                return float("inf"), slope
-            one = distance**-self.power
-            value *= one + self.shift
-            slope = slope - self.power * one / (one + self.shift) / distance**2 * way / scale
-        return value, slope
+        ways = (y - np.reshape(self.known, (-1, y.size))) / scale
+        distances = np.linalg.norm(ways, axis=1)
+        if not distances.all():
+            # There is no value at a known solution: as at the edge of a domain.
+            return float("inf"), np.zeros_like(y)
+        ones = distances**-self.power
+        shares = ones / (ones + self.shift) / distances**2
+        return float(np.prod(ones + self.shift)), -self.power * (shares @ ways) / scale
 
     def residual(self, y: Array, lam: float) -> Array:
         """M(y) H(y, lam); infinite at a known solution."""
@@ -116,8 +115,7 @@ class Deflated:
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
-        image: Array = value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1]))
-        return image
+        return np.asarray(value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1])))
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison).
@@ -128,33 +126,17 @@ class Deflated:
         H_y, H_lam = self._evaluator.derivative(y, lam)
         system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
         turned = system.solve(np.asarray(self.homotopy.residual(y, lam), dtype=float), 0.0)
-        deflated = DeflatedSystem(system, value, slope, turned)
-        return deflated if abs(deflated.pivot) < CANCELS else factor_bordered(*self.jacobian(y, lam), border)
+        # With q = g'v the change H q is a column more.
+        changed = eliminated(
+            lambda rhs: system.solve(rhs[:-1], rhs[-1]), turned[:, None], np.append(slope, [0.0, -1.0])[None]
+        )
+        if not abs(changed.schur[0, 0]) < CANCELS:
+            return factor_bordered(*self.jacobian(y, lam), border)
 
+        def solve(r: Array, rho: float) -> Array:
+            return changed.solve(np.concatenate([r / value, [rho, 0.0]]))[:-1]
 
-@frozen(eq=False)
-class DeflatedSystem:
-    """[[M (H_y + H g'), M H_lam], [border]], by the factors of [[H_y, H_lam], [border]]."""
-
-    system: BorderedSystem
-    value: float
-    slope: Array
-    turned: Array
-
-    @property
-    def pivot(self) -> float:
-        """By what the change of rank one divides."""
-        return 1.0 + float(self.slope @ self.turned[:-1])
-
-    @property
-    def sign(self) -> int:
-        """M is positive: that of the homotopy's own matrix, times that of the change."""
-        return self.system.sign * (1 if self.pivot > 0.0 else -1)
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The bordered solve."""
-        z = self.system.solve(r / self.value, rho)
-        return z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
+        return Solver(solve, lambda: -system.sign * changed.sign)
 
 
 def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:

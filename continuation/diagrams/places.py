@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect, insort
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -10,12 +10,10 @@ from attrs import define, field
 
 from continuation.arrays import Array, generic_vector
 from continuation.metric import norm
+from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
 """How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
-
-PRODUCT_ROUNDING = 1e-12
-"""Of the sum of a product of vectors, far more than its rounding."""
 
 Item = TypeVar("Item")
 
@@ -29,29 +27,28 @@ class PointIndex(Generic[Item]):
     bisection and a look at one or two.
     """
 
-    _axis: Array | None = None
+    _axis: Array = field(factory=lambda: np.empty(0))
     _reach: float = 0.0
-    _numbers: list[float] = field(factory=list)
-    _order: list[int] = field(factory=list)
-    _items: list[tuple[Array, Array, Item]] = field(factory=list)
+    _sorted: list[tuple[float, int, Array, Array, Item]] = field(factory=list)
 
     def add(self, u: Array, weights: Array, item: Item) -> None:
         """Put an item at a point."""
-        if self._axis is None:
+        if not self._sorted:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
         self._reach = max(self._reach, SAME_PLACE * float(np.linalg.norm(self._axis / np.sqrt(weights))))
-        number = float(self._axis @ u)
-        at = bisect_right(self._numbers, number)
-        self._numbers.insert(at, number)
-        self._order.insert(at, len(self._items))
-        self._items.append((u, weights, item))
+        insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
 
     def near(self, u: Array) -> list[Item]:
         """The items within `SAME_PLACE` of a point, each in its metric, in the order in which they were added."""
-        if self._axis is None:
+        if not self._sorted:
             return []
         number = float(self._axis @ u)
-        reach = self._reach + PRODUCT_ROUNDING * float(np.abs(self._axis) @ np.abs(u))
-        some = slice(bisect_left(self._numbers, number - reach), bisect_right(self._numbers, number + reach))
-        close: list[Any] = [self._items[k] for k in sorted(self._order[some])]
-        return [item for place, weights, item in close if norm(weights, u - place) <= SAME_PLACE]
+        reach = self._reach + accumulated(u.size) * float(np.abs(self._axis) @ np.abs(u))
+        first, last = (bisect(self._sorted, end, key=_number) for end in (number - reach, number + reach))
+        close = sorted(self._sorted[first:last], key=lambda found: found[1])
+        return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SAME_PLACE]
+
+
+def _number(entry: tuple[Any, ...]) -> float:
+    number: float = entry[0]
+    return number

@@ -41,32 +41,16 @@ come back and waits is bounded."""
 
 @frozen(eq=False)
 class Task:
-    """A path to be traced: from a start, or from a junction along a ray."""
+    """A path to be traced.
+
+    `weights`, `used`, `ray`: Where it leaves a junction, the metric there, the rays that are followed, and its own.
+    """
 
     start: Any
     direction: int = 0
-    junction: Junction | None = None
+    weights: Array | None = None
+    used: set[int] = field(factory=set)
     ray: int = -1
-
-    @property
-    def metric(self) -> Array | None:
-        """Where the path leaves a junction, the metric there."""
-        return None if self.junction is None else self.junction.weights
-
-    @property
-    def place(self) -> int:
-        """The number of the junction."""
-        return -1 if self.junction is None else self.junction.number
-
-    @property
-    def after(self) -> int:
-        """The generation before that of the path."""
-        return -1 if self.junction is None else self.junction.generation
-
-    @property
-    def idle(self) -> bool:
-        """Whether somebody has come along the ray meanwhile."""
-        return self.junction is not None and self.ray in self.junction.used
 
 
 def _path(homotopy: Any, start: Any, direction: int, options: Options, before: Array | None) -> Path:
@@ -148,10 +132,10 @@ class BranchSearch:
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
         if not (start is None and self.branches) and not self._known(u):
-            both = (path for _, path in self._traced([Task(start, 1), Task(start, -1)]) if path is not None)
-            whole = ahead = next(both)
+            both = self._traced([Task(start, 1), Task(start, -1)])
+            whole = ahead = next(both) or Path()
             if ahead.status is not Status.CLOSED:
-                behind = next(both)
+                behind = next(both) or Path()
                 self._meet(behind)
                 whole = _through(behind, ahead)
             self._meet(ahead)
@@ -182,30 +166,31 @@ class BranchSearch:
                 found.append(guess)
         return found
 
-    def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path | None]]:
-        """The paths of tasks in their order; none of those that have become idle when it is their turn."""
+    def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
+        """The paths of tasks in their order; None where somebody has come along the ray meanwhile."""
         ready: deque[Future[Path] | None] = deque()
         following = iter(tasks if self.executor is not None else ())
         try:
             for task in tasks:
                 for other in islice(following, PATHS_AHEAD - len(ready)):
                     assert self.executor is not None
-                    ready.append(None if other.idle else self.executor.submit(_path, *self._asked(other)))
+                    idle = other.ray in other.used
+                    ready.append(None if idle else self.executor.submit(_path, *self._asked(other)))
                 future, path = ready.popleft() if ready else None, None
                 if future is not None:
                     path = future.result()
-                elif not task.idle:
+                elif task.ray not in task.used:
                     path = _path(*self._asked(task))
                 if path is not None:
                     self.counts = self.counts + path.counts
-                yield task, None if task.idle else path
+                yield None if task.ray in task.used else path
         finally:
             for future in ready:
                 if future is not None:
                     future.cancel()
 
     def _asked(self, task: Task) -> tuple[Any, ...]:
-        return self.homotopy, task.start, task.direction, self.options, task.metric
+        return self.homotopy, task.start, task.direction, self.options, task.weights
 
     def _meet(self, path: Path) -> None:
         """The junctions on a path: new ones wait, of old ones rays are taken."""
@@ -247,32 +232,31 @@ class BranchSearch:
         """Generation after generation, until no ray is open."""
         while True:
             labelled = sorted((j for j in self.junctions if j.label), key=lambda j: j.number)
-            tasks = [Task(j.starts[ray - 2], 0, j, ray) for j in labelled for ray in j.open()]
-            tasks = [task for task in tasks if self._inside(task.start[0])]
-            if not tasks:
+            rays = [(j, ray) for j in labelled for ray in j.open() if self._inside(j.starts[ray - 2][0])]
+            if not rays:
                 return
-            before = min(task.after for task in tasks)
+            before = min(j.generation for j, _ in rays)
             if self.generations is not None and before >= self.generations:
-                self.missing.append(f"{len(tasks)} rays beyond generation {self.generations} were not followed")
+                self.missing.append(f"{len(rays)} rays beyond generation {self.generations} were not followed")
                 return
             if len(self.branches) >= self.most:
-                self.missing.append(f"the limit of {self.most} branches is reached, {len(tasks)} rays are open")
+                self.missing.append(f"the limit of {self.most} branches is reached, {len(rays)} rays are open")
                 return
-            self._follow([task for task in tasks if task.after == before], before + 1)
+            self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
-    def _follow(self, tasks: list[Task], generation: int) -> None:
+    def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
         """One generation: its paths, each accepted before the next is looked at, and the branches that they make."""
         paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
-        waiting = {(task.place, task.ray) for task in tasks}
+        waiting = {(j.number, ray) for j, ray in rays}
+        tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]
         try:
-            for task, path in self._traced(tasks):
-                assert task.junction is not None
-                waiting.remove((task.place, task.ray))
+            for (junction, ray), path in zip(rays, self._traced(tasks)):
+                waiting.remove((junction.number, ray))
                 if path is not None:
-                    task.junction.used.add(task.ray)
+                    junction.used.add(ray)
                     self._meet(path)
                     if len(path):
-                        paths[task.place, task.ray] = task.junction, path
+                        paths[junction.number, ray] = junction, path
                 self._put_together(paths, waiting, generation)
         except KeyboardInterrupt:
             # What has come one way is shown; it is traced again when the diagram goes on.

@@ -183,9 +183,7 @@ def _first(
     raise EvaluationError("switches vanish without end on the arc")
 
 
-def _zero(
-    solver: PathSolver, switch: _Switch, arc: Arc, end: Linearization, values: Array
-) -> Linearization | None:
+def _zero(solver: PathSolver, switch: _Switch, arc: Arc, end: Linearization, values: Array) -> Linearization | None:
     """The first zero of one switch on an arc up to a point; `values` are those of the grid on the whole of it."""
     begin, ga = arc.a, float(values[0])
     if ga <= 0.0:

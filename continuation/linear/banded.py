@@ -1,4 +1,4 @@
-"""Banded H_y: LU within the band, bordered by elimination, in O(N)."""
+"""Banded H_y: LU within the band, in O(N)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from attrs import field, frozen
-from numpy.typing import NDArray
 from scipy.linalg.blas import dgbmv
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
@@ -15,9 +14,7 @@ from continuation.arguments.checks import integer
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
-from continuation.linear.refine import BorderedMatrix, eliminate
-from continuation.linear.sparse import factor_whole
-from continuation.linear.system import BorderedSystem
+from continuation.linear.system import Solver
 
 
 def _diagonals(ab: Any) -> Array:
@@ -58,61 +55,29 @@ class Banded:
 
     def toarray(self) -> Array:
         """A dense copy, shape (N, N)."""
-        dense: Array = self.tosparse().toarray()
-        return dense
+        return np.asarray(self.tosparse().toarray())
+
+    def __abs__(self) -> Banded:
+        return Banded(np.abs(self.ab), self.lower, self.upper)
 
     def __matmul__(self, other: Array) -> Array:
         n = self.ab.shape[1]
         if len(other) != n:
             raise ValueError(f"the operand of Banded @ has shape {other.shape}; expected ({n},) or ({n}, k)")
         if other.ndim == 1 and len(self.ab) <= n:
-            image: Array = dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other)
-            return image
-        product: Array = self.tosparse() @ other
-        return product
+            return np.asarray(dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other))
+        return np.asarray(self.tosparse() @ other)
 
 
-@frozen(eq=False)
-class BandedLU:
-    """LU factors of a banded matrix, with partial pivoting."""
-
-    lu: Array
-    pivots: NDArray[np.int32]
-    lower: int
-    upper: int
-
-    @property
-    def sign(self) -> int:
-        """Sign of det A."""
-        return lu_sign(self.pivots, self.lu[self.lower + self.upper])
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = dgbtrs(self.lu, self.lower, self.upper, rhs, self.pivots)[0].ravel()
-        return x
-
-
-def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
-    """Factor H_y within its band and border it; at a fold factor the whole matrix as a sparse one.
-
-    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
-    """
-    n, lower, upper = len(column), matrix.lower, matrix.upper
-    magnitudes = Banded(np.abs(matrix.ab), lower, upper)
-    bordered = BorderedMatrix(matrix, column, row, magnitudes @ np.ones(n))
-
-    def whole() -> BorderedSystem:
-        return factor_whole(matrix.tosparse(), column, row)
-
-    factor = factor_band(matrix)
-    return whole() if factor is None else eliminate(bordered, factor, whole)
-
-
-def factor_band(matrix: Banded) -> BandedLU | None:
-    """LU factors of a banded matrix by itself; None where a pivot is exactly zero."""
+def factor_band(matrix: Banded) -> Solver | None:
+    """LU factors of a banded matrix by itself, with partial pivoting; None where a pivot is exactly zero."""
     lower, upper = matrix.lower, matrix.upper
     # Row exchanges fill as many diagonals more as there are below the main one.
     room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")
     room[lower:] = matrix.ab
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
-    return BandedLU(lu, pivots, lower, upper) if info == 0 else None
+    if info > 0:
+        return None
+    return Solver(
+        lambda rhs: dgbtrs(lu, lower, upper, rhs, pivots)[0].ravel(), lambda: lu_sign(pivots, lu[lower + upper])
+    )

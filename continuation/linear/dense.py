@@ -13,6 +13,7 @@ from scipy.linalg.blas import dasum, dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
 from continuation.arrays import Array
+from continuation.contraction import HALVING
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
@@ -32,30 +33,9 @@ def _rows(n: int) -> NDArray[np.int32]:
     return np.arange(n, dtype=np.int32)
 
 
-@frozen(eq=False)
-class LU:
-    """LU factors of a dense matrix, with partial pivoting."""
-
-    lu: Array
-    pivots: NDArray[np.int32]
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant."""
-        return lu_sign(self.pivots, self.lu.diagonal())
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = dgetrs(self.lu, self.pivots, rhs)[0].ravel()
-        return x
-
-
 HIDDEN = 1e-10
 """An entry smaller than this part of the largest, once rows and columns are scaled, may be all that matters to its row,
 where units differ more than scaling by the largest can mend: six digits of it are left by a factorisation."""
-
-CORRECTIONS = 8
-"""At most so many, until each row holds to round-off of its own terms."""
 
 
 @frozen(eq=False)
@@ -68,7 +48,8 @@ class Dense:
 
     finite: ClassVar[bool] = True
     """What it solves is finite, or raises."""
-    factor: LU
+    lu: Array
+    pivots: NDArray[np.int32]
     scale: Array | None
     """Powers of two, (1, N + 1), by which the rows were multiplied; None for ones."""
     columns: Array | None
@@ -79,14 +60,13 @@ class Dense:
     @property
     def sign(self) -> int:
         """Sign of the determinant."""
-        return self.factor.sign
+        return lu_sign(self.pivots, self.lu.diagonal())
 
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + 1,).
 
         Raises `SingularError` if z overflows, or the right-hand side is not finite.
         """
-        factor = self.factor
         z = np.empty(r.size + 1)
         z[:-1] = r
         z[-1] = rho
@@ -96,7 +76,7 @@ class Dense:
             # By BLAS, which does not warn of overflow.
             z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, 1)
         if self.whole is None:
-            dgetrs(factor.lu, factor.pivots, z, 0, 1)
+            dgetrs(self.lu, self.pivots, z, 0, 1)
         else:
             z = self._corrected(*self.whole, z)
         if self.columns is not None:
@@ -107,18 +87,18 @@ class Dense:
 
     def _corrected(self, whole: Array, sizes: Array, right: Array) -> Array:
         """The scaled solution; iterative refinement makes each row hold (Skeel, Math. Comp. 35, 1980)."""
-        z = found = self.factor.solve(right)
-        before = np.inf
+        z: Array = dgetrs(self.lu, self.pivots, right)[0]
+        found = z
+        left = before = np.inf
         with np.errstate(all="ignore"):
-            for _ in range(CORRECTIONS):
+            # Each row is to hold to round-off of its terms; a correction that does not halve what is left is the last.
+            while left > BACKWARD_ERROR:
                 gap, terms = right - whole @ z, sizes @ np.abs(z) + np.abs(right)
                 left = float((np.abs(gap) / np.where(terms > 0.0, terms, 1.0)).max())
-                if not left < before:
+                if not left <= HALVING * before:
                     break
                 found, before = z, left
-                if left <= BACKWARD_ERROR:
-                    break
-                z = z + self.factor.solve(gap)
+                z = z + dgetrs(self.lu, self.pivots, gap)[0]
         return found
 
 
@@ -151,9 +131,24 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     lu, pivots, info = dgetrf(whole, 1)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
-    return Dense(
-        LU(lu, pivots), None if scale is None else scale[None], None if columns is None else columns[None], kept
-    )
+    return Dense(lu, pivots, None if scale is None else scale[None], None if columns is None else columns[None], kept)
+
+
+@frozen(eq=False)
+class LU:
+    """LU factors of a dense matrix, with partial pivoting."""
+
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return lu_sign(self.pivots, self.lu.diagonal())
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        return np.asarray(dgetrs(self.lu, self.pivots, rhs)[0])
 
 
 def factor_lu(matrix: Array) -> LU | None:

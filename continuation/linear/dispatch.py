@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 from scipy.sparse import issparse
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.arrays import Array, Matrix
-from continuation.linear.banded import Banded, factor_banded
+from continuation.linear.banded import Banded, factor_band
 from continuation.linear.dense import factor_dense
+from continuation.linear.elimination import eliminate
 from continuation.linear.entries import real, require_real
 from continuation.linear.operator import Operator, factor_operator
-from continuation.linear.sparse import factor_sparse
+from continuation.linear.sparse import canonical, factor_square, factor_whole
 from continuation.linear.symmetric import Symmetric, factor_symmetric
 from continuation.linear.system import BorderedSystem
 
@@ -41,7 +39,13 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     ValueError
         If the shapes do not fit.
     """
-    factor = _method(H_y)
+    if isinstance(H_y, LinearOperator):
+        H_y = Operator(H_y)
+    if not (isinstance(H_y, np.ndarray | Symmetric | Banded | Operator) or issparse(H_y)):
+        raise TypeError(
+            f"H_y is of type {type(H_y).__name__}; expected ndarray, Symmetric, Banded, a scipy sparse array, "
+            "LinearOperator or Operator"
+        )
     column, row = real("H_lam", H_lam), real("border", border)
     n = column.size
     if n < 1 or column.shape != (n,) or H_y.shape != (n, n) or row.shape != (n + 1,):
@@ -49,25 +53,14 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
             f"H_y, H_lam, border have shapes {H_y.shape}, {column.shape}, {row.shape}; "
             "expected (N, N), (N,), (N + 1,) with N >= 1"
         )
-    return factor(H_y, column, row)
-
-
-def _method(matrix: Matrix) -> Callable[[Any, Array, Array], BorderedSystem]:
-    if isinstance(matrix, np.ndarray):
-        require_real("H_y", matrix.dtype)
-        return factor_dense
-    if isinstance(matrix, Symmetric):
-        return factor_symmetric
-    if isinstance(matrix, Banded):
-        return factor_banded
-    if isinstance(matrix, Operator):
-        return factor_operator
-    if isinstance(matrix, LinearOperator):
-        return lambda operator, column, row: factor_operator(Operator(operator), column, row)
-    if issparse(matrix):
-        require_real("H_y", matrix.dtype)
-        return factor_sparse
-    raise TypeError(
-        f"H_y is of type {type(matrix).__name__}; expected ndarray, Symmetric, Banded, a scipy sparse array, "
-        "LinearOperator or Operator"
-    )
+    if isinstance(H_y, Operator):
+        return factor_operator(H_y, column, row)
+    if isinstance(H_y, Symmetric):
+        return eliminate(H_y, column, row, factor_symmetric, lambda: factor_dense(H_y.matrix, column, row))
+    if isinstance(H_y, Banded):
+        return eliminate(H_y, column, row, factor_band, lambda: factor_whole(H_y.tosparse(), column, row))
+    require_real("H_y", H_y.dtype)
+    if isinstance(H_y, np.ndarray):
+        return factor_dense(H_y, column, row)
+    matrix = canonical(H_y)
+    return eliminate(matrix, column, row, factor_square, lambda: factor_whole(matrix, column, row))

@@ -1,56 +1,22 @@
-"""One door to sparse factorisations: SuperLU, and what else is installed, chosen by a look at the matrix."""
+"""One door to sparse factorisations: SuperLU, and CHOLMOD where it is installed, chosen by a look at the matrix."""
 
 from __future__ import annotations
 
 from importlib.util import find_spec
-from typing import Protocol
 
-from attrs import define, field
+import numpy as np
+from attrs import define, evolve, field
 
-from continuation.arrays import Matrix
-from continuation.linear.cholmod import CholmodMethod
+from continuation.arrays import Array, Matrix
 from continuation.linear.look import Look
-from continuation.linear.multigrid import MultigridMethod
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
-
-class SparseMethod(Protocol):
-    """A way to factor sparse matrices."""
-
-    @property
-    def name(self) -> str:
-        """By which it is asked for."""
-        ...
-
-    @property
-    def needs(self) -> str:
-        """The package that has to be installed."""
-        ...
-
-    @property
-    def signed(self) -> bool:
-        """Whether its factors tell the sign of the determinant."""
-        ...
-
-    @property
-    def least(self) -> float:
-        """The order from which on it is chosen by itself."""
-        ...
-
-    def suits(self, look: Look) -> bool:
-        """Whether it may do for a matrix."""
-        ...
-
-    def factor(self, look: Look) -> SparseFactor | None:
-        """The factors; None where it cannot do it after all."""
-        ...
-
-
-EXTRAS: tuple[SparseMethod, ...] = (MultigridMethod(), CholmodMethod())
-"""What may be installed besides, in the order in which it is chosen."""
-
-METHODS = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))
+METHODS = ("auto", SuperLUMethod.name, "cholmod")
 """What may be asked for."""
+
+CHOLMOD_FROM = 1000
+"""The order from which on "auto" means CHOLMOD: of five-point Laplacians it takes half of SuperLU's time from n = 2,000
+on, a third at 1e5; below 400 SuperLU is quicker."""
 
 
 def check_method(argument: str, name: object) -> str:
@@ -62,21 +28,9 @@ def check_method(argument: str, name: object) -> str:
     if not isinstance(name, str) or name not in METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
         raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")
-    for one in EXTRAS:
-        if one.name == name and not installed(one):
-            raise ImportError(f"{argument}={name!r} needs {one.needs}: pip install 'pseudoarclength[{name}]'")
+    if name == "cholmod" and find_spec("cvxopt") is None:
+        raise ImportError(f"{argument}={name!r} needs cvxopt: pip install 'pseudoarclength[{name}]'")
     return name
-
-
-def installed(method: SparseMethod) -> bool:
-    """Whether the package of a method is there; it is not imported."""
-    return find_spec(method.needs) is not None
-
-
-def negated(factor: SparseFactor, n: int) -> SparseFactor:
-    """Factors of -A, of order n, as those of A; det A = (-1)^n det(-A)."""
-    solve, sign = factor.solve, factor.tell_sign
-    return SparseFactor(factor.name, lambda rhs: -solve(rhs), factor.fill, lambda: -sign() if n % 2 else sign())
 
 
 @define(eq=False)
@@ -86,27 +40,21 @@ class Factoring:
     Attributes
     ----------
     method : str
-        "auto", or the name of what is tried first.
+        "auto", "superlu", or "cholmod" for what is definite.
     direct : SuperLUMethod
         What is left where nothing else suits.
-    signed : bool
-        Whether the sign of the determinant is needed.
-    extras : tuple of SparseMethod
-        In the order in which they are chosen.
     used : dict
         By name, how many matrices were factored, and the largest fill.
     """
 
     method: str = "auto"
     direct: SuperLUMethod = field(factory=SuperLUMethod)
-    signed: bool = False
-    extras: tuple[SparseMethod, ...] = EXTRAS
     used: dict[str, tuple[int, int]] = field(factory=dict, init=False)
 
     def factor(self, matrix: Matrix) -> SparseFactor | None:
         """Factors of a square matrix by itself; None where it is singular.
 
-        What a method turns out to be unfit for is left to the next one.
+        What turns out not to be definite is left to SuperLU.
 
         Parameters
         ----------
@@ -114,27 +62,13 @@ class Factoring:
             In canonical format.
         """
         look = Look(matrix)
-        factor = self._by_extras(look) or self.direct.factor(look)
+        wanted = look.n >= CHOLMOD_FROM and find_spec("cvxopt") is not None
+        definite = self.method == "cholmod" or (self.method == "auto" and wanted)
+        factor = (factor_definite(look) if definite else None) or self.direct.factor(look)
         if factor is not None:
             count, fill = self.used.get(factor.name, (0, 0))
             self.used[factor.name] = count + 1, max(fill, factor.fill)
         return factor
-
-    def _by_extras(self, look: Look) -> SparseFactor | None:
-        asked = [one for one in self.extras if self._asked(one, look.n)]
-        # A discretised Laplacian is negative definite.
-        negative = bool(asked) and bool((look.diagonal < 0.0).all())
-        positive = Look(-look.matrix) if negative else look
-        for one in asked:
-            factor = one.factor(positive) if one.suits(positive) else None
-            if factor is not None:
-                return negated(factor, look.n) if negative else factor
-        return None
-
-    def _asked(self, one: SparseMethod, n: int) -> bool:
-        if self.signed and not one.signed:
-            return False
-        return one.name == self.method if self.method != "auto" else n >= one.least and installed(one)
 
     def __str__(self) -> str:
         parts = []
@@ -142,3 +76,42 @@ class Factoring:
             held = f", at most {fill:.2g} numbers" if fill else ""
             parts.append(f"{count} by {name}{held}")
         return f"Sparse factorisations: {'; '.join(parts)}." if parts else ""
+
+
+def factor_definite(look: Look) -> SparseFactor | None:
+    """Factors of a matrix that is positive or negative definite; None where it is neither."""
+    # A discretised Laplacian is negative definite; det A = (-1)^n det(-A).
+    negative = bool((look.diagonal < 0.0).all())
+    look = Look(-look.matrix) if negative else look
+    factor = factor_cholmod(look.matrix) if look.definite_perhaps else None
+    if factor is None or not negative:
+        return factor
+    solve, sign = factor.solve, -1 if look.n % 2 else 1
+    return evolve(factor, solve=lambda rhs: -solve(rhs), tell_sign=lambda: sign)
+
+
+def factor_cholmod(matrix: Matrix) -> SparseFactor | None:
+    """Supernodal Cholesky factors, by way of cvxopt; None where a pivot is not positive.
+
+    Chen, Davis, Hager and Rajamanickam, "Algorithm 887: CHOLMOD", ACM Trans. Math. Softw. 35 (2008).
+    """
+    from cvxopt import cholmod, spmatrix
+    from cvxopt import matrix as column
+
+    entries = matrix.tocoo()
+    lower = entries.row >= entries.col
+    data, rows, columns = (np.ascontiguousarray(part[lower]) for part in (entries.data, entries.row, entries.col))
+    whole = spmatrix(data, rows.astype(np.int64), columns.astype(np.int64), matrix.shape)
+    factors = cholmod.symbolic(whole)
+    try:
+        cholmod.numeric(whole, factors)
+    except ArithmeticError:
+        return None
+
+    def solve(rhs: Array) -> Array:
+        x = column(rhs)
+        cholmod.solve(factors, x)
+        return np.array(x).ravel()
+
+    # How many numbers they are cvxopt does not say.
+    return SparseFactor("CHOLMOD", solve, 0, lambda: 1)

@@ -10,10 +10,6 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix
 from continuation.linear.refine import BACKWARD_ERROR
 
-POSITIVE_SHARE = 0.25
-"""Of the entries off the diagonal so many may be positive in a matrix of the diffusion kind: coarser problems that
-Galerkin's way makes of one have a few."""
-
 
 @frozen(eq=False, slots=False)
 class Look:
@@ -36,8 +32,7 @@ class Look:
     @cached_property
     def diagonal(self) -> Array:
         """The diagonal, shape (N,)."""
-        entries: Array = self.matrix.diagonal()
-        return entries
+        return np.asarray(self.matrix.diagonal())
 
     @cached_property
     def symmetric_pattern(self) -> bool:
@@ -59,20 +54,3 @@ class Look:
         root = np.sqrt(self.diagonal)
         size = root[self.matrix.indices] * np.repeat(root, np.diff(self.matrix.indptr))
         return bool((np.abs(here - across) <= BACKWARD_ERROR * size).all())
-
-    @cached_property
-    def diffusion(self) -> bool:
-        """Whether it is also, about, a Z-matrix: what multigrid by coefficients is made for."""
-        positive = np.count_nonzero(self.matrix.data > 0.0) - self.n
-        return self.definite_perhaps and positive <= POSITIVE_SHARE * (self.matrix.nnz - self.n)
-
-    @cached_property
-    def row_sums(self) -> Array:
-        """Of magnitudes, shape (N,)."""
-        sums: Array = abs(self.matrix) @ np.ones(self.n)
-        return sums
-
-    @cached_property
-    def dominant(self) -> bool:
-        """Whether its diagonal is positive and dominates the rows: with symmetry, no eigenvalue is negative."""
-        return bool((self.row_sums <= 2.0 * self.diagonal * (1.0 + BACKWARD_ERROR)).all())

@@ -1,4 +1,4 @@
-"""How far a square matrix is from losing a rank, and along which vectors: a bordered matrix, factored."""
+"""A matrix of any rank with a border, factored as a whole; how far one is from losing a rank, along which vectors."""
 
 from __future__ import annotations
 
@@ -31,44 +31,59 @@ so weak a pivot, half of the digits, one correction brings back."""
 
 
 @frozen(eq=False)
-class Factors:
-    """LU of a square matrix, dense or sparse, real or complex.
+class Bordered:
+    """[[A, P], [R, S]] with k rows of border, factored as a whole: dense or sparse, real or complex, A of any rank.
 
     Attributes
     ----------
     matrix : ndarray or sparse array
-        With its last row scaled, if it is sparse.
+        The whole, the border's rows scaled if it is sparse.
     lu : object
         Its factors.
-    last : float
-        What the last row was multiplied by.
+    scale : ndarray, shape (n + k, 1)
+        What the rows were multiplied by.
     """
 
     matrix: Matrix
     lu: Any
-    last: float = 1.0
+    scale: Array
+
+    @classmethod
+    def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
+        """Factor A, shape (n, m), with columns, shape (n, l), and rows, shape (k, m + l).
+
+        Raises `SingularError` where that is impossible.
+        """
+        sparse, scale = sp.issparse(matrix), np.ones((matrix.shape[0] + len(rows), 1))
+        if sparse:
+            largest = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
+            scale[matrix.shape[0] :, 0] = BORDER_SIZE * largest / np.abs(rows).max(axis=1)
+        whole = extended(matrix, columns, rows * scale[matrix.shape[0] :])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            try:
+                return cls(whole, splu(whole) if sparse else lu_factor(whole, check_finite=False), scale)
+            except (LinAlgWarning, RuntimeError, ValueError) as error:
+                raise SingularError(str(error)) from error
 
     def solve(self, rhs: Array, adjoint: bool = False) -> Array:
-        """The solution of A x = rhs, or of A* x = rhs."""
+        """The solution of M x = rhs, one column or several, or of M* x = rhs."""
+        columns = rhs.reshape(len(rhs), -1)
         if sp.issparse(self.matrix):
-            x = self._sparse(rhs, adjoint)
+            x = self._sparse(columns.astype(self.matrix.dtype), adjoint)
         else:
-            x = lu_solve(self.lu, rhs, trans=2 if adjoint else 0, check_finite=False)
+            x = lu_solve(self.lu, columns, trans=2 if adjoint else 0, check_finite=False)
         if not np.isfinite(x).all():
             raise SingularError("the bordered solution is not finite")
-        return x
+        return np.asarray(x.reshape(rhs.shape))
 
     def _sparse(self, rhs: Array, adjoint: bool) -> Array:
-        """With one correction, since a small last row is a weak pivot."""
-        rhs = rhs.astype(self.matrix.dtype)
-        if not adjoint:
-            rhs[-1] *= self.last
+        """With one correction, since small rows are weak pivots."""
         how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
+        rhs = rhs if adjoint else rhs * self.scale
         x: Array = self.lu.solve(rhs, how)
         x = x + self.lu.solve(rhs - matrix @ x, how)
-        if adjoint:
-            x[-1] *= self.last
-        return x
+        return x * self.scale if adjoint else x
 
     @property
     def sign(self) -> int:
@@ -79,31 +94,6 @@ class Factors:
         return lu_sign(pivots, lu.diagonal())
 
 
-def factor(matrix: Matrix) -> Factors:
-    """Factor a matrix whose last row is a border; SingularError where that is impossible.
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array, shape (n, n)
-    """
-    if sp.issparse(matrix):
-        rows = sp.csr_array(matrix)
-        end = rows.indptr[-2]
-        last = BORDER_SIZE * float(np.abs(rows.data[:end]).max()) / float(np.abs(rows.data[end:]).max())
-        rows.data[end:] *= last
-        columns = sp.csc_array(rows)
-        try:
-            return Factors(columns, splu(columns), last)
-        except RuntimeError as error:
-            raise SingularError(str(error)) from error
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", LinAlgWarning)
-        try:
-            return Factors(matrix, lu_factor(matrix, check_finite=False))
-        except (LinAlgWarning, ValueError) as error:
-            raise SingularError(str(error)) from error
-
-
 @frozen(eq=False)
 class NearlySingular:
     """The solution of [[A, b], [c*, 0]] (v, s) = (0, 1) and of the adjoint system, (w, s*) = (0, 1).
@@ -112,7 +102,7 @@ class NearlySingular:
     derivative is -w* A' v (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 4.1).
     """
 
-    factors: Factors
+    factors: Bordered
     border: Array
     right: Array
     left: Array
@@ -140,7 +130,7 @@ def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
     unit = np.zeros(len(b) + 1)
     unit[-1] = 1.0
     for made in range(1, REFRESHED + 1):
-        factors = factor(extended(matrix, b[:, None], np.append(c.conj(), 0.0)[None]))
+        factors = Bordered.of(matrix, b[:, None], np.append(c.conj(), 0.0)[None])
         right, left = factors.solve(unit.astype(b.dtype)), factors.solve(unit.astype(b.dtype), adjoint=True)
         found = NearlySingular(factors, b, right[:-1], left[:-1], right[-1], made)
         v, w = (float(np.linalg.norm(x)) for x in (found.right, found.left))

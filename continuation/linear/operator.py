@@ -10,11 +10,9 @@ from attrs.converters import optional
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.elimination import eliminated
 from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
-
-INNER_TOLERANCE = 1e-9
-"""Relative residual of one GMRES solve; with two refinements the result is at round-off."""
 
 LARGEST_RESIDUAL = 1e-4
 """Largest residual, relative to the right-hand side, of a solution; that of a condition number of 1e12."""
@@ -50,30 +48,28 @@ class Operator:
     @property
     def shape(self) -> tuple[int, int]:
         """(N, N)."""
-        n: int
-        m: int
         n, m = self.operator.shape
-        return (n, m)
+        return int(n), int(m)
 
     def toarray(self) -> Array:
         """A dense copy, shape (N, N), for N products."""
-        dense: Array = self.operator @ np.eye(self.shape[0])
-        return dense
+        return np.asarray(self.operator @ np.eye(self.shape[0]))
 
     def __matmul__(self, other: Array) -> Array:
-        product: Array = self.operator @ other
-        return product
+        return np.asarray(self.operator @ other)
 
 
 @frozen(eq=False)
 class Krylov:
-    """The bordered operator, solved by GMRES at each call."""
+    """The bordered operator, solved by GMRES at each call.
+
+    `bordered`: With its last row multiplied by `scale`, which brings it to the size of the others. `inverse`: The
+    bordered preconditioner, a LinearOperator of order N + 1.
+    """
 
     bordered: BorderedMatrix
-    row_scale: float
-    """Factor of the last row, which brings it to the size of the others."""
+    scale: float
     inverse: Matrix | None
-    """The bordered preconditioner, a LinearOperator of order N + 1."""
 
     @property
     def sign(self) -> int:
@@ -85,10 +81,10 @@ class Krylov:
 
         Raises `SingularError` if GMRES does not converge.
         """
-        rhs = join(r, rho)
+        rhs = join(r, self.scale * rho)
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
-            left = self._size(self.bordered.residual(z, rhs)) / (self._size(rhs) or 1.0)
+            left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
         # A z of size 1 / eps makes any residual round-off: that is how a singular operator answers.
         if not (accurate and left <= LARGEST_RESIDUAL):
             raise SingularError(
@@ -99,65 +95,33 @@ class Krylov:
 
     def approximate(self, r: Array, rho: float) -> Array:
         """The same to six digits: an iteration that measures its own residual gains them with each increment."""
-        return self._gmres(join(r, rho), TRUSTED)
+        return self._gmres(join(r, self.scale * rho))
 
-    def _size(self, rhs: Array) -> float:
-        return max(float(np.abs(rhs[:-1]).max()), self.row_scale * abs(float(rhs[-1])))
-
-    def _gmres(self, rhs: Array, tolerance: float = INNER_TOLERANCE) -> Array:
+    def _gmres(self, rhs: Array) -> Array:
+        if not rhs.any() or not np.isfinite(rhs).all():
+            return rhs
         order = len(rhs)
-        scaled = rhs.copy()
-        scaled[-1] *= self.row_scale
-        if not scaled.any() or not np.isfinite(scaled).all():
-            return scaled
-        z, _ = gmres(
-            LinearOperator((order, order), matvec=self._product, dtype=float),
-            scaled,
-            M=self.inverse,
-            rtol=tolerance,
-            restart=min(RESTART, order),
-            maxiter=CYCLES,
-        )
-        result: Array = z
-        return result
-
-    def _product(self, z: Array) -> Array:
-        bordered = self.bordered
-        return join(bordered.matrix @ z[:-1] + bordered.column * z[-1], self.row_scale * float(bordered.row @ z))
+        product = LinearOperator((order, order), matvec=self.bordered.times, dtype=float)
+        restart = min(RESTART, order)
+        return np.asarray(gmres(product, rhs, M=self.inverse, rtol=TRUSTED, restart=restart, maxiter=CYCLES)[0])
 
 
 def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
-    """Prepare GMRES: the size of H_y by one product, and the bordered preconditioner.
+    """Prepare GMRES: the size of H_y by one product, and block elimination with its preconditioner.
 
     Raises `SingularError` if a product with H_y is not finite, or the border is zero.
     """
-    n = len(column)
+    n, length = len(column), float(np.linalg.norm(row))
+    if length == 0:
+        raise SingularError("The bordered operator is singular: the border is zero.")
     # For a vector of random signs, E |A v|^2 is the squared Frobenius norm.
     probe = np.where(np.random.default_rng(n).random(n) < 0.5, -1.0, 1.0)
     with np.errstate(all="ignore"):
         size = float(np.linalg.norm(matrix @ probe))
-    bordered = BorderedMatrix(matrix, column, row, np.full(n, size))
-    length = float(np.linalg.norm(row))
-    if length == 0:
-        raise SingularError("The bordered operator is singular: the border is zero.")
-    typical = np.hypot(size / np.sqrt(n), np.linalg.norm(column) / np.sqrt(n))
-    row_scale = float(typical) / length if typical > 0 else 1.0
-    inverse = None if matrix.preconditioner is None else _preconditioner(matrix.preconditioner, bordered, row_scale)
-    return Krylov(bordered, row_scale, inverse)
-
-
-def _preconditioner(inverse: Matrix, bordered: BorderedMatrix, row_scale: float) -> Matrix:
-    """Block elimination with the approximate inverse of H_y in the place of the exact one."""
-    n = len(bordered.column)
-    row = bordered.row
-    w: Array = inverse @ bordered.column
-    schur = float(row[-1] - row[:-1] @ w)
-    if schur == 0:
-        schur = float(np.linalg.norm(row))
-
-    def apply(rhs: Array) -> Array:
-        x: Array = inverse @ rhs[:-1]
-        lam: float = (rhs[-1] / row_scale - row[:-1] @ x) / schur
-        return join(x - lam * w, lam)
-
-    return LinearOperator((n + 1, n + 1), matvec=apply, dtype=float)
+        scale = float(np.hypot(size, np.linalg.norm(column))) / np.sqrt(n) / length or 1.0
+        bordered = BorderedMatrix(matrix, column, scale * row, np.full(n, size))
+    if matrix.preconditioner is None:
+        return Krylov(bordered, scale, None)
+    first = matrix.preconditioner.matvec
+    inverse = eliminated(first, first(column)[:, None], bordered.row[None])
+    return Krylov(bordered, scale, LinearOperator((n + 1, n + 1), matvec=inverse.solve, dtype=float))

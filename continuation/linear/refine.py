@@ -1,9 +1,8 @@
-"""Block elimination on H_y, and the refinement that every structure shares."""
+"""The refinement that every structure shares: residuals measured row by row."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -11,7 +10,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.silence import without_warnings
-from continuation.linear.system import BorderedSystem, SingularError
+from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
 """Corrections that a solve may take before its answer is called inaccurate: each gains the digits of TRUSTED. Here no
@@ -58,6 +57,16 @@ class BorderedMatrix:
             if not np.isfinite(entries).all():
                 raise SingularError(f"The bordered matrix cannot be factored: {name} has an entry that is not finite.")
 
+    @classmethod
+    def of(cls, matrix: Matrix, column: Array, row: Array) -> BorderedMatrix:
+        """Of a matrix whose magnitudes can be had."""
+        with np.errstate(over="ignore"):
+            return cls(matrix, column, row, abs(matrix) @ np.ones(len(column)))
+
+    def times(self, z: Array) -> Array:
+        """``M z``, shape (N + 1,)."""
+        return -self.residual(z, np.zeros(len(z)))
+
     def residual(self, z: Array, rhs: Array) -> Array:
         """``rhs - M z``, shape (N + 1,)."""
         gap = rhs.copy()
@@ -100,63 +109,3 @@ def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Arra
             return z, True
         z = z + solve(gap)
     return z, bordered.negligible(bordered.residual(z, rhs), z, rhs)
-
-
-@frozen(eq=False, slots=False)
-class BlockElimination:
-    """The bordered system, solved with a factorisation of H_y that is far from singular."""
-
-    bordered: BorderedMatrix
-    factor: Factored
-    w: Array
-    """H_y^{-1} H_lam, shape (N,)."""
-    schur: float
-    """border_lam - border_y' w = det M / det H_y."""
-    factor_whole: Callable[[], BorderedSystem]
-
-    @property
-    def sign(self) -> int:
-        """Sign of det M = det H_y * schur."""
-        return self.factor.sign if self.schur > 0 else -self.factor.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,); by the factorisation of the whole where elimination is not accurate."""
-        z, accurate = refined(self.bordered, self._eliminate, join(r, rho))
-        return z if accurate else self._whole.solve(r, rho)
-
-    def approximate(self, r: Array, rho: float) -> Array:
-        """The same without measuring the residual: for an iteration that measures its own."""
-        return self._eliminate(join(r, rho))
-
-    def _eliminate(self, rhs: Array) -> Array:
-        x = self.factor.solve(rhs[:-1])
-        lam: float = (rhs[-1] - self.bordered.row[:-1].dot(x)) / self.schur
-        return join(x - lam * self.w, lam)
-
-    @cached_property
-    def _whole(self) -> BorderedSystem:
-        return self.factor_whole()
-
-
-@without_warnings(all="ignore")
-def eliminate(bordered: BorderedMatrix, factor: Factored, factor_whole: Callable[[], BorderedSystem]) -> BorderedSystem:
-    """Border a factorisation of H_y; near a fold, where H_y is useless, factor the whole matrix instead.
-
-    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is to this factorisation: at a fold w is round-off.
-    The test depends on no norm, and so on no scaling. Within its limits both signs in ``det M = det H_y * schur`` are
-    certain; beyond them neither is, though their product is well determined, and only the whole matrix tells it.
-
-    Raises `SingularError` if `factor_whole` was needed and found M singular.
-
-    References
-    ----------
-    W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, section 3.
-    """
-    row = bordered.row
-    w = factor.solve(bordered.column)
-    correction = factor.solve(bordered.column - bordered.matrix @ w)
-    w = w + correction
-    schur = float(row[-1] - row[:-1] @ w)
-    trusted = np.abs(correction).max() <= TRUSTED * np.abs(w).max()
-    trusted &= abs(schur) > TRUSTED * (abs(row[-1]) + np.abs(row[:-1]) @ np.abs(w))
-    return BlockElimination(bordered, factor, w, schur, factor_whole) if trusted else factor_whole()

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
-from scipy.linalg import eigvals, lu_factor, lu_solve
+from scipy.linalg import eigvals
 from scipy.sparse import csc_array, eye_array, issparse
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
+from continuation.linear.dense import factor_lu
+from continuation.linear.refine import Factored
 from continuation.linear.sparse import factor_square
 from continuation.linear.symmetric import Symmetric, factor_ldl
 
@@ -228,9 +230,9 @@ def dominant(
 def _solver(matrix: Matrix, shift: float) -> Callable[[Array], Array]:
     n = matrix.shape[0]
     if isinstance(matrix, np.ndarray):
-        factors = lu_factor(matrix - shift * np.eye(n), check_finite=False)
-        return lambda rhs: lu_solve(factors, rhs, check_finite=False)
-    factor = factor_square(csc_array(matrix - shift * eye_array(n, format="csc")))
+        factor: Factored | None = factor_lu(matrix - shift * np.eye(n))
+    else:
+        factor = factor_square(csc_array(matrix - shift * eye_array(n, format="csc")))
     if factor is None:
         raise ArithmeticError("eigenvalues of H_y: the shifted matrix is singular")
     return factor.solve

@@ -1,4 +1,4 @@
-"""Symmetric H_y: Cholesky or LDL' of H_y, bordered by elimination."""
+"""Symmetric H_y: Cholesky or LDL'."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotrs, dsytrf, dsytrf_lwork, dsytrs
 
 from continuation.arrays import Array, least
-from continuation.linear.dense import factor_dense
 from continuation.linear.entries import real
-from continuation.linear.refine import BorderedMatrix, Factored, eliminate
-from continuation.linear.system import BorderedSystem
+from continuation.linear.refine import Factored
 
 
 def _dense(matrix: Any) -> Array:
@@ -50,9 +48,11 @@ class Symmetric:
         """A dense copy, shape (N, N)."""
         return self.matrix.copy()
 
+    def __abs__(self) -> Array:
+        return np.abs(self.matrix)
+
     def __matmul__(self, other: Array) -> Array:
-        product: Array = self.matrix @ other
-        return product
+        return np.asarray(self.matrix @ other)
 
 
 @frozen(eq=False)
@@ -101,26 +101,11 @@ class LDL:
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""
-        x: Array = dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel()
-        return x
+        return np.asarray(dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel())
 
 
-def factor_symmetric(matrix: Symmetric, column: Array, row: Array) -> BorderedSystem:
-    """Factor H_y alone and border it; at a fold factor the whole matrix by LU.
-
-    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
-    """
-    with np.errstate(over="ignore"):
-        bordered = BorderedMatrix(matrix, column, row, np.abs(matrix.matrix).sum(axis=1))
-
-    def whole() -> BorderedSystem:
-        return factor_dense(matrix.matrix, column, row)
-
-    factor = _factor(matrix)
-    return whole() if factor is None else eliminate(bordered, factor, whole)
-
-
-def _factor(symmetric: Symmetric) -> Factored | None:
+def factor_symmetric(symmetric: Symmetric) -> Factored | None:
+    """Factor a symmetric matrix by itself; None where a pivot is exactly zero."""
     matrix = symmetric.matrix
     positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
     if positive and (factor := factor_cholesky(matrix.T)) is not None:

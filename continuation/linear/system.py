@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
+
+from attrs import frozen
 
 from continuation.arrays import Array
 
@@ -35,3 +38,20 @@ class BorderedSystem(Protocol):
         ndarray, shape (N + 1,)
         """
         ...
+
+
+@frozen(eq=False)
+class Solver:
+    """A matrix that is factored, or a bordered system that another one solves.
+
+    `solve`: The solution for a right-hand side, or for that of a `BorderedSystem`. `tell_sign`: The sign of the
+    determinant, worked out when it is asked for.
+    """
+
+    solve: Callable[..., Array]
+    tell_sign: Callable[[], int]
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return self.tell_sign()

@@ -50,8 +50,6 @@ class _OneThread(ContextDecorator):
         self._before: list[int] = []
 
     def __enter__(self) -> None:
-        if not _pools():
-            return
         with self._lock:
             if self._inside == 0:
                 self._before = [get() for get, _ in _pools()]
@@ -60,8 +58,6 @@ class _OneThread(ContextDecorator):
             self._inside += 1
 
     def __exit__(self, *error: object) -> None:
-        if not _pools():
-            return
         with self._lock:
             self._inside -= 1
             if self._inside == 0:

@@ -32,10 +32,6 @@ class Algebra(Protocol):
         """A bilinear product, which broadcasts over the leading axis, of two that are no constants."""
         ...
 
-    def quotient(self, a: Store, b: Store) -> Store:
-        """The quotient a / b of two that are no constants, entry by entry."""
-        ...
-
     def expansion(self, f: list[Any], a: Store) -> Store:
         """sum_k f_k d^k, where a = c_0 + d is no constant; f may be longer than is asked for."""
         ...
@@ -56,14 +52,6 @@ class TaylorAlgebra:
         out = product(a[:1], b)
         for j in range(1, len(b)):
             out[j:] += product(a[j : j + 1], b[:-j])
-        return out
-
-    def quotient(self, a: Store, b: Store) -> Store:
-        """The series of a / b; of intervals by that of 1 / b, whose squares are nowhere negative."""
-        if not isinstance(a, Ends):
-            return series.divide(a, b)
-        out = self.product(operator.mul, a, compose(self, series.reciprocal, b))
-        out[:1] = a[:1] / b[:1]
         return out
 
     def expansion(self, f: list[Any], a: Store) -> Store:
@@ -91,11 +79,6 @@ class Gradient:
         out[1:] += product(a[1:], b[:1])
         return out
 
-    def quotient(self, a: Store, b: Store) -> Store:
-        """The quotient rule."""
-        value = a[:1] / b[:1]
-        return joined(value, (a[1:] - value * b[1:]) / b[:1])
-
     def expansion(self, f: list[Any], a: Store) -> Store:
         """The chain rule."""
         return joined(f[0][None], f[1] * a[1:])
@@ -120,12 +103,6 @@ class Beside:
         (x, y), (v, w) = _halves(a), _halves(b)
         slope = product(self.inner, multiply, x, w) + product(self.inner, multiply, y, v)
         return joined(product(self.inner, multiply, x, v), slope)
-
-    def quotient(self, a: Store, b: Store) -> Store:
-        """The quotient rule."""
-        (x, y), (v, w) = _halves(a), _halves(b)
-        value = quotient(self.inner, x, v)
-        return joined(value, quotient(self.inner, y - product(self.inner, operator.mul, value, w), v))
 
     def expansion(self, f: list[Any], a: Store) -> Store:
         """The chain rule: f(x) and f'(x) y."""
@@ -158,10 +135,18 @@ def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: 
 
 
 def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
-    """A / b, of constants too."""
+    """A / b, of constants too: q = (a - d q) / b_0, where b = b_0 + d, as often as d is no zero."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
-    return a / b if len(b) == 1 else algebra.quotient(lengthened(a, len(b)), b)
+    if len(b) == 1:
+        return a / b
+    if isinstance(algebra, TaylorAlgebra) and not isinstance(b, Ends):
+        return series.divide(a, b)
+    d, q = b.copy(), a[:1] / b[:1]
+    d[:1] = 0.0 * d[:1]
+    for _ in range(algebra.degrees(len(b))[-1]):
+        q = (lengthened(a, len(b)) - product(algebra, operator.mul, d, q)) / b[:1]
+    return q
 
 
 def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:

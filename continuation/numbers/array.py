@@ -86,7 +86,7 @@ class Jet(Truncated):
     Parameters
     ----------
     c : array_like, (K + 1, *shape)
-        The coefficients, s**0 first.
+        The coefficients, s**0 first; that of s**k is ``jet.c[k]``.
     """
 
     __slots__ = ()
@@ -104,23 +104,6 @@ class Jet(Truncated):
     def order(self) -> int:
         """The highest power of s that is kept."""
         return len(self.c) - 1
-
-    def coefficient(self, k: int) -> Array:
-        """The coefficient of s**k, an array of the jet's shape.
-
-        Parameters
-        ----------
-        k : int
-            From 0 to `order`.
-
-        Raises
-        ------
-        ValueError
-            For another k.
-        """
-        if not 0 <= operator.index(k) <= self.order:
-            raise ValueError(f"k is {k}; expected 0 <= k <= {self.order}, the order of this jet")
-        return np.asarray(self.c[k])
 
     def __repr__(self) -> str:
         return f"Jet(shape={self.shape}, order={self.order}, leading={self.c[0]!r})"

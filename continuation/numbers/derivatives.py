@@ -14,7 +14,7 @@ from continuation.numbers.algebra import GRADIENT, TAYLOR, Beside, Store, joined
 from continuation.numbers.array import Jet
 from continuation.numbers.truncated import Truncated, alike, common, wrap
 
-_BLOCK = 128
+BLOCK = 128
 """Directions of a Jacobian that go through the function together; more only cost memory."""
 
 
@@ -165,8 +165,8 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
 def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
     """The last coefficients of f on lines with these directions, the unit vectors, a block at a time."""
     columns = []
-    for begin in range(0, m, _BLOCK):
-        directions = np.eye(min(_BLOCK, m - begin), m, begin)
+    for begin in range(0, m, BLOCK):
+        directions = np.eye(min(BLOCK, m - begin), m, begin)
         columns.append(np.moveaxis(_image(f, line(directions))[-len(directions) :], 0, -1))
     return np.concatenate(columns, axis=-1)
 

@@ -220,7 +220,7 @@ def accumulated(count: float) -> float:
     return float((2.0 * count + 8.0) * EPS)
 
 
-def bilinear(product: Callable[[Array, Array], Array], a: Ends, b: Ends) -> Ends:
+def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float | None = None) -> Ends:
     """The range of sums of products, as of `matmul` or `einsum`: middle and radius, by the plain product.
 
     Rump, BIT 39 (1999) 534-554: four products of matrices, and no change of the rounding mode.
@@ -230,30 +230,37 @@ def bilinear(product: Callable[[Array, Array], Array], a: Ends, b: Ends) -> Ends
     product : callable
         Bilinear in two arrays, its entries sums of products of entries, each computed with an error below
         `accumulated`: numpy's, in whatever order they add.
-    a, b : Ends
+    a : Ends or sparse matrix
+    b : Ends
+    count : float, optional
+        How many products are in a sum, where a is a sparse matrix.
     """
     # Intervals of one number, made by `thin`, have no radius to be computed: of large matrices that is what costs.
-    ma, mb = (x.lo if x.lo is x.hi else x.middle() for x in (a, b))
-    ra, rb = (None if x.lo is x.hi else x.radius(m) for x, m in ((a, ma), (b, mb)))
-    size_a, size_b = np.abs(ma), np.abs(mb)
+    (ma, ra), (mb, rb) = _middle_and_radius(a), _middle_and_radius(b)
+    size_a, size_b = abs(ma), abs(mb)
     centre, sizes = product(ma, mb), product(size_a, size_b)
-    count = float(np.max(product(np.ones_like(ma[:1]), np.ones_like(mb[:1])), initial=1.0))
+    if count is None:
+        count = float(np.max(product(np.ones_like(ma[:1]), np.ones_like(mb[:1])), initial=1.0))
     radius = accumulated(count) * sizes
     if rb is not None and rb.any():
         radius = radius + product(size_a, rb)
     if ra is not None and ra.any():
         radius = radius + product(ra, size_b if rb is None else size_b + rb)
     radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
-    radius = np.where(sizes + radius == 4.0 * count * TINIEST, 0.0, radius) if _exact_zeros(sizes, a, b) else radius
+    if not sizes.all() and isinstance(a, Ends):
+        # Sums of sizes that are zero are sums of zeros: no product of two nonzero entries can underflow to it.
+        least = [float(np.min(s, where=s > 0.0, initial=np.inf)) for s in (a.magnitude(), b.magnitude())]
+        exact = least[0] * least[1] > 1e-290
+        radius = np.where((sizes + radius == 4.0 * count * TINIEST) & exact, 0.0, radius)
     return Ends(-up_sum(radius - centre), up_sum(centre + radius))
 
 
-def _exact_zeros(sizes: Array, a: Ends, b: Ends) -> bool:
-    """Whether sums of sizes that are zero are sums of zeros: no product of two nonzero entries can underflow to it."""
-    if sizes.all():
-        return False
-    smallest = [np.min(s, where=s > 0.0, initial=np.inf) for s in (a.magnitude(), b.magnitude())]
-    return bool(float(smallest[0]) * float(smallest[1]) > 1e-290)
+def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
+    """Numbers in the middle of intervals, and how far others are away; no radius of numbers themselves."""
+    if not isinstance(x, Ends) or x.lo is x.hi:
+        return getattr(x, "lo", x), None
+    middle = x.middle()
+    return middle, x.radius(middle)
 
 
 def sparse_product(matrix: Any, x: Coefficients) -> Coefficients:
@@ -265,9 +272,4 @@ def sparse_product(matrix: Any, x: Coefficients) -> Coefficients:
     if not isinstance(x, Ends):
         return times(matrix, x)
     rows = matrix.tocsr()
-    size, count = abs(rows), int(np.diff(rows.indptr).max(initial=1))
-    middle = x.middle()
-    radius = times(size, x.radius(middle)) + accumulated(count) * times(size, np.abs(middle))
-    radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
-    centre = times(rows, middle)
-    return Ends(-up_sum(radius - centre), up_sum(centre + radius))
+    return bilinear(times, rows, x, float(np.diff(rows.indptr).max(initial=1)))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 
-from continuation.arrays import Array, clipped
+from continuation.arrays import clipped
 from continuation.numbers.algebra import product
 from continuation.numbers.ends import added
 from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
@@ -150,11 +150,6 @@ def _stack(arrays: Any, axis: int = 0) -> Any:
     return joined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
 
 
-def _hstack(tup: Any) -> Any:
-    parts = [np.atleast_1d(x) for x in parts_of(tup)]
-    return _concatenate(parts, 0 if parts[0].ndim == 1 else 1)
-
-
 def _where(condition: Any, x: Any, y: Any) -> Any:
     if isinstance(condition, Truncated):
         raise condition.unknown("numpy.where with such an array for a condition (compare it first)")
@@ -167,66 +162,47 @@ def _where(condition: Any, x: Any, y: Any) -> Any:
 def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
     if dtype is not None and np.dtype(dtype) != np.float64:
         raise a.unknown(f"arrays like themselves of dtype {np.dtype(dtype)}")
-    shape = a.shape if shape is None else (shape,) if isinstance(shape, int) else tuple(shape)
-    zeros = wrap(a.constant(np.zeros(shape)), a.algebra)
-    if a.OWN == 1:
-        zeros = zeros.moved(lambda x: np.zeros((len(a.c), *shape), a.c.dtype))
+    shape = a.shape if shape is None else tuple(np.atleast_1d(shape))
+    out = a.moved(lambda x: np.zeros((*x.shape[: a.OWN], *shape)))
     if shape:
-        zeros[...] = value
-        return zeros
-    return zeros + value
+        out[...] = value
+        return out
+    return out + value
 
 
 # --- shape ------------------------------------------------------------------------------------------------
 
 
-def _broadcast_to(array: Any, shape: Any) -> Any:
-    shape = (shape,) if isinstance(shape, int) else tuple(shape)
-    aligned, own = array.reshape((1,) * (len(shape) - array.ndim) + array.shape), array.OWN
-    return aligned.moved(lambda x: np.broadcast_to(x, (*x.shape[:own], *shape)))
-
-
 def _moved(function: Any) -> Callable[..., Any]:
-    """The rule of a function that only selects entries or zeros, found by applying it to the indices of the entries."""
+    """The rule of a function that only selects entries or zeros, found by applying it to the numbers of the entries."""
 
     def rule(a: Any, *args: Any, **keywords: Any) -> Any:
         a = gather(a)
+        others = [x for x in (*args, *keywords.values()) if isinstance(x, Truncated)]
+        if others:
+            raise others[0].unknown(f"numpy.{function.__name__} with {others[0].ONE} for any argument but the first")
         if not isinstance(a, Truncated):
-            (like,) = [x for x in (*args, *keywords.values()) if isinstance(x, Truncated)][:1]
-            raise like.unknown(f"numpy.{function.__name__} with {like.ONE} for any argument but the first")
-        places, own = function(np.arange(1, a.size + 1).reshape(a.shape), *args, **keywords), a.OWN
-
-        def select(x: Array) -> Array:
-            entries = np.zeros((*x.shape[:own], a.size + 1), x.dtype)
-            entries[..., 1:] = x.reshape(*x.shape[:own], -1)
-            return entries[..., places]
-
-        return a.moved(select)
+            return function(a, *args, **keywords)
+        entries = a.moved(
+            lambda x: np.concatenate([np.zeros((*x.shape[: a.OWN], 1)), x.reshape(*x.shape[: a.OWN], -1)], -1)
+        )
+        places = function(np.arange(1, a.size + 1).reshape(a.shape), *args, **keywords)
+        return [entries[part] for part in places] if isinstance(places, list) else entries[places]
 
     return rule
 
 
-def _at_least(function: Any) -> Callable[..., Any]:
-    def rule(*arys: Any) -> Any:
-        parts = [_moved(function)(x) if isinstance(x, Truncated) else function(x) for x in map(gather, arys)]
-        return parts[0] if len(parts) == 1 else tuple(parts)
-
-    return rule
+def _each(rule: Callable[[Any], Any], *arys: Any) -> Any:
+    return rule(arys[0]) if len(arys) == 1 else tuple(map(rule, arys))
 
 
 def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) -> Any:
     if mode not in ("constant", "edge", "wrap", "reflect", "symmetric"):
         raise array.unknown(f"numpy.pad with mode={mode!r}")
     values = keywords.pop("constant_values", 0)
-    out = _moved(np.pad)(array, pad_width, mode, **keywords)
-    return (
-        out if np.all(np.equal(values, 0)) else out + np.pad(np.zeros(array.shape), pad_width, constant_values=values)
-    )
-
-
-def _split(ary: Any, indices_or_sections: Any, axis: int = 0) -> list[Any]:
-    places = np.split(np.arange(ary.shape[axis]), indices_or_sections)
-    return [_moved(np.take)(ary, part, axis) for part in places]
+    padded = _moved(np.pad)(array, pad_width, mode, **keywords)
+    filling = np.pad(np.zeros(array.shape), pad_width, constant_values=values)
+    return padded + filling if filling.any() else padded
 
 
 FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
@@ -246,7 +222,7 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
     np.einsum: _einsum,
     np.concatenate: _concatenate,
     np.stack: _stack,
-    np.hstack: _hstack,
+    np.hstack: lambda tup: _concatenate(parts := [np.atleast_1d(x) for x in parts_of(tup)], min(1, parts[0].ndim - 1)),
     np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in parts_of(tup)]),
     np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in parts_of(tup)], 1),
     np.append: lambda arr, values, axis=None: _concatenate([arr, values], axis),
@@ -263,16 +239,14 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
     np.transpose: lambda a, axes=None: a.transpose(*(axes or ())),
     np.reshape: lambda a, shape: gather(a).reshape(shape),
     np.ravel: lambda a: gather(a).reshape(-1),
-    np.broadcast_to: _broadcast_to,
     np.pad: _pad,
-    np.split: _split,
-    **{f: _at_least(f) for f in (np.atleast_1d, np.atleast_2d)},
+    **{f: partial(_each, _moved(f)) for f in (np.atleast_1d, np.atleast_2d, np.atleast_3d)},
     **{
         f: _moved(f)
         for f in (
             *(np.roll, np.flip, np.flipud, np.fliplr, np.rot90, np.take, np.tile, np.repeat, np.delete),
             *(np.diag, np.diagonal, np.tril, np.triu, np.moveaxis, np.swapaxes),
-            *(np.squeeze, np.expand_dims),
+            *(np.squeeze, np.expand_dims, np.broadcast_to, np.split, np.array_split, np.hsplit, np.vsplit),
         )
     },
 }

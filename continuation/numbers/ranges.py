@@ -35,20 +35,13 @@ def widened(lo: Array, hi: Array) -> Ends:
     return apart.where(np.isfinite(lo) & np.isfinite(hi))
 
 
-def _between(u: Ends, least: float, most: float) -> Ends:
-    return Ends(np.clip(u.lo, least, most), np.clip(u.hi, least, most))
+def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
+    """The range of a function that only rises, or only falls, and has no values but between two numbers."""
 
-
-def _increasing(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
     def rule(u: Ends) -> Ends:
-        return _between(widened(f(u.lo), f(u.hi)), least, most)
-
-    return rule
-
-
-def _decreasing(f: Callable[[Array], Array], least: float, most: float) -> Function:
-    def rule(u: Ends) -> Ends:
-        return _between(widened(f(u.hi), f(u.lo)), least, most)
+        one, other = f(u.lo), f(u.hi)
+        found = widened(np.minimum(one, other), np.maximum(one, other))
+        return Ends(np.clip(found.lo, least, most), np.clip(found.hi, least, most))
 
     return rule
 
@@ -71,11 +64,9 @@ def _meets(u: Ends, offset: float) -> Mask:
 
 def _oscillating(f: Callable[[Array], Array], top: float, bottom: float) -> Function:
     def rule(u: Ends) -> Ends:
-        at_lo, at_hi = f(u.lo), f(u.hi)
-        ends = widened(np.minimum(at_lo, at_hi), np.maximum(at_lo, at_hi))
-        far = u.magnitude() > LARGEST_ANGLE
-        lo = np.where(_meets(u, bottom) | far, -1.0, np.maximum(ends.lo, -1.0))
-        hi = np.where(_meets(u, top) | far, 1.0, np.minimum(ends.hi, 1.0))
+        ends, far = _monotone(f, -1.0, 1.0)(u), u.magnitude() > LARGEST_ANGLE
+        lo = np.where(_meets(u, bottom) | far, -1.0, ends.lo)
+        hi = np.where(_meets(u, top) | far, 1.0, ends.hi)
         return Ends(lo, hi).where(np.isfinite(u.lo) & np.isfinite(u.hi))
 
     return rule
@@ -87,45 +78,36 @@ sin, cos = _oscillating(np.sin, 0.5, -0.5), _oscillating(np.cos, 0.0, 1.0)
 def tan(u: Ends) -> Ends:
     """No value across a pole."""
     pole = _meets(u, 0.5) | _meets(u, -0.5) | (u.magnitude() > LARGEST_ANGLE)
-    return widened(np.tan(u.lo), np.tan(u.hi)).where(~pole)
-
-
-def cosh(u: Ends) -> Ends:
-    """Even: of the sizes."""
-    size = absolute(u)
-    ends = widened(np.cosh(size.lo), np.cosh(size.hi))
-    return Ends(np.maximum(ends.lo, 1.0), ends.hi)
+    return _monotone(np.tan)(u).where(~pole)
 
 
 def power(u: Ends, r: float) -> Ends:
     """u**r where r is no whole number, for u > 0."""
-    one, other = np.power(u.lo, r), np.power(u.hi, r)
-    ends = widened(np.minimum(one, other), np.maximum(one, other))
-    return Ends(np.maximum(ends.lo, 0.0), ends.hi).where(u.lo > 0.0)
+    return _monotone(lambda x: np.power(x, r), 0.0)(u).where(u.lo > 0.0)
 
 
 RANGES: dict[np.ufunc, Function] = {
     np.absolute: absolute,
     np.sqrt: sqrt,
-    np.cbrt: _increasing(np.cbrt),
-    np.exp: _increasing(np.exp, 0.0),
-    np.expm1: _increasing(np.expm1, -1.0),
-    np.exp2: _increasing(np.exp2, 0.0),
-    np.log: _increasing(np.log),
-    np.log1p: _increasing(np.log1p),
-    np.log2: _increasing(np.log2),
-    np.log10: _increasing(np.log10),
+    np.cbrt: _monotone(np.cbrt),
+    np.exp: _monotone(np.exp, 0.0),
+    np.expm1: _monotone(np.expm1, -1.0),
+    np.exp2: _monotone(np.exp2, 0.0),
+    np.log: _monotone(np.log),
+    np.log1p: _monotone(np.log1p),
+    np.log2: _monotone(np.log2),
+    np.log10: _monotone(np.log10),
     np.sin: sin,
     np.cos: cos,
     np.tan: tan,
-    np.arcsin: _increasing(np.arcsin),
-    np.arccos: _decreasing(np.arccos, 0.0, np.inf),
-    np.arctan: _increasing(np.arctan),
-    np.sinh: _increasing(np.sinh),
-    np.cosh: cosh,
-    np.tanh: _increasing(np.tanh, -1.0, 1.0),
-    np.arcsinh: _increasing(np.arcsinh),
-    np.arccosh: _increasing(np.arccosh, 0.0),
-    np.arctanh: _increasing(np.arctanh),
+    np.arcsin: _monotone(np.arcsin),
+    np.arccos: _monotone(np.arccos, 0.0, np.inf),
+    np.arctan: _monotone(np.arctan),
+    np.sinh: _monotone(np.sinh),
+    np.cosh: lambda u: _monotone(np.cosh, 1.0)(absolute(u)),
+    np.tanh: _monotone(np.tanh, -1.0, 1.0),
+    np.arcsinh: _monotone(np.arcsinh),
+    np.arccosh: _monotone(np.arccosh, 0.0),
+    np.arctanh: _monotone(np.arctanh),
 }
 """The range of a function, by numpy's name for it."""

@@ -159,18 +159,13 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
 # --- elementary functions ---------------------------------------------------------------------------------
 
 
-def _exponential(u: PowerSeries, value: Any, rate: Any = 1.0) -> PowerSeries:
-    """Solves v' = rate v u'."""
+def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
+    """Solves v' = rate v u'; `first` is what the value is of, where the function is off by a constant."""
     du, out = _scaled(_weighted(u), rate), _room(u)
-    out[0] = value
+    out[0] = of(function, u[0])
     for k in range(1, len(u)):
         out[k] = _over(_tail(du, out, k), k)
-    return out
-
-
-def _expm1(u: PowerSeries) -> PowerSeries:
-    out = _exponential(u, of(np.exp, u[0]))
-    out[0] = of(np.expm1, u[0])
+    out[0] = of(first, u[0]) if first else out[0]
     return out
 
 
@@ -240,11 +235,10 @@ def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
 def sqrt(u: PowerSeries) -> PowerSeries:
     """u**(1/2)."""
     _demand(u, lambda x: ~(x <= 0), "numpy.sqrt", "be positive")
-    if not isinstance(u, list):
-        return _power(u, 0.5, np.sqrt(u[0]))
-    out = [of(np.sqrt, u[0]), *u[1:]]  # by v v = u, since v_0 / u_0 has a wider range than 1 / v_0
+    out = _room(u)
+    out[0] = of(np.sqrt, u[0])
     twice = 2.0 * out[0]
-    for k in range(1, len(u)):
+    for k in range(1, len(u)):  # by v v = u, since v_0 / u_0 has a wider range than 1 / v_0
         out[k] = _over(u[k] - _dot(out[1:k], out[k - 1 : 0 : -1]), twice)
     return out
 
@@ -325,9 +319,9 @@ ELEMENTARY: dict[np.ufunc, Rule] = {
     np.sqrt: sqrt,
     np.cbrt: cbrt,
     np.reciprocal: reciprocal,
-    np.exp: lambda u: _exponential(u, of(np.exp, u[0])),
-    np.exp2: lambda u: _exponential(u, of(np.exp2, u[0]), _known(u, LN2)),
-    np.expm1: _expm1,
+    np.exp: lambda u: _exponential(u, np.exp),
+    np.exp2: lambda u: _exponential(u, np.exp2, _known(u, LN2)),
+    np.expm1: lambda u: _exponential(u, np.exp, first=np.expm1),
     np.sin: lambda u: _pair(u, np.sin, np.cos, -1)[0],
     np.cos: lambda u: _pair(u, np.sin, np.cos, -1)[1],
     np.sinh: lambda u: _pair(u, np.sinh, np.cosh, 1)[0],

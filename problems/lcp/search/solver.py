@@ -115,8 +115,8 @@ def solve(
     executor : concurrent.futures.Executor, optional
         For the restarts.
     sparse : str
-        What factors the equations of sparse active sets: "superlu", or if installed "cholmod" (cvxopt) or "amg"
-        (pyamg); "auto" takes what suits the matrix and is there. The message says what did it.
+        What factors the equations of sparse active sets: "superlu", or if installed "cholmod" (cvxopt); "auto" takes
+        what suits the matrix and is there. The message says what did it.
     {parts}
 
     Returns

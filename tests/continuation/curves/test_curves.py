@@ -15,6 +15,7 @@ from continuation.counts import Counts
 from continuation.evaluation.errors import RaisedError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import difference_along
+from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
@@ -198,7 +199,7 @@ def test_the_border_does_not_fill_sparse_factors():
     curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
     condition = curve._condition
     y, mu = curve.start()
-    matrix = condition._matrix(y[:-1], y[-1], mu)
+    matrix = condition.matrix(full_derivative(Evaluator(curve.family(mu), Counts()), y[:-1]), y[-1])
     near = null_vectors(matrix, condition.b, condition.c)
     assert near.factors.lu.nnz <= 30 * 600
     np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)

@@ -1,6 +1,5 @@
 """Diagrams: complete, no branch twice, and the same in several processes."""
 
-import bisect
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
@@ -10,6 +9,7 @@ import pytest
 from continuation import Budget, Kind, Stability, diagram, from_functions
 from continuation.archive import open_archive
 from continuation.archive.contents import Contents
+from continuation.diagrams import places
 from continuation.metric import norm
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
@@ -257,17 +257,14 @@ def test_a_diagram_takes_up_as_many_comparisons_as_points(monkeypatch):
 def test_a_diagram_goes_on_after_n_log_n_comparisons_and_a_few_reads(monkeypatch, tmp_path):
     counts = Counter()
 
-    def counted(name, function, key=None):
+    def counted(name, function):
         def count(*given):
             counts[name] += 1
-            return function(*given) if key is None else function(*given, key=key)
+            return function(*given)
 
         return count
 
-    probe = counted("probes", float)
-    for way in ("left", "right"):
-        looked = counted("bisections", getattr(bisect, f"bisect_{way}"), probe)
-        monkeypatch.setattr(f"continuation.diagrams.places.bisect_{way}", looked)
+    monkeypatch.setattr(places, "_number", counted("probes", places._number))
     monkeypatch.setattr(Contents, "read", counted("reads", Contents.read))
     reads = set()
     for n in (2, 4):
@@ -279,8 +276,8 @@ def test_a_diagram_goes_on_after_n_log_n_comparisons_and_a_few_reads(monkeypatch
         many, points = (3**n - 1) // 2, sum(map(len, found.paths))
         assert (len(found), len(found.points)) == (1 + many, many)
         # Two for each point of a path and for each of three looks at a branch point, one where it is put in a list.
-        assert counts["bisections"] == 2 * points + 2 * 3 * many + 2 * many - 2
-        assert counts["probes"] <= counts["bisections"] * many.bit_length()
+        bisections = 2 * points + 2 * 3 * many + 2 * many - 2
+        assert counts["probes"] <= bisections * many.bit_length()
     assert len(reads) == 1
 
 

@@ -12,7 +12,7 @@ from scipy.sparse import block_array, csc_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, splu, spsolve
 
 from continuation.linear import Banded, Operator, SingularError, Symmetric, factor_bordered
-from continuation.linear.refine import BlockElimination
+from continuation.linear.elimination import BlockElimination
 
 
 def laplacian(n):

@@ -66,6 +66,18 @@ def test_more_are_computed_where_all_that_were_asked_for_are_unstable():
     assert found.covered
 
 
+@pytest.mark.parametrize("make", [np.asarray, sp.csc_array])
+def test_an_eigenvalue_of_many_unknowns_does_not_hide_the_pairs_of_a_few(make):
+    """Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs."""
+    U = np.linalg.qr(np.random.default_rng(0).standard_normal((150, 4)))[0]
+    turn = np.zeros((4, 4))
+    turn[[0, 1, 2, 3], [1, 0, 3, 2]] = [3.0, -3.0, 1.0, -1.0]
+    A = U @ turn @ U.T - np.eye(150)
+    found = [spectrum(make(A)) for _ in range(2)]
+    np.testing.assert_array_equal(found[0].values, found[1].values)
+    np.testing.assert_allclose(sorted(found[0].pairs.imag), [1.0, 3.0], rtol=1e-6)
+
+
 def test_an_operator_has_no_eigenvalues_that_are_known():
     with pytest.raises(TypeError, match="stability: expected H_y as a matrix, found MatrixLinearOperator"):
         spectrum(sp.linalg.aslinearoperator(np.eye(3)))
