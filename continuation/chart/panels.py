@@ -52,9 +52,7 @@ def looks_of(results: Results, methods: Sequence[str]) -> dict[str, dict[str, An
     return {m: look_of([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
 
 
-def panels(
-    count: int, across: int, title: str, height: float = 3.0, width: float = 7.4
-) -> tuple[Figure, list[Axes]]:
+def panels(count: int, across: int, title: str, height: float = 3.0, width: float = 7.4) -> tuple[Figure, list[Axes]]:
     """A figure as wide as a page, with `count` panels, `across` of them in a row."""
     require_matplotlib()
     from matplotlib.figure import Figure as Canvas

@@ -169,7 +169,7 @@ class Endgame:
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
         arc = cubic_between(before, after, before.border)
-        return arc_on_path(self.solver, arc, arc.length, ()) is not None
+        return arc_on_path(self.solver, arc, arc.length) is not None
 
     def _keeps_orientation(self, end: SingularLimit, last: Linearization) -> bool:
         """Whether a limit at which H' has its full rank has the orientation of the last sample before it.

@@ -10,7 +10,7 @@ from attrs import Factory, field, frozen
 from continuation.arrays import Array, dot
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization
-from continuation.point.segment import HermiteSegment, QuinticSegment, Segment, hermite
+from continuation.point.segment import Segment, hermite
 from continuation.predictors import Prediction
 
 
@@ -41,13 +41,6 @@ class Arc:
     def just_after_start(self) -> tuple[Array, Array]:
         """The same just behind the beginning."""
         return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
-
-
-def guided(arc: Arc, c: Array, d: Array) -> Arc:
-    """The same arc, of which the cubic is known to be off by about s^2 (c + d t), s = t (1 - t)."""
-    cubic = arc.segment
-    assert isinstance(cubic, HermiteSegment)
-    return Arc(arc.a, arc.b, arc.border, cubic, length=arc.length, guide=QuinticSegment(cubic, c, d))
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
