@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
-from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
+from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit
 from continuation.ends.landing import SINGULAR_SHARE, crossing
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
@@ -20,11 +20,8 @@ from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.predictors import Prediction, SupportsSegment
-from continuation.rejection import Rejected
 from continuation.status import Kind
 from continuation.step.state import State
-from continuation.step.stepper import Stepper
 
 ENDGAME = 1e-2
 """How near to the target, as a fraction of the whole way, a singular end is looked for."""
@@ -80,7 +77,7 @@ class ArcEnd:
 class Target:
     """The target of a trace and the ways to end on it, or on the start, other than by a step of its own."""
 
-    stepper: Stepper
+    solver: PathSolver
     target: float | None
 
     # A homotopy with `max_step` has a domain, and its target mostly lies on the boundary. Three decisions follow, each
@@ -96,38 +93,7 @@ class Target:
         """Whether the start's parameter value is an end: beyond it such a homotopy has no meaning."""
         return self.solver.max_step is not None
 
-    @property
-    def solver(self) -> PathSolver:
-        """That of the trace."""
-        return self.stepper.solver
-
     # -- before a step ----------------------------------------------------------------------------------------
-
-    def fold_at_target(self, point: Linearization, prediction: Prediction) -> SingularLimit | None:
-        """The end where a series sees the parameter touch its target in a fold: a half-power end, found as a fold.
-
-        The far side of the fold lies outside the domain of an interior homotopy, but the formulas mostly do not mind;
-        where they do, the endgame is still there.
-        """
-        if self.target is None or not hasattr(prediction, "segment"):
-            return None
-        assert isinstance(prediction, SupportsSegment)
-        fold = touching(prediction, point, self.target)
-        if fold is None:
-            return None
-        far = min(2.0 * fold, prediction.reach)
-        beyond = evolve(self.stepper, solver=evolve(self.solver, max_step=None)).attempt(point, prediction, far)
-        if isinstance(beyond, Rejected):
-            return None
-        arc = Arc(point, beyond.point, point.border, prediction.segment(far, beyond.point.u))
-        try:
-            end = crossing(self.solver, arc, self.target)
-            if end is None:
-                return None
-            u, error, limit = self._limit(arc, end, self.target)
-            return limit or SingularLimit(u, error, 1, 0.0)
-        except EvaluationError:
-            return None
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
         """Whether the path is so near the target that a singular end is to be looked for.
