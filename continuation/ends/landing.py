@@ -10,8 +10,7 @@ from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import TurningPoint
-from continuation.events.locate import may_vanish, on_value, zeros
-from continuation.events.roots import zero_between
+from continuation.events.locate import may_vanish, on_value, zero_between, zeros
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import NEAR_SINGULAR, Linearization

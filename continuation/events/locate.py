@@ -16,12 +16,11 @@ from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from continuation.arrays import Array, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.errors import EvaluationError
-from continuation.events.roots import zero_between
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
@@ -48,6 +47,17 @@ SLOPE = 1e-3
 
 TRANSVERSAL = 1e-6
 """The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
+
+
+def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
+    """A zero, by Brent's method, of a function that costs little and has different signs at two places.
+
+    None where it is NaN on the way. The options are those of `scipy.optimize.brentq`.
+    """
+    try:
+        return float(brentq(function, low, high, disp=False, **options))
+    except ValueError:
+        return None
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
@@ -168,9 +178,7 @@ def zeros(
                 g = math.copysign(noise, part.ga)
             parts += part.divided(known[t], g, t, arc.border)[::-1]
         elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * direction <= 0:
-            guess, slope = None, math.nan
-            if model(low) * model(high) < 0.0:
-                guess = zero_between(model, low, high, disp=False)
+            guess, slope = zero_between(model, low, high), math.nan
             if guess is not None:
                 slope = (model(guess + SLOPE * (high - low)) - model(guess)) / (SLOPE * (high - low))
             enough = solver.noise(part.a) / arc.length

@@ -28,14 +28,6 @@ class Segment(Protocol):
         """Its derivative with respect to t, shape (N + 1,)."""
         ...
 
-    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """Points and derivatives at all of `inside`, each of shape (len(inside), N + 1)."""
-        ...
-
-    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
-        """The part up to the point `end` of the path, at pseudo-arclength sigma, where the tangent is v."""
-        ...
-
 
 _QUARTERS = (0.25, 0.5, 0.75)
 CUBIC = len(_QUARTERS)
@@ -76,10 +68,6 @@ class PolynomialSegment:
         """All at once: a product of matrices costs less than one point by itself."""
         points, slopes = (list(table[:, : len(self.coefficients)] @ self.coefficients) for table in _SAMPLED)
         return [self.begin + point for point in points], slopes
-
-    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
-        """The cubic to the new end."""
-        return hermite(self.begin, self.coefficients[0], end, v, border)
 
     def bent(self, c: Array, d: Array) -> PolynomialSegment:
         """The cubic and s^2 (c + d t), s = t (1 - t), which leaves the ends and the tangents there as they are."""
@@ -141,11 +129,7 @@ class SeriesSegment:
         slope: Array = self.length * self.curve.derivative(t * self.length)
         return slope + self.power * t ** (self.power - 1) * self.gap
 
-    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """One by one."""
-        return [self.at(t) for t in _SIXTEENTHS], [self.derivative(t) for t in _SIXTEENTHS]
-
-    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+    def until(self, sigma: float, end: Array) -> SeriesSegment:
         """The same series to the new end."""
         return SeriesSegment(self.curve, sigma, end - self.curve(sigma), self.power)
 
