@@ -18,7 +18,6 @@ from continuation.events.kernels import RANK, Bordered, kernels
 from continuation.linear import Banded, Symmetric
 from continuation.linear.entries import extended
 from continuation.metric import inner, norm
-from continuation.point.linearization import Linearization
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
 """Newton's method from a guess: its first increments may grow, and where it goes is checked afterwards."""
@@ -61,18 +60,6 @@ class SimpleBranchPoint:
         k = int(np.argmax(np.abs(along)))
         onward, other = self.directions[k] * np.sign(along[k]), self.directions[1 - k]
         return np.array([-onward, onward, other, -other])
-
-    def branch_of(self, point: Linearization) -> int:
-        """Which of the two leads to a point of either, of the path's metric: the one that a parabola joins to it best.
-
-        A parabola's chord has the mean direction of its ends. What a path differs from that by is of third order in the
-        distance of the two points, while the branches differ in it as they do in their directions.
-        """
-        w = point.weights
-        chord = (point.u - self.u) / norm(w, point.u - self.u)
-        mirrored = 2.0 * inner(w, chord, point.tangent) * chord - point.tangent
-        off = [min(norm(w, mirrored - d), norm(w, mirrored + d)) for d in self.directions]
-        return int(np.argmin(off))
 
 
 @frozen(eq=False)
