@@ -48,7 +48,7 @@ SINGULAR_STRETCH = 1.19
 next one is so much longer than the controller asks for. Measured on 720 traces of lines over branch points at round
 values: without it 648 attempts are rejected and 9 traces stick; with 1.1 .. 1.5 it is 132 .. 144, and none does."""
 
-NOISE_ASKED, NOISE_GROWN = (3, 12), 4.0
+NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
 """After so many attempts at one step it is asked whether noise in H has grown, and by what it must have, so that an end
 comes to it: two measurements of one noise differ by less."""
 
