@@ -14,14 +14,13 @@ from typing import Any
 import numpy as np
 from attrs import astuple, define, field, frozen
 from attrs.validators import optional
-from scipy.optimize import brentq
 
 from continuation.arguments.checks import integer, one_of, sign
 from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.linear.followed import FollowedEigenvalue
-from continuation.linear.spectrum import Spectrum, plain, spectrum
+from continuation.events.locate import root
+from continuation.linear.spectrum import Spectrum, spectrum
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
@@ -45,15 +44,8 @@ ON_AXIS = 1e-6
 """The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
 crossed."""
 
-LOCATED_TO = 1e-12
-"""Of an arc: nearer a point is not moved."""
-
 ZERO_RESOLVED = 1e-14
-"""The same where it is zero: what is left is round-off of the eigenvalues."""
-
-SECANTS, ROUGH = 10, 1e-8
-"""Of a pair that is followed: at most so many steps of the secant method, and its real part, relative to its modulus,
-from which one more step is as near as round-off allows, the last two errors multiplied."""
+"""The real part of a pair, relative to its modulus, that is zero: what is left is round-off of the eigenvalues."""
 
 
 @frozen
@@ -186,10 +178,7 @@ class BoundHopf:
             # Real eigenvalues that become a pair, or a pair that becomes real, change no other number.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
-            ranks, ends = range(min(p, q), max(p, q)), ((left, before), (right, after))
-            points = [self._located(solver, arc, self._followed(solver, arc, ends, rank)) for rank in ranks]
-            if None in points or len({point.u.tobytes() for point in points if point is not None}) < len(points):
-                points = [self._located(solver, arc, self._searched(solver, arc, left, right, rank)) for rank in ranks]
+            points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
             found += sorted((at for at in points if at is not None), key=lambda point: position(arc, point.u))
         return found
 
@@ -207,60 +196,23 @@ class BoundHopf:
         pair = found.pairs[rank]
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
-    def _located(self, solver: PathSolver, arc: Arc, t: float | None) -> Linearization | None:
-        """The point of the path at a place, if a pair is on the axis there."""
+    def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
+        """Where on the path the real part of the pair of a rank vanishes, if it does and that pair is on the axis."""
+        ends = {0.0: arc.a.u, 1.0: arc.b.u}
+
+        def real_part(t: float) -> float:
+            return self._real_part(
+                ends[t] if t in ends else solver.project(arc.a, arc.segment.at(t), arc.border)[0], rank
+            )
+
+        a, b = (left, real_part(left)), (right, real_part(right))
+        # What the segment shows may not be so on the path itself.
+        t = None if a[1] * b[1] > 0.0 else root(real_part, a, b, solver.noise(arc.a) / arc.length)
         if t is None:
             return None
         at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
         pairs = self.at(at.u).pairs
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
-
-    def _searched(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> float | None:
-        """Where the real part of the pair of a rank vanishes, by spectra; None where it jumps.
-
-        Brent's method on points of the path; a pair that is made of two real ones jumps.
-        """
-
-        def real_part(t: float) -> float:
-            ends = {0.0: arc.a.u, 1.0: arc.b.u}
-            u = ends[t] if t in ends else solver.project(arc.a, arc.segment.at(t), arc.border)[0]
-            return self._real_part(u, rank)
-
-        if real_part(left) * real_part(right) > 0.0:
-            # What the segment shows is not so on the path itself.
-            return None
-        return float(brentq(real_part, left, right, xtol=LOCATED_TO, rtol=LOCATED_TO, disp=False))
-
-    def _followed(
-        self, solver: PathSolver, arc: Arc, ends: Sequence[tuple[float, Spectrum]], rank: int
-    ) -> float | None:
-        """The same by the pair alone, followed with one factorisation where spectra cost much; None where that fails.
-
-        A spectrum of 2000 unknowns costs five times as much as a new H_y and the few solves that follow the pair.
-        """
-        (left, before), (right, after) = ends
-        if arc.a.u.size - 1 == before.values.size or rank >= min(before.pairs.size, after.pairs.size):
-            return None
-        p, q = complex(before.pairs[rank]), complex(after.pairs[rank])
-        side, counts, pair = self.side, self.evaluator.counts, None
-        # The nearer end last.
-        (s, g), (t, h) = sorted([(left, p.real), (right, q.real)], key=lambda end: -abs(end[1]))
-        try:
-            for _ in range(SECANTS):
-                if pair is not None and abs(h) <= ROUGH * abs(p):
-                    return t - h * (t - s) / (h - g)
-                s, g, t = t, h, t - h * (t - s) / (h - g)
-                if not left < t < right:
-                    break
-                matrix = plain(self.evaluator.matrix(solver.project(arc.a, arc.segment.at(t), arc.border)[0]))
-                if pair is None:
-                    pair = FollowedEigenvalue.of(matrix, side * (p + (t - left) / (right - left) * (q - p)))
-                    counts.factorizations += pair.near.made
-                z, solves = pair.at(matrix)
-                counts.solves, h = counts.solves + solves, side * z.real
-        except ArithmeticError:
-            pass
-        return None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
         """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""

@@ -9,7 +9,6 @@ is singular there, is never asked.
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 
 import numpy as np
 from attrs import frozen
@@ -20,14 +19,11 @@ from continuation.correctors import BorderedNewton
 from continuation.ends.landing import regular
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.roots import zero_between
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
-from continuation.point.segment import Curve
 from continuation.predictors.polynomial import interpolate
-from continuation.step.stepper import LOW_ORDER_FRACTION
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
@@ -41,9 +37,6 @@ RESIDUAL_RATIO = 1e-3
 
 ULPS = 8.0
 """Units in the last place by which a point is moved to see the round-off in H."""
-
-MAX_BACKWARD_SAMPLES = 4
-"""How many samples are taken behind the point where those before it did not do."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
@@ -63,9 +56,6 @@ RATIO^(1/w), rounded."""
 
 EQUALLY_GOOD = 10.0
 """A multiple of the true winding number fits as well, a little later, so the smallest within this factor wins."""
-
-NEAR_FOLD = 0.05
-"""How near the target a fold ahead must lie to be believed to lie on it, in remaining ways."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Near a singular end Newton's method converges linearly, and slowly."""
@@ -137,26 +127,8 @@ class Endgame:
             if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
                 break
         if best is None or not self._within(best):
-            taken = self._farther(point)
-            best = _limit(taken, self.target, point.weights) if len(taken) > 2 else None
-        if best is None or not self._within(best):
             return None
         return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None
-
-    def _farther(self, point: Linearization) -> list[Sample]:
-        """Samples behind the point, the farthest first: a long step may end where round-off leaves few digits."""
-        gap, here = point.lam - self.target, point
-        taken: list[Sample] = []
-        for k in range(1, MAX_BACKWARD_SAMPLES + 1):
-            lam = self.target + gap / RATIO**k
-            tracked = self._track(here, here.u + (lam - here.lam) * _slope(here), lam, True)
-            if tracked is None:
-                break
-            if not self._one_branch(tracked[0], here):
-                break
-            here, noise = tracked
-            taken.insert(0, _sample(here, noise))
-        return taken
 
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
         """Whether two samples lie on one branch, as far as can be told.
@@ -169,7 +141,7 @@ class Endgame:
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
         arc = cubic_between(before, after, before.border)
-        return arc_on_path(self.solver, arc, arc.length, ()) is not None
+        return arc_on_path(self.solver, arc, arc.length) is not None
 
     def _keeps_orientation(self, end: SingularLimit, last: Linearization) -> bool:
         """Whether a limit at which H' has its full rank has the orientation of the last sample before it.
@@ -209,11 +181,6 @@ class Endgame:
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
-        if max_step is not None:
-            room = LOW_ORDER_FRACTION * max_step(here.u, guess - here.u)
-            if room < 1.0:
-                guess = here.u + room * (guess - here.u)
-                guess[-1] = lam
         fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
         u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
@@ -301,22 +268,3 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
     # One look at something random: the largest of many is more than that.
     seen: Array = 2.0 * np.abs(at.solve(left, 0.0, unit))
     return seen
-
-
-def touching(curve: Curve, point: Linearization, target: float) -> float | None:
-    """The step at which a series ahead has the parameter touch the target in a fold; None where it does not."""
-    reach = curve.reach
-    gap = point.lam - target
-    if gap == 0.0 or gap * point.tangent[-1] >= 0.0 or not np.isfinite(reach):
-        return None
-
-    def slope(h: float) -> float:
-        return float(curve.derivative(h)[-1] * np.sign(gap))
-
-    for low, high in pairwise(np.linspace(0.0, reach, 17)):
-        if slope(float(high)) >= 0.0:
-            fold = zero_between(slope, float(low), float(high)) if slope(float(low)) < 0.0 else float(low)
-            return fold if fold is not None and abs(curve(fold)[-1] - target) <= NEAR_FOLD * abs(gap) else None
-        if (curve(float(high))[-1] - target) * gap < -NEAR_FOLD * gap * gap:
-            return None
-    return None

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from functools import lru_cache
-
 import numpy as np
 from attrs import evolve, frozen
 
@@ -12,9 +9,8 @@ from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
-from continuation.events import TargetValue, TurningPoint
-from continuation.events.locate import may_vanish, zeros
-from continuation.events.roots import zero_between
+from continuation.events import TurningPoint
+from continuation.events.locate import may_vanish, on_value, zero_between, zeros
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import NEAR_SINGULAR, Linearization
@@ -126,48 +122,35 @@ class Landing:
         return self.stepper.arrive(point, border, h, landed)
 
 
-_at = lru_cache(maxsize=8)(TargetValue)
-"""Made once for all arcs: its checks take longer than its monitor."""
-
-
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
     """Where the arc first takes a parameter value that its ends enclose, or that it touches in a fold."""
+
+    def gap(u: Array, v: Array) -> float:
+        return float(u[-1]) - value
+
     before, after = arc.a.lam - value, arc.b.lam - value
-    if before * after < 0.0:
-        return next(zeros(solver, _at(value), arc, before, after), None)
-    if before == 0.0:
+    if before == 0.0 or not may_vanish(gap, arc, before, after):
         return None
-    if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
-        if not may_vanish(_at(value), arc, before, after) or _below_round_off(solver, arc, value):
+    if before * after > 0.0:
+        # An asymptote gets as near as 1e-250, and the least value of a polynomial between two such ends is noise.
+        if max(abs(before), abs(after)) <= solver.noise_by_component(arc.a)[-1]:
             return None
-        return next(zeros(solver, _at(value), arc, before, after), None)
-    # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
-
-    def slope(t: float) -> float:
-        return float(arc.segment.derivative(t)[-1])
-
-    if slope(0.0) * slope(1.0) < 0.0:
-        turn = zero_between(slope, 0.0, 1.0, xtol=RESOLUTION)
-        nearest = math.nan if turn is None else arc.segment.at(turn)[-1] - value
-        if nearest * before > 0.5 * min(abs(before), abs(after)) * abs(before):
-            return None
-    ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
-    if (fold := next(zeros(solver, TurningPoint(), arc, *ends), None)) is None:
-        return None
-    gap = (fold.lam - value) * np.sign(before)
-    # A path that passes through the target on its way to a fold just behind it ends on the target; a fold that lies on
-    # it as far as H can tell is the end.
-    if abs(gap) <= solver.noise_by_component(fold)[-1]:
-        return fold
-    return crossing(solver, cut(arc, fold), value) if gap < 0.0 else None
-
-
-def _below_round_off(solver: PathSolver, arc: Arc, value: float) -> bool:
-    """Whether both ends of an arc are nearer to a parameter value than round-off moves the arc's points.
-
-    An asymptote gets as near as 1e-250, and the least value of a polynomial between two such ends is noise.
-    """
-    return bool(max(abs(arc.a.lam - value), abs(arc.b.lam - value)) <= solver.noise_by_component(arc.a)[-1])
+        ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
+        if ends[0] * ends[1] < 0.0 and before * ends[0] < 0.0:
+            # The parameter came nearer and turned away again: a fold that lies on the target as far as H can tell is
+            # the end, and a path that passes through the target on its way to a fold just behind it ends there.
+            fold = next(zeros(solver, TurningPoint().monitor, arc, *ends), None)
+            if fold is None:
+                return None
+            # What is left of the slope at the fold, as where branches cross in it, leaves so much of the parameter.
+            left = float(fold.tangent[-1]) ** 2 * arc.length / abs(ends[1] - ends[0])
+            if abs(fold.lam - value) <= solver.noise_by_component(fold)[-1] + left:
+                return fold
+            arc, after = cut(arc, fold), fold.lam - value
+            if before * after > 0.0:
+                return None
+    found = next(zeros(solver, gap, arc, before, after), None)
+    return None if found is None else on_value(solver, found, -1, value)
 
 
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:

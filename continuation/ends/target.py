@@ -9,9 +9,9 @@ from enum import Enum
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, dot, generic_vector, largest
+from continuation.arrays import Array, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
-from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
+from continuation.ends.endgame import Endgame, SingularLimit
 from continuation.ends.landing import SINGULAR_SHARE, crossing
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
@@ -20,21 +20,14 @@ from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.predictors import Prediction, SupportsSegment
-from continuation.rejection import Rejected
 from continuation.status import Kind
 from continuation.step.state import State
-from continuation.step.stepper import Stepper
 
 ENDGAME = 1e-2
 """How near to the target, as a fraction of the whole way, a singular end is looked for."""
 
 RETRY_ENDGAME = 0.05
 """What must be left of the way, since the endgame was last tried in vain, for it to be tried again: two samples."""
-
-FOLD = 0.4, 0.8
-"""Where lam - value ~ sigma^w, the ratio of lam's way to the tangent's is 1/w: between these it is a simple fold."""
-
 
 CONDITIONED = 0.1
 """An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
@@ -80,7 +73,7 @@ class ArcEnd:
 class Target:
     """The target of a trace and the ways to end on it, or on the start, other than by a step of its own."""
 
-    stepper: Stepper
+    solver: PathSolver
     target: float | None
 
     # A homotopy with `max_step` has a domain, and its target mostly lies on the boundary. Three decisions follow, each
@@ -96,38 +89,7 @@ class Target:
         """Whether the start's parameter value is an end: beyond it such a homotopy has no meaning."""
         return self.solver.max_step is not None
 
-    @property
-    def solver(self) -> PathSolver:
-        """That of the trace."""
-        return self.stepper.solver
-
     # -- before a step ----------------------------------------------------------------------------------------
-
-    def fold_at_target(self, point: Linearization, prediction: Prediction) -> SingularLimit | None:
-        """The end where a series sees the parameter touch its target in a fold: a half-power end, found as a fold.
-
-        The far side of the fold lies outside the domain of an interior homotopy, but the formulas mostly do not mind;
-        where they do, the endgame is still there.
-        """
-        if self.target is None or not hasattr(prediction, "segment"):
-            return None
-        assert isinstance(prediction, SupportsSegment)
-        fold = touching(prediction, point, self.target)
-        if fold is None:
-            return None
-        far = min(2.0 * fold, prediction.reach)
-        beyond = evolve(self.stepper, solver=evolve(self.solver, max_step=None)).attempt(point, prediction, far)
-        if isinstance(beyond, Rejected):
-            return None
-        arc = Arc(point, beyond.point, point.border, prediction.segment(far, beyond.point.u))
-        try:
-            end = crossing(self.solver, arc, self.target)
-            if end is None:
-                return None
-            u, error, limit = self._limit(arc, end, self.target)
-            return limit or SingularLimit(u, error, 1, 0.0)
-        except EvaluationError:
-            return None
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
         """Whether the path is so near the target that a singular end is to be looked for.
@@ -191,11 +153,7 @@ class Target:
         known, enough = norm(weights, off), NEAR_ENOUGH * self.solver.tolerance.relative
         if known <= enough and vanishing > VANISHING_SHARE:
             return u, largest(off), None
-        limit = self._fold(arc, end, value)
-        if limit is None or limit.length > RELATIVE_FLOOR:
-            other = Endgame(self.solver, value).limit(arc.a)
-            limit = min((one for one in (limit, other) if one is not None), key=lambda one: one.length, default=None)
-        limit = self._placed(limit, arc.a)
+        limit = self._placed(Endgame(self.solver, value).limit(arc.a), arc.a)
         if limit is not None and limit.length <= max(known, enough):
             return limit.u, limit.error, limit
         if not known <= CONDITIONED:
@@ -221,17 +179,6 @@ class Target:
         except EvaluationError:
             pass
         return u
-
-    def _fold(self, arc: Arc, end: Linearization, value: float) -> SingularLimit | None:
-        """The end as a simple fold: y ~ y* + c sqrt(lam - value), with c as at the beginning of the arc."""
-        if share(end.weights, end.tangent) > SINGULAR_SHARE:
-            return None
-        sigma = dot(arc.border, end.u - arc.a.u)
-        gap, expected = abs(arc.a.lam - value), abs(sigma * arc.a.tangent[-1])
-        if (arc.a.lam - value) * (arc.b.lam - value) < 0.0 or not FOLD[0] * expected < gap < FOLD[1] * expected:
-            return None
-        left, way = (abs(end.lam - value) / gap) ** 0.5, np.append(arc.a.y - end.y, 0.0)
-        return SingularLimit(np.append(end.y, value), left * largest(way), 2, left * norm(end.weights, way))
 
     def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
         """A limit with what it errs by because the singular point may lie beside the target, as far as H can tell.

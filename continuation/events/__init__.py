@@ -1,5 +1,5 @@
 """Events: functions along the path whose zeros are located on corrected points, never interpolated."""
 
-from continuation.events.monitors import Event, KinkPoint, Monitor, SupportsResolution, TargetValue, TurningPoint
+from continuation.events.monitors import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 
-__all__ = ["Event", "KinkPoint", "Monitor", "SupportsResolution", "TargetValue", "TurningPoint"]
+__all__ = ["Event", "KinkPoint", "Monitor", "TargetValue", "TurningPoint"]

@@ -1,13 +1,15 @@
-"""Kernels of H' where it loses several ranks: bases of both, and how many ranks they say are lost."""
+"""One bordered matrix of H', regular where H' loses ranks: the kernels of H', and how many ranks are lost."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix
@@ -18,34 +20,65 @@ BORDERS = 5
 right."""
 
 RANK = 1e-6
-"""What may be left of a singular value, relative to the matrix, where it is said to vanish: as for simple branch
-points."""
+"""What may be left of a singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
 
 
 @frozen(eq=False)
-class Doubled:
-    """A matrix bordered by columns and rows so that it is square, and factored."""
+class Bordered:
+    """[[H', B], [C, 0]] with k columns B and k + 1 rows C, factored: regular where H' has lost k ranks, or fewer.
+
+    Its solutions give the null spaces of H' (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
+    Section 3.3).
+    """
 
     matrix: Matrix
     columns: Array
     rows: Array
 
-    def factors(self) -> Callable[[Array, bool], Array]:
-        """The solution of the system for a right-hand side, or of its transpose."""
+    @cached_property
+    def _factor(self) -> Any:
         corner = np.zeros((len(self.rows), self.columns.shape[1]))
         whole = extended(self.matrix, self.columns, np.hstack([self.rows, corner]))
         if sp.issparse(whole):
-            factored = splu(whole)
-            return lambda r, transposed: np.asarray(factored.solve(r, "T" if transposed else "N"))
-        factors = lu_factor(whole, check_finite=False)
-        return lambda r, transposed: np.asarray(lu_solve(factors, r, int(transposed), check_finite=False))
+            return splu(whole)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            try:
+                return lu_factor(whole, check_finite=False)
+            except LinAlgWarning as warning:
+                raise np.linalg.LinAlgError(str(warning)) from warning
+
+    def solve(self, r: Array, transposed: bool = False) -> Array:
+        """The solution of the bordered system, or of its transpose."""
+        if sp.issparse(self.matrix):
+            x: Array = self._factor.solve(r, trans="T" if transposed else "N")
+            return x
+        y: Array = lu_solve(self._factor, r, trans=int(transposed), check_finite=False)
+        return y
+
+    @cached_property
+    def left(self) -> tuple[Array, Array]:
+        """Columns that span the left null space, and how far H' is from having it: k + 1 numbers for each."""
+        n, k = self.columns.shape
+        found = self.solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), transposed=True)
+        return found[:n], found[n:]
+
+    @cached_property
+    def right(self) -> tuple[Array, Array]:
+        """The same of the right null space, with k numbers for each."""
+        n, k = self.columns.shape
+        found = self.solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]))
+        return found[: n + 1], found[n + 1 :]
+
+    def refreshed(self, matrix: Matrix) -> Bordered:
+        """Another H' with this one's null vectors as its borders: then the bordered matrix is conditioned best."""
+        return Bordered(matrix, np.linalg.qr(self.left[0])[0], np.linalg.qr(self.right[0])[0].T)
 
 
 def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
     """Orthonormal bases of the kernel of a matrix, shape (N, N + 1), and of its left kernel, as columns.
 
-    With as many borders in general position as ranks may be lost the bordered matrix is regular, and what it makes of
-    unit vectors spans the kernels (Govaerts, Section 3.3).
+    Borders in general position are as many as ranks may be lost.
 
     Parameters
     ----------
@@ -57,10 +90,8 @@ def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
     k = min(BORDERS, n)
     generator = np.random.default_rng(7)
     columns, rows = generator.standard_normal((n, k)), generator.standard_normal((k + 1, n + 1))
-    solve = Doubled(matrix, columns, rows).factors()
-    right = solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]), False)
-    left = solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), True)
-    return _vanishing(right[: n + 1], right[n + 1 :], accuracy), _vanishing(left[:n], left[n:], accuracy)
+    bordered = Bordered(matrix, columns, rows)
+    return _vanishing(*bordered.right, accuracy), _vanishing(*bordered.left, accuracy)
 
 
 def _vanishing(vectors: Array, left_over: Array, accuracy: float) -> Array:

@@ -1,9 +1,10 @@
 """Where on an accepted arc a function of its points vanishes: one scanner for events, targets, faces and switches.
 
-The arc's segment is a model of the function, and costs no evaluation of H. An arc has no zero where the model keeps the
+The arc's guide is a model of the function, and costs no evaluation of H. An arc has no zero where the model keeps the
 sign that the function has at both ends, and comes down to no less than half of what it is there. It has one zero where
-the ends have two signs and the model changes its sign once: that is bracketed on points of the path. Any other arc is
-divided by a point of the path, where the model is lowest or has come through zero, and both parts are asked again.
+the ends have two signs and the model changes its sign once: there a secant converges, on points of the path. Any other
+arc is divided by a point of the path, where the model is lowest or has come through zero, and both parts are asked
+again.
 """
 
 from __future__ import annotations
@@ -11,80 +12,64 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
-from continuation.arrays import Array, dot, largest
+from continuation.arrays import Array, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.errors import EvaluationError
-from continuation.events import Event, TargetValue, TurningPoint
-from continuation.events.roots import zero_between
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
+from continuation.point.segment import CUBIC, Segment, hermite
+
+Function = Callable[[Array, Array], float]
+"""Of a point and its tangent; continuous along the path."""
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
 
 MONITOR_PLACES = 17
-"""Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
+"""Places where a function is looked at before its lowest value is sought: a cubic has two turns at most."""
 
-DIVISIONS, INSIDE_ARC, AS_EXPECTED = 8, 1e-6, 0.1
-"""An arc is divided so often in a row at most, so far inside of it; a point at which the function is within a tenth of
-the least value that was expected settles that there is no zero."""
+DIVISIONS, INSIDE_ARC = 8, 1e-6
+"""An arc is divided so often in a row at most, so far inside of it."""
 
-PASSES = 60
-"""A bisection in every other pass narrows a bracket to round-off in these."""
+PASSES, NEARLY_ZERO = 60, 1e-10
+"""A bisection in every other pass narrows a bracket to round-off in these. A value that small, beside those at the
+ends, will do where the last two have not halved it."""
 
-NARROW_BRACKET = 1e-6
-"""A bracket so narrow, relative to the first, that the difference of its ends is mostly round-off: a poor cubic."""
-
-AT_ROUND_OFF, NEARLY_ZERO = 1e-15, 1e-10
-"""The monitor's value, relative to those at the ends, that is zero; and that does where it
-has not halved twice."""
+SLOPE = 1e-3
+"""Of a part: the difference that shows the slope of its model, to three digits as the model itself."""
 
 TRANSVERSAL = 1e-6
 """The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
 
 
-def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether the monitor may vanish on an arc, judged by its ends and its least value inside.
+def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
+    """A zero, by Brent's method, of a function that costs little and has different signs at two places.
+
+    None where it is NaN on the way. The options are those of `scipy.optimize.brentq`.
+    """
+    try:
+        return float(brentq(function, low, high, disp=False, **options))
+    except ValueError:
+        return None
+
+
+def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
+    """Whether a function may vanish on an arc, judged by its values at the ends and its least value inside.
 
     Ends of one sign may hide a pair of zeros where it has the other sign there, or dips to less than half of both.
-
-    Parameters
-    ----------
-    event : Event
-    arc : Arc
-    ga, gb : float
-        The monitor at the ends.
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign, inside = math.copysign(1.0, ga), arc.guide.inside
-    along = _of_coordinate(event, arc.guide, arc.length)
-    found = [event.monitor(u, v) for u, v in arc.samples] if along is None else map(along, inside)
-    values = [sign * ga, *[sign * g for g in found], sign * gb]
-    return _least((0.0, *inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
-
-
-def _of_coordinate(event: Event, segment: Segment, length: float) -> Callable[[float], float] | None:
-    """The monitor along a cubic of that length, as a function of t, where it looks at one coordinate; else None."""
-    if not (isinstance(segment, HermiteSegment | QuinticSegment) and isinstance(event, TurningPoint | TargetValue)):
-        return None
-    at, slope = segment.coordinate(event.component)
-    if isinstance(event, TurningPoint):
-        return lambda t: slope(t) / length
-    return lambda t: at(t) - event.value
-
-
-def _along(event: Event, segment: Segment, length: float = 1.0) -> Callable[[float], float]:
-    """The monitor along a segment of that length, as a function of t."""
-    own = _of_coordinate(event, segment, length)
-    return own or (lambda t: event.monitor(segment.at(t), segment.derivative(t) / length))
+    sign = math.copysign(1.0, ga)
+    values = [sign * ga, *(sign * function(u, v) for u, v in arc.samples), sign * gb]
+    return _least((0.0, *arc.guide.inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
 
 
 def _least(places: Sequence[float], values: Sequence[float]) -> float:
@@ -128,163 +113,137 @@ class _Part:
             parts.append(_Part(a, b, ga, gb, *model, depth=self.depth + 1))
         return parts[0], parts[1]
 
-
-def _undecided(event: Event, part: _Part, length: float) -> tuple[float, float] | None:
-    """Where to divide a part, and which value is expected there; None if its ends say what is on it."""
-    along = _along(event, part.model, length)
-    sign = math.copysign(1.0, part.ga)
-    inner = [t for t in part.model.inside if part.low < t < part.high]
-    if len(part.model.inside) <= CUBIC:
-        inner = np.linspace(part.low, part.high, MONITOR_PLACES)[1:-1].tolist()
-    places = [part.low, *inner, part.high]
-    values = [sign * part.ga, *(sign * along(t) for t in inner), sign * part.gb]
-    turns = [k for k, (p, q) in enumerate(itertools.pairwise(values)) if p > 0.0 > q or p < 0.0 < q]
-    if part.gb * part.ga <= 0.0:
-        if len(turns) <= (part.gb != 0.0):
+    def undecided(self, along: Callable[[float], float]) -> float | None:
+        """Where to divide it, with the function `along` its model; None if its ends say what is on it."""
+        sign = math.copysign(1.0, self.ga)
+        places = np.linspace(self.low, self.high, MONITOR_PLACES).tolist()
+        values = [sign * self.ga, *(sign * along(t) for t in places[1:-1]), sign * self.gb]
+        turns = [k for k, (p, q) in enumerate(itertools.pairwise(values)) if p > 0.0 > q or p < 0.0 < q]
+        if self.gb * self.ga <= 0.0:
+            if len(turns) <= (self.gb != 0.0):
+                return None
+            m = max(len(turns) // 2 - 1, 0)
+            between = range(turns[m] + 1, turns[m + 1] + 1 if m + 1 < len(turns) else len(values) - 1)
+            return float(places[max(between, key=lambda k: abs(values[k]), default=turns[m])])
+        if not turns and _least(places, values) >= 0.5 * min(abs(self.ga), abs(self.gb)):
             return None
-        m = max(len(turns) // 2 - 1, 0)
-        between = range(turns[m] + 1, turns[m + 1] + 1 if m + 1 < len(turns) else len(values) - 1)
-        k = max(between, key=lambda k: abs(values[k]), default=turns[m])
-        return places[k], sign * values[k]
-    if not turns and _least(places, values) >= 0.5 * min(abs(part.ga), abs(part.gb)):
-        return None
-    k = min(range(len(values)), key=values.__getitem__)
-    around = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
-    least = minimize_scalar(lambda t: sign * along(t), bounds=around, method="bounded", options={"xatol": 1e-9})
-    return float(least.x), sign * float(least.fun)
+        k = min(range(len(values)), key=values.__getitem__)
+        around = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
+        lowest = minimize_scalar(lambda t: sign * along(t), bounds=around, method="bounded", options={"xatol": 1e-9})
+        return float(lowest.x)
 
 
 def zeros(
-    solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float, noise: float = 0.0
+    solver: PathSolver, function: Function, arc: Arc, ga: float, gb: float, noise: float = 0.0, direction: int = 0
 ) -> Iterator[Linearization]:
-    """The zeros of the monitor on the arc, in order, each on the path to round-off.
+    """The zeros of a function on the arc, in order, each on the path to round-off.
 
     Parameters
     ----------
     solver : PathSolver
-    event : Event
+    function : callable
+        (u, v) -> float
     arc : Arc
     ga, gb : float
-        The monitor at the ends; ga is not zero.
+        The function at the ends; ga is not zero.
     noise : float
         Values inside of the arc up to this are round-off, and change no sign.
+    direction : int
+        +1 only where it rises, -1 only where it falls.
     """
+
+    def along(part: _Part, t: float) -> float:
+        return function(part.model.at(t), part.model.derivative(t) / arc.length)
+
+    def value(part: _Part, known: dict[float, Linearization], t: float) -> float:
+        before, after = max(p for p in known if p < t), min(p for p in known if p > t)
+        a, b, nearer = known[before], known[after], before if t - before < after - t else after
+        segment, s = part.model, t
+        if len(known) > 2:
+            segment, s = hermite(a.u, a.tangent, b.u, b.tangent, arc.border), (t - before) / (after - before)
+        known[t] = solver.project_and_linearize(known[nearer], segment.at(s), arc.border, segment.derivative(s))
+        return function(known[t].u, known[t].tangent)
+
     parts = [_Part(arc.a, arc.b, ga, gb, arc.guide)]
     while parts:
         part = parts.pop()
         if part.ga == 0.0:
             continue
-        where = _undecided(event, part, arc.length) if part.depth < DIVISIONS else None
-        if where is not None and INSIDE_ARC < (where[0] - part.low) / (part.high - part.low) < 1.0 - INSIDE_ARC:
-            t, expected = where
-            near = part.a if t - part.low < part.high - t else part.b
-            point = solver.project_and_linearize(near, part.model.at(t), arc.border, part.model.derivative(t))
-            g = event.monitor(point.u, point.tangent)
+        low, high, model = part.low, part.high, partial(along, part)
+        known = {low: part.a, high: part.b}
+        t = part.undecided(model) if part.depth < DIVISIONS else None
+        if t is not None and INSIDE_ARC < (t - low) / (high - low) < 1.0 - INSIDE_ARC:
+            g = value(part, known, t)
             if abs(g) <= noise:
                 g = math.copysign(noise, part.ga)
-            if not min(part.ga * part.gb, part.ga * g) > 0.0 or abs(g - expected) > AS_EXPECTED * abs(g):
-                parts += part.divided(point, g, t, arc.border)[::-1]
-        elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * event.direction <= 0:
-            found = part.b if part.gb == 0.0 else _root(solver, event, arc.border, part)
+            parts += part.divided(known[t], g, t, arc.border)[::-1]
+        elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * direction <= 0:
+            guess, slope = zero_between(model, low, high), math.nan
+            if guess is not None:
+                slope = (model(guess + SLOPE * (high - low)) - model(guess)) / (SLOPE * (high - low))
+            enough = solver.noise(part.a) / arc.length
+            found = root(partial(value, part, known), (low, part.ga), (high, part.gb), enough, guess, slope)
             if found is not None:
-                yield found
+                yield known[found]
 
 
-def _guess(event: Event, segment: Segment, low: float, high: float) -> float | None:
-    """The monitor's zero on a part of the segment; None where the values at its ends do not bracket one."""
-    g = _along(event, segment)
-    if g(low) * g(high) >= 0.0:
-        return None
-    # A guess: where the monitor is so flat that it takes longer, the last bracket will do.
-    return zero_between(g, low, high, xtol=1e-15, rtol=1e-14, disp=False)
+def root(
+    function: Callable[[float], float],
+    a: tuple[float, float],
+    b: tuple[float, float],
+    enough: float,
+    guess: float | None = None,
+    slope: float = math.nan,
+) -> float | None:
+    """Where a function vanishes between two places; None where it jumps through zero instead, as a tangent may.
 
+    By the secant method. A bisection follows where that leaves the bracket, or has not halved the value.
 
-def _continued(
-    event: Event,
-    border: Array,
-    first: float,
-    replaced: tuple[Linearization, float],
-    last: tuple[Linearization, float],
-    room: float,
-) -> tuple[Segment, float] | None:
-    """The interpolant of the last point and the one that it took the place of, and where its continuation has the zero.
-
-    None where these two are farther from each other than the `room` in which the zero lies is wide.
+    Parameters
+    ----------
+    function : callable
+        Asked for the zero last or as one of the last.
+    a, b : (place, value)
+        Of different signs.
+    enough : float
+        How near a place is known.
+    guess, slope : float
+        Of a model of the function: its zero, and the slope there.
     """
-    (old, before), (point, g) = replaced, last
-    way = dot(border, point.u - old.u)
-    if not 0.0 < abs(way) < room or g == before:
-        return None
-    segment, until = hermite(old.u, old.tangent, point.u, point.tangent, border), 1.0 + min(room / abs(way), 1.0)
-    narrow = abs(way) <= NARROW_BRACKET * first
-    t = 1.0 + g / (before - g) if narrow else _guess(event, segment, 1.0, until)
-    return None if t is None or not 1.0 < t < until else (segment, t)
-
-
-def _root(solver: PathSolver, event: Event, border: Array, part: _Part) -> Linearization | None:
-    """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
-
-    The interpolant has the tangents of both ends, so each pass raises the error of the guess to about the fourth
-    power of the bracket; where one end of that stays, as in the method of false position, the last two points give
-    another one, which is continued. A pass of the first kind that does not halve the monitor is followed by a
-    bisection, or is the last one if the monitor is at round-off.
-    """
-    a, b = (part.a, part.ga), (part.b, part.gb)
-    last = best = min(a, b, key=lambda end: abs(end[1]))
-    scale = max(abs(part.ga), abs(part.gb))
-    width = first = dot(border, part.b.u - part.a.u)
-    known: tuple[Segment, float, float] | None = (part.model, part.low, part.high)
-    bisect, stalled, noise, replaced = False, 0, None, last
+    scale, best = max(abs(a[1]), abs(b[1])), min(a, b, key=lambda place: abs(place[1]))
+    if best[1] == 0.0:
+        return best[0]
+    last, stalled = None, 0
+    chord = (b[1] - a[1]) / (b[0] - a[0])
+    t = a[0] - a[1] / chord if guess is None else guess
     for _ in range(PASSES):
-        fine = width <= NARROW_BRACKET * first
-        ahead = None if bisect or fine else _continued(event, border, first, replaced, last, width)
-        near = last[0]
-        if ahead is not None:
-            segment, t = ahead
-        else:
-            ua, ub = a[0], b[0]
-            segment, low, high = known or (hermite(ua.u, ua.tangent, ub.u, ub.tangent, border), 0.0, 1.0)
-            guess = None if bisect else a[1] / (a[1] - b[1]) if fine else _guess(event, segment, low, high)
-            t = low + 0.5 * (high - low) if guess is None else min(max(guess, low + 1e-12), high - 1e-12)
-            near = ua if t - low < high - t else ub
-        known = None
-        # The ends of a narrow bracket differ by round-off in part, and so does the interpolant's direction.
-        along = near.tangent if fine else segment.derivative(t)
-        point = solver.project_and_linearize(near, segment.at(t), border, along)
-        last = point, event.monitor(point.u, point.tangent)
-        slow = abs(last[1]) > HALVING * abs(best[1])
-        bisect, stalled = slow and ahead is None, stalled + 1 if slow else 0
-        best = min(best, last, key=lambda place: abs(place[1]))
-        if a[1] * last[1] > 0.0:
-            replaced, a = a, last
-        else:
-            replaced, b = b, last
-        width, least = dot(border, b[0].u - a[0].u), abs(best[1])
-        if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
+        if stalled % 2 or not a[0] < t < b[0]:
+            t = 0.5 * (a[0] + b[0])
+        now = t, function(t)
+        stalled = stalled + 1 if abs(now[1]) > HALVING * abs(best[1]) else 0
+        a, b = (now, b) if a[1] * now[1] > 0.0 else (a, now)
+        best = min(best, now, key=lambda place: abs(place[1]))
+        if last is not None and now[0] != last[0]:
+            slope = (now[1] - last[1]) / (now[0] - last[0])
+        elif not slope * chord > 0.0:
+            slope = chord
+        step = -now[1] / slope if slope else math.inf
+        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled > 1
+        if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
             break
-        if bisect or fine or least <= NEARLY_ZERO * scale:
-            # As near as points are known: farther bisections would locate round-off.
-            noise = solver.noise(part.a) if noise is None else noise
-            if width <= noise or least <= noise * abs(b[1] - a[1]) / width:
-                break
-    if abs(best[1]) > JUMP * scale and not (noise is not None and width <= noise):
-        return None
-    return _on_value(solver, event, best[0])
+        last, t = now, t + step
+    return None if abs(best[1]) > JUMP * scale and b[0] - a[0] > enough else best[0]
 
 
-def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:
-    """For a wanted value of a component: put the component on it exactly, if the path is transversal to it there."""
-    if not isinstance(event, TargetValue):
+def on_value(solver: PathSolver, point: Linearization, component: int, value: float) -> Linearization:
+    """The point with a component put exactly on a value next to it, if the path is transversal to that there."""
+    if abs(point.tangent[component]) <= TRANSVERSAL * largest(point.tangent):
         return point
-    unit = np.zeros_like(point.u)
-    unit[event.component] = 1.0
-    if abs(point.tangent[event.component]) <= TRANSVERSAL * largest(point.tangent):
-        return point
-    guess = point.u.copy()
-    guess[event.component] = event.value
+    unit, guess = np.zeros_like(point.u), point.u.copy()
+    unit[component], guess[component] = 1.0, value
     try:
         u, _ = solver.project(point, guess, unit)
     except EvaluationError:
         return point
-    u[event.component] = event.value
+    u[component] = value
     return evolve(point, u=u)

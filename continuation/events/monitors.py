@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 import numpy as np
 from attrs import field, frozen
@@ -64,23 +64,6 @@ class Event(Protocol):
         ...
 
 
-@runtime_checkable
-class SupportsResolution(Protocol):
-    """An event that knows which values of its monitor are round-off."""
-
-    def resolution(self, noise: Array, length: float) -> float:
-        """The largest value that is round-off.
-
-        Parameters
-        ----------
-        noise : ndarray, shape (N + 1,)
-            How far round-off moves each component of a point.
-        length : float
-            Of the arc, in the units of the tangent.
-        """
-        ...
-
-
 @frozen
 class TurningPoint:
     """Where a component of the tangent changes sign: the parameter by default (a fold), or a component of y."""
@@ -100,7 +83,15 @@ class TurningPoint:
         return float(v[self.component])
 
     def resolution(self, noise: Array, length: float) -> float:
-        """The tangent's component that moves the point by no more than its round-off over the arc."""
+        """The tangent's component that moves the point by no more than its round-off over the arc.
+
+        Parameters
+        ----------
+        noise : ndarray, shape (N + 1,)
+            How far round-off moves each component of a point.
+        length : float
+            Of the arc, in the units of the tangent.
+        """
         return float(noise[self.component]) / length
 
 

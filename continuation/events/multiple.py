@@ -9,7 +9,6 @@ meets, whatever its order.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -18,7 +17,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.kernels import Doubled, kernels
+from continuation.events.kernels import Bordered, kernels
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.metric import norm
 from continuation.point.linearization import linearize
@@ -29,8 +28,8 @@ LOST_RANKS = 3
 CHORD, LAST_INCREMENT = 30, 1e-13
 """Iterations that bring a point onto the graph of z, and the last increment, relative to the sphere."""
 
-STARTS, NEWTON_ROUNDS = 100, 6
-"""On the sphere Newton's method begins at so many points, and again until two rounds have shown nothing new."""
+STARTS = 600
+"""On the sphere Newton's method begins at so many points: twenty for each of the 27 lines of three cubics."""
 
 NEWTON, ROOT = 30, 1e-9
 """Its iterations, and the last increment, relative to the sphere."""
@@ -81,7 +80,7 @@ class Reduced:
     sizes: Array
     kernel: Array
     left: Array
-    solve: Callable[[Array, bool], Array]
+    bordered: Bordered
 
     def at(self, a: Array) -> tuple[Array, Array]:
         """The point on the graph over the kernel, in units of the path from u, and g there."""
@@ -89,7 +88,7 @@ class Reduced:
         w, g = self.kernel @ a, np.zeros(self.left.shape[1])
         for _ in range(CHORD):
             H = self.evaluator.residual(self.u + self.extent * w) / self.sizes
-            step = self.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]), False)
+            step = self.bordered.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]))
             w, g = w + step[: n + 1], g + step[n + 1 :]
             if np.abs(step).max() <= LAST_INCREMENT * size:
                 break
@@ -160,21 +159,15 @@ class Polynomials:
     def zeros(self) -> list[Array]:
         """Zeros on the unit sphere, by Newton's method from many points."""
         found: list[Array] = []
-        idle = 0
-        for k in range(NEWTON_ROUNDS):
-            known = len(found)
-            a = _spread(STARTS, self.powers.shape[1], k + 2)
-            for _ in range(NEWTON):
-                step = _onto_sphere(*self.at(a), a, 1.0)
-                there = np.abs(step).max(axis=1) < ROOT
-                for one in a[there]:
-                    _add(found, one)
-                a = (a + step)[~there]
-                far = np.linalg.norm(a, axis=1) > 2.0
-                a[far] /= np.linalg.norm(a[far], axis=1)[:, None]
-            idle = idle + 1 if len(found) == known else 0
-            if idle == 2:
-                break
+        a = _spread(STARTS, self.powers.shape[1], 2)
+        for _ in range(NEWTON):
+            step = _onto_sphere(*self.at(a), a, 1.0)
+            there = np.abs(step).max(axis=1) < ROOT
+            for one in a[there]:
+                _add(found, one)
+            a = (a + step)[~there]
+            far = np.linalg.norm(a, axis=1) > 2.0
+            a[far] /= np.linalg.norm(a[far], axis=1)[:, None]
         return found
 
 
@@ -219,7 +212,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
             raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
         evaluator.counts.factorizations += 2
-        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Doubled(matrix, left, kernel.T).factors())
+        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Bordered(matrix, left, kernel.T))
         found = _on_sphere(reduced, step)
         branches = [_branch(reduced, a, step, weights) for a in found]
     except (EvaluationError, np.linalg.LinAlgError, RuntimeError) as error:

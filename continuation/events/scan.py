@@ -8,9 +8,9 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
-from continuation.events import Event, KinkPoint
+from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
-from continuation.events.locate import may_vanish, zeros
+from continuation.events.locate import may_vanish, on_value, zeros
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
@@ -60,7 +60,7 @@ def scan_events(
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)
         first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)
-        if first == 0.0 or not may_vanish(event, arc, first, g):
+        if first == 0.0 or not may_vanish(event.monitor, arc, first, g):
             continue
         resolution = getattr(event, "resolution", None)
         if resolution is not None:
@@ -70,10 +70,12 @@ def scan_events(
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue
         try:
-            points = list(zeros(solver, event, arc, first, g))
+            points = list(zeros(solver, event.monitor, arc, first, g, direction=event.direction))
         except EvaluationError:
             # The arc is on the path, its interior could not be evaluated: the crossing is reported at its end.
             points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []
+        if isinstance(event, TargetValue):
+            points = [on_value(solver, point, event.component, event.value) for point in points]
         found += [(i, point) for point in points]
     found.sort(key=lambda pair: position(arc, pair[1].u))
     return found, tuple(values)

@@ -6,25 +6,18 @@ they are made of, so that neither units nor the place of zero count.
 
 from __future__ import annotations
 
-import warnings
-from functools import cached_property
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
-from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
-from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.kernels import kernels
+from continuation.events.kernels import RANK, Bordered, kernels
 from continuation.linear import Banded, Symmetric
 from continuation.linear.entries import extended
 from continuation.metric import inner, norm
-from continuation.point.linearization import Linearization
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
 """Newton's method from a guess: its first increments may grow, and where it goes is checked afterwards."""
@@ -34,12 +27,6 @@ POLISHED, POLISHED_NEARLY = 1e-14, 1e-6
 
 SECOND = 1e-5
 """Of an extent: the step of second derivatives, a central difference of first ones; ten digits of the path."""
-
-RANK = 1e-6
-"""What may be left of the singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
-
-WEAK = 1e-8
-"""A pivot, relative to the largest, below which the rank is counted: one factorisation more."""
 
 DISTINCT_DIRECTIONS = 1e-9
 """The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
@@ -73,18 +60,6 @@ class SimpleBranchPoint:
         k = int(np.argmax(np.abs(along)))
         onward, other = self.directions[k] * np.sign(along[k]), self.directions[1 - k]
         return np.array([-onward, onward, other, -other])
-
-    def branch_of(self, point: Linearization) -> int:
-        """Which of the two leads to a point of either, of the path's metric: the one that a parabola joins to it best.
-
-        A parabola's chord has the mean direction of its ends. What a path differs from that by is of third order in the
-        distance of the two points, while the branches differ in it as they do in their directions.
-        """
-        w = point.weights
-        chord = (point.u - self.u) / norm(w, point.u - self.u)
-        mirrored = 2.0 * inner(w, chord, point.tangent) * chord - point.tangent
-        off = [min(norm(w, mirrored - d), norm(w, mirrored + d)) for d in self.directions]
-        return int(np.argmin(off))
 
 
 @frozen(eq=False)
@@ -146,65 +121,6 @@ def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) ->
     return np.where(sizes > 0.0, sizes, 1.0)
 
 
-@frozen(eq=False)
-class Bordered:
-    """The doubly bordered matrix [[H', b], [C, 0]] of order N + 2, factored: regular where H' has rank N - 1 or N.
-
-    Its solutions give the null spaces of H' at a simple branch point (Govaerts, Numerical Methods for Bifurcations of
-    Dynamical Equilibria, Section 3.3).
-    """
-
-    matrix: Matrix
-    column: Array
-    rows: Array
-
-    @cached_property
-    def _factor(self) -> Any:
-        whole = extended(self.matrix, self.column[:, None], np.hstack([self.rows, np.zeros((2, 1))]))
-        if sp.issparse(whole):
-            return splu(whole)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", LinAlgWarning)
-            try:
-                return lu_factor(whole, check_finite=False)
-            except LinAlgWarning as warning:
-                raise np.linalg.LinAlgError(str(warning)) from warning
-
-    def solve(self, r: Array, transposed: bool = False) -> Array:
-        """The solution of the bordered system, or of its transpose."""
-        if sp.issparse(self.matrix):
-            x: Array = self._factor.solve(r, trans="T" if transposed else "N")
-            return x
-        y: Array = lu_solve(self._factor, r, trans=int(transposed), check_finite=False)
-        return y
-
-    @property
-    def weak(self) -> bool:
-        """Whether a pivot is so small that the matrix may be singular: it is not, where one rank is lost."""
-        factor = self._factor
-        pivots = np.abs(factor.U.diagonal() if sp.issparse(self.matrix) else factor[0].diagonal())
-        return bool(pivots.min() <= WEAK * pivots.max())
-
-    @cached_property
-    def left(self) -> Array:
-        """(phi, gamma): what spans the left null space, and two numbers, how far H' is from losing rank."""
-        unit = np.zeros(self.column.size + 2)
-        unit[-1] = 1.0
-        return self.solve(unit, transposed=True)
-
-    @cached_property
-    def kernel(self) -> Array:
-        """Columns that span the right null space, with a last row, shape (N + 2, 2)."""
-        rights = np.zeros((self.column.size + 2, 2))
-        rights[-2, 0] = rights[-1, 1] = 1.0
-        return self.solve(rights)
-
-    def refreshed(self, matrix: Matrix) -> Bordered:
-        """Another H' with this one's null vectors as its borders: then the bordered matrix is conditioned best."""
-        phi, kernel = self.left[:-2], np.linalg.qr(self.kernel[:-1])[0].T
-        return Bordered(matrix, phi / np.linalg.norm(phi), kernel)
-
-
 def branch_point_near(
     evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
 ) -> SimpleBranchPoint | None:
@@ -233,18 +149,18 @@ def branch_point_near(
         evaluator.counts.factorizations += 1
         matrix = scaled.at(u)
         if here is None:
-            return Bordered(matrix, generic[:n], generic[n:].reshape(2, n + 1))
+            return Bordered(matrix, generic[:n, None], generic[n:].reshape(2, n + 1))
         return here.refreshed(matrix)
 
     def increment() -> Array:
         nonlocal here
         u, beta = newton.x[:-1], float(newton.x[-1])
         here = at(u)
-        phi, gamma = here.left[:-2], here.left[-2:]
-        gradient = np.array([-scaled.second(u, phi, here.kernel[:-1, i]) for i in range(2)])
-        first = here.solve(np.concatenate([-(evaluator.residual(u) / rows + beta * here.column), np.zeros(2)]))
-        within = np.linalg.solve(gradient @ here.kernel[:-1], -gamma - gradient @ first[:-1])
-        step = first + here.kernel @ within
+        (phi, gamma), (kernel, left_over) = here.left, here.right
+        gradient = np.array([-scaled.second(u, phi[:, 0], w) for w in kernel.T])
+        first = here.solve(np.concatenate([-(evaluator.residual(u) / rows + beta * here.columns[:, 0]), np.zeros(2)]))
+        within = np.linalg.solve(gradient @ kernel, -gamma[:, 0] - gradient @ first[:-1])
+        step = first + np.vstack([kernel, left_over]) @ within
         step[:-1] *= extent
         return step
 
@@ -264,15 +180,13 @@ def branch_point_near(
                 return None
             u = newton.x[:-1]
             here = at(u)
-            if not np.abs(here.left[-2:]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
+            if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
             # Where Newton's method came to a halt early the point is known to its last increment only, and so is H'.
-            halted = newton.size > HALTED[0]
-            accuracy = max(RANK, HALTED[1] * newton.size) if halted else RANK
-            if (here.weak or halted) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
+            if kernels(here.matrix, max(RANK, HALTED[1] * newton.size))[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
-            if halted:
+            if newton.size > HALTED[0]:
                 # From near a regular zero the first increments may not halve; the next one is round-off. Where it is
                 # not, the zero is a multiple one: branches touch there, or more than two cross.
                 newton.run(increment, measure, lambda size: True)
@@ -297,9 +211,9 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     """
     # The path's own direction first: it nearly is a root, and so no large term has to cancel where nothing is known of
     # the size of an unknown that stands still.
-    kernel = np.linalg.qr(here.kernel[:-1])[0]
+    kernel = np.linalg.qr(here.right[0])[0]
     w = np.linalg.qr(kernel @ np.column_stack([kernel.T @ heading, generic_vector(2)]))[0]
-    rows = [scaled.second(u, here.left[:-2], w[:, i]) for i in range(2)]
+    rows = [scaled.second(u, here.left[0][:, 0], w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
     if not discriminant > DISTINCT_DIRECTIONS * (b * b + abs(a * c)):

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
-from continuation.events.locate import MONITOR_PLACES, zeros
+from continuation.events.locate import MONITOR_PLACES, Function, zeros
 from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.status import Kind
 
 SEEN = 4.0
 """Two looks at round-off see the largest of many values within this factor."""
@@ -35,46 +33,6 @@ known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
 """Zeros located on one arc, each before the one found last; more than that are not between two points of a path."""
-
-
-@frozen
-class _Switch:
-    """One switch as an event: positive on the piece."""
-
-    pieces: Pieces
-    index: int
-    sign: int
-    noise: float
-    name: str = "switch"
-    kind: Kind = Kind.KINK
-    terminal: int = 0
-    direction: int = 0
-
-    def monitor(self, u: Array, v: Array) -> float:
-        """The switch times its sign."""
-        return self.sign * float(self.pieces.values(u)[self.index])
-
-    def seen(self, point: Linearization) -> float:
-        """The same at a point of the path, 0 where it is round-off."""
-        g = self.monitor(point.u, point.tangent)
-        return g if abs(g) > self.noise else 0.0
-
-
-@frozen(eq=False)
-class _Watched:
-    """All switches, the signs of the piece, and what is round-off of each."""
-
-    pieces: Pieces
-    signs: Array
-    noise: Array
-
-    def switch(self, j: int) -> _Switch:
-        """One of them."""
-        return _Switch(self.pieces, j, int(self.signs[j]), float(self.noise[j]))
-
-    def crossed(self, point: Linearization) -> list[int]:
-        """Those that have the wrong sign at a point."""
-        return np.flatnonzero(self.signs * self.pieces.values(point.u) < -self.noise).tolist()
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
@@ -122,8 +80,7 @@ def first_zero(
         fresh = grid[0] > fine
         grid = np.where(np.abs(grid) <= noise, 0.0, grid)
         grid[0, fresh] = np.maximum(grid[0, fresh], fine[fresh])
-        suspects = np.flatnonzero(_suspects(grid) & (grid != 0.0).any(axis=0))
-        found = _first(solver, _Watched(pieces, s, noise), arc, grid, suspects)
+        found = _first(solver, pieces, s, noise, arc, grid)
     except SwitchError as error:
         raise EvaluationError(str(error)) from error
     if found is None:
@@ -157,7 +114,7 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 
 
 def _first(
-    solver: PathSolver, watched: _Watched, arc: Arc, grid: Array, suspects: NDArray[np.int64]
+    solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
     """The first zero of the suspects, then of any switch that has changed its sign before that.
 
@@ -166,16 +123,22 @@ def _first(
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
-    waiting = sorted(suspects.tolist(), key=lambda j: int(order[j]))
+    suspects = np.flatnonzero(_suspects(grid) & (grid != 0.0).any(axis=0)).tolist()
+    waiting = sorted(suspects, key=lambda j: int(order[j]))
     for _ in range(len(waiting) + ZEROS_ON_ARC):
         if waiting:
             j, must = waiting.pop(0), False
         else:
-            crossed = [] if found is None else [j for j in watched.crossed(found[0]) if j != found[1]]
+            crossed = [] if found is None else np.flatnonzero(signs * pieces.values(found[0].u) < -noise).tolist()
+            crossed = [j for j in crossed if found and j != found[1]]
             if not crossed:
                 return found
             j, must = crossed[0], True
-        point = _zero(solver, watched.switch(j), arc, found[0] if found else arc.b, grid[:, j])
+
+        def switch(u: Array, v: Array, j: int = j) -> float:
+            return float(signs[j] * pieces.values(u)[j])
+
+        point = _zero(solver, switch, float(noise[j]), arc, found[0] if found else arc.b, grid[:, j])
         if point is not None:
             found = point, j
         elif must:
@@ -183,8 +146,15 @@ def _first(
     raise EvaluationError("switches vanish without end on the arc")
 
 
-def _zero(solver: PathSolver, switch: _Switch, arc: Arc, end: Linearization, values: Array) -> Linearization | None:
+def _zero(
+    solver: PathSolver, switch: Function, noise: float, arc: Arc, end: Linearization, values: Array
+) -> Linearization | None:
     """The first zero of one switch on an arc up to a point; `values` are those of the grid on the whole of it."""
+
+    def seen(point: Linearization) -> float:
+        g = switch(point.u, point.tangent)
+        return g if abs(g) > noise else 0.0
+
     begin, ga = arc.a, float(values[0])
     if ga <= 0.0:
         # It has vanished since the beginning: asked again once it has left zero, and at its last zero if it leaves to
@@ -195,12 +165,12 @@ def _zero(solver: PathSolver, switch: _Switch, arc: Arc, end: Linearization, val
         begin = _on_path(solver, arc, (first if values[first] > 0.0 else first - 1) / (len(values) - 1))
         if values[first] < 0.0:
             return begin
-        ga = switch.seen(begin)
+        ga = seen(begin)
     if ga <= 0.0 or position(arc, begin.u) >= position(arc, end.u):
         return None
     if begin is not arc.a or end is not arc.b:
         arc = part_between(arc, begin, end)
-    return next(zeros(solver, switch, arc, ga, switch.seen(end), switch.noise), None)
+    return next(zeros(solver, switch, arc, ga, seen(end), noise), None)
 
 
 def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:

@@ -40,14 +40,6 @@ class Backwards:
         """Its derivative at t."""
         return -self.forwards.derivative(1.0 - t)
 
-    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """One by one."""
-        return [self.at(t) for t in self.inside], [self.derivative(t) for t in self.inside]
-
-    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
-        """A cubic to the new end."""
-        return hermite(self.at(0.0), self.derivative(0.0), end, v, border)
-
 
 def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> StepsAndEvents:
     """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
-from continuation.point.segment import HermiteSegment
+from continuation.point.segment import cubic
 
 POINTS = 12
 """Of each cell: as smooth as the curve of a path (`drawing.SMOOTHNESS`)."""
@@ -33,7 +33,7 @@ def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, a
     from matplotlib.collections import PolyCollection
 
     rows = zip(cells.begin, cells.end, cells.slope_begin, cells.slope_end)
-    cubics = [[HermiteSegment(*row).at(t) for t in np.linspace(0.0, 1.0, POINTS)] for row in rows]
+    cubics = [[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, POINTS)] for row in rows]
     curves = np.array(cubics)[:, :, [-1, component]]
     wide = np.maximum(cells.radius[:, [-1, component]], VISIBLE * np.ptp(curves, axis=(0, 1)))[:, None]
     lo = np.minimum(curves[:, 1:], curves[:, :-1]) - wide

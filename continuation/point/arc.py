@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from attrs import Factory, field, frozen
 
 from continuation.arrays import Array, dot
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization
-from continuation.point.segment import HermiteSegment, QuinticSegment, Segment, hermite
+from continuation.point.segment import PolynomialSegment, Segment, SeriesSegment, hermite
 from continuation.predictors import Prediction
 
 
@@ -33,8 +32,12 @@ class Arc:
     def samples(self) -> list[tuple[Array, Array]]:
         """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
         if not self._samples:
-            points, slopes = self.guide.sampled()
-            self._samples.extend(zip(points, np.asarray(slopes) / self.length))
+            guide = self.guide
+            if isinstance(guide, PolynomialSegment):
+                found = zip(*guide.sampled())
+            else:
+                found = zip(map(guide.at, guide.inside), map(guide.derivative, guide.inside))
+            self._samples.extend((point, slope / self.length) for point, slope in found)
         return self._samples
 
     @property
@@ -43,17 +46,11 @@ class Arc:
         return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
 
 
-def guided(arc: Arc, c: Array, d: Array) -> Arc:
-    """The same arc, of which the cubic is known to be off by about s^2 (c + d t), s = t (1 - t)."""
-    cubic = arc.segment
-    assert isinstance(cubic, HermiteSegment)
-    return Arc(arc.a, arc.b, arc.border, cubic, length=arc.length, guide=QuinticSegment(cubic, c, d))
-
-
 def cut(arc: Arc, end: Linearization) -> Arc:
     """The arc up to a point on it."""
-    sigma = dot(arc.border, end.u - arc.a.u)
-    return Arc(arc.a, end, arc.border, arc.segment.until(sigma, end.u, end.tangent, arc.border))
+    if isinstance(arc.segment, SeriesSegment):
+        return Arc(arc.a, end, arc.border, arc.segment.until(position(arc, end.u), end.u))
+    return cubic_between(arc.a, end, arc.border)
 
 
 def position(arc: Arc, u: Array) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -13,11 +13,9 @@ from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
 from continuation.metric import norm
-from continuation.point.arc import Arc, guided
+from continuation.point.arc import Arc
 from continuation.point.linearization import Anchor, Linearization, relinearize
-from continuation.point.segment import CUBIC
-from continuation.predictors import Knot
-from continuation.predictors.base import history_in_pseudo_arclength
+from continuation.point.segment import PolynomialSegment
 from continuation.tolerance import Tolerance
 
 MaxStep = Callable[[Array, Array], float]
@@ -36,12 +34,6 @@ MISSED, EVEN = 0.07, 1.5e-4
 """On a smooth path the arc is off by a small part of what the prediction was off: for a cubic 1/64 where it is
 extrapolated by its own length. An S inside the step puts both off alike. What is below the second, in lengths of the
 arc, is not looked at: S-bends of a thousandth of the path are seen with it, of steps of a third (measured on 900)."""
-
-ALIKE = 0.5
-"""What a cubic misses of a smooth path has one factor at both places, about, and the quintic through the point before
-says which. Where these differ by more than this, as behind every jump, or no point lies before, the middle of the arc
-must be as they say: a third look at 15 % of the arcs, 1 % of all solves (record of behaviour). Without the point before
-one S-bend in 7,500 was overlooked, at which all that two looks and the prediction say is what a smooth curve does."""
 
 ARC_NOISE = 1e2
 """The same in tolerances: on a step as short as the noise of the residual an arc cannot do better than that."""
@@ -190,60 +182,33 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
     return system.approximate(r, 0.0)
 
 
-def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence[Knot]) -> Arc | None:
+def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     """The arc if it lies near the path: two points of different branches, or of an S, are joined by none.
 
     One residual and one solve with the factorisation at hand estimate how far the segment is off at a place. What that
     tells of a cubic is its arc's guide. The distance is how far the prediction of the end was off, in the metric.
     """
-    weights = arc.a.weights
-    length = norm(weights, arc.b.u - arc.a.u)
-    allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
-    cubic = len(arc.segment.inside) <= CUBIC
+    a, segment, weights = arc.a, arc.segment, arc.a.weights
+    length = norm(weights, arc.b.u - a.u)
     noise = ARC_NOISE * solver.tolerance.relative
-    off, most = [], distance
-    for t in ARC_PLACES if cubic else (*ARC_PLACES, LATE):
-        off.append(one := arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
-        size = norm(weights, one)
-        if size > allowed and size > noise:
+    allowed = max(min(SLACK * length, max(EVEN * length, MISSED * distance)), noise)
+    is_cubic, off = isinstance(segment, PolynomialSegment), list[Array]()
+    for t in ARC_PLACES if is_cubic else (*ARC_PLACES, LATE):
+        off.append(a.approximate(-solver.evaluator.residual(segment.at(t))))
+        if not norm(weights, off[-1]) <= allowed:
             return None
-        most = max(most, size)
-    if not cubic:
+    if not isinstance(segment, PolynomialSegment):
         return arc
-    even = max(EVEN * length, noise)
-    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d, as it does at the point before.
+    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t).
     p, q = ARC_PLACES
     first, second = off[0] / (p * (1.0 - p)) ** 2, off[1] / (q * (1.0 - q)) ** 2
     d = (second - first) / (q - p)
     c = first - p * d
-    arc = guided(arc, c, d)
-    if most <= even:
-        return arc
-    sizes = norm(weights, first), norm(weights, second)
-    if norm(weights, first - second) <= ALIKE * max(sizes):
-        before = _missed_before(arc, history)
-        if before and all(
-            norm(weights, one - missed) <= ALIKE * max(size, norm(weights, missed))
-            for one, missed, size in zip((first, second), before, sizes)
-        ):
-            return arc
-    # From the cubic, as the others: what a factorisation of another place makes of them has one error.
-    middle = arc.a.approximate(-solver.evaluator.residual(arc.segment.at(0.5)))
-    return arc if norm(weights, middle - (c + 0.5 * d) / 16.0) <= even else None
-
-
-def _missed_before(arc: Arc, history: Sequence[Knot]) -> list[Array]:
-    """What c + d t is at the places if the arc's cubic and s^2 (c + d t) meet the point before, with its tangent.
-
-    Empty where no point lies before.
-    """
-    knots = history_in_pseudo_arclength(arc.a, history)
-    if len(knots) < 2:
-        return []
-    sigma, u, slope = knots[1]
-    length = arc.length
-    t = sigma / length
-    s = t * (1.0 - t)
-    missed = (u - arc.segment.at(t)) / s**2
-    d = (length * slope - arc.segment.derivative(t)) / s**2 - 2.0 * (1.0 - 2.0 * t) / s * missed
-    return [missed + (place - t) * d for place in ARC_PLACES]
+    even = max(EVEN * length, noise)
+    if max(distance, *(norm(weights, one) for one in off)) > even:
+        # Of an S the middle is elsewhere. From the cubic, as the others: what a factorisation of another place makes
+        # of them has one error.
+        middle = a.approximate(-solver.evaluator.residual(segment.at(0.5)))
+        if not norm(weights, middle - (c + 0.5 * d) / 16.0) <= even:
+            return None
+    return Arc(a, arc.b, arc.border, segment, length=arc.length, guide=segment.bent(c, d))

@@ -36,7 +36,7 @@ def interpolate(nodes: Sequence[float], values: Sequence[Array], slopes: Sequenc
     """Divided differences for Hermite data; a node with a slope counts twice.
 
     Nodes may come in any order, but a repeated node must follow its twin, which is how they are laid out here. For the
-    cubic between two points on [0, 1] `point.segment.HermiteSegment` is the same polynomial in the form that all its
+    cubic between two points on [0, 1] `point.segment.cubic` is the same polynomial in the form that all its
     samples come from one product of matrices.
     """
     z: list[float] = []

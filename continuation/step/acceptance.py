@@ -93,7 +93,7 @@ class Examiner:
             if kink is not None:
                 arrival, landed = kink[0], False
                 arc = cut(arc, arrival)
-            looked_at = arc_on_path(self.solver, arc, missed, state.history)
+            looked_at = arc_on_path(self.solver, arc, missed)
             if looked_at is None:
                 return _rejected(attempt, Rejection.MIDPOINT)
             arc = looked_at

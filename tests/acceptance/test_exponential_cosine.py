@@ -71,7 +71,7 @@ def test_the_audit_agrees(n, backwards):
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""
-    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance, history: arc)
+    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: arc)
     monkeypatch.setattr(acceptance, "on_arc", lambda *_: None)
 
 
