@@ -18,8 +18,8 @@ from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along,
 from continuation.certificate.engine import Engine, Judged, together, up_by
 from continuation.numbers.ends import EPS, Ends, Mask
 
-NODE_TESTS, RADII = 4, 12
-"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with the bounds of one test."""
+RADII = 12
+"""Radii that are tried with the bounds of one test."""
 
 INFLATION = 1.1
 """How much wider than what the test gives the next radii are: a fixed point is approached from above."""
@@ -84,16 +84,12 @@ def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
-    bounded = FIRST_BOX * cells.radius + 4.0 * least
-    judged = engine.judge(slabs, bounded)
-    for k in range(NODE_TESTS):
-        if k and not engine.exact:
-            judged = engine.judge(slabs, bounded)
+    for bounded in (FIRST_BOX * cells.radius + 4.0 * least, cells.radius):
+        judged = engine.judge(slabs, bounded)
         radius, _, done = settled(judged, slabs.owner, least, bounded, bounded)
         done &= (radius <= bounded).all(axis=1)
         if done.all():
             break
-        bounded = np.where(done[:, None], bounded, 8.0 * bounded)
     return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 
