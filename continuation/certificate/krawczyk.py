@@ -92,8 +92,8 @@ class ByIntervals:
     def judge(self, slabs: Slabs, radius: Array) -> Bounded:
         """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W.
 
-        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole, and x is s -
-        middle. With R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). Where H' has
+        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole, x = s - m.
+        With R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). Where H' has
         no derivative, at kinks, or too many, the preconditioner stands still: E = D = 0, and G_0 is over the whole box.
         """
         m, x, whole = radius.shape[1], slabs.offset[:, None, None], slabs.box(radius)
@@ -104,8 +104,9 @@ class ByIntervals:
             # What stands still has as much room as other components have, of lengths in which it counts as much.
             unit = np.where(size < radius, radius * (size / radius).max(axis=1, keepdims=True), size)
             W = self._change(whole, slabs.velocity, unit)
-        along = np.isfinite(W.hi - W.lo).all(axis=(1, 2), keepdims=True)
-        at, smooth = slabs.cubic[:, 0] + Ends(-radius, radius), along[:, 0]
+        at, largest = slabs.cubic[:, 0] + Ends(-radius, radius), W.magnitude().sum(axis=(1, 2), keepdims=True)
+        along = np.isfinite(largest)
+        smooth = along[:, 0]
         box = Ends(np.where(smooth, at.lo, whole.lo), np.where(smooth, at.hi, whole.hi))
         Y, R = self._inverse(slabs, box)
         left = Y[:, :, :-1]
