@@ -265,7 +265,8 @@ class _Scaled:
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):
-                return multiplier(self.problem, self.system.integers_on_rows(candidate, self.problem.n))
+                whole = np.array(candidate, dtype=object)
+                return multiplier(self.problem, self.system.on_rows(whole, self.problem.n).tolist())
         return None
 
     def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:
