@@ -67,11 +67,6 @@ class Engine(Protocol):
     exact: ClassVar[bool]
 
     @property
-    def order(self) -> int:
-        """To which power of a slab's length |I - Y(s) G'(p(s))| falls."""
-        ...
-
-    @property
     def most(self) -> int:
         """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
         ...

@@ -10,8 +10,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node
 from continuation.certificate.engine import Engine, Judged
-from continuation.certificate.links import nodes
-from continuation.numbers.ends import Ends
+from continuation.numbers.ends import EPS, Ends
 
 PLACES = 32
 """At so many places in a range with a turning point the sign is asked, twice: a thousandth of it is left."""
@@ -139,9 +138,11 @@ def located(engine: Engine, cells: Cells, turn: Turn) -> Turn:
         x = np.linspace(turn.lo, turn.hi, PLACES + 2)[1:-1]
         x = x[(np.abs(x - np.round(x)) > 2.0 * OVERHANG) & (x > 0.0) & (x < len(cells))]
         own = cells.take(x.astype(np.intp))
-        radius = nodes(engine, own, x % 1.0).radius
-        t = engine.judge(at_node(own, x % 1.0), radius).tangent(radius, radius)
-        known = np.where((radius <= own.radius).all(axis=1), signs(t[:, -1]), 0)
+        slabs = at_node(own, x % 1.0)
+        judged = engine.judge(slabs, own.radius)
+        # The curve lies in the image of its box.
+        radius = np.minimum((judged.misfit + judged.spread(own.radius, own.radius)) * (1.0 + 4.0 * EPS), own.radius)
+        known = signs(engine.judge(slabs, radius).tangent(radius, radius)[:, -1])
         lo, hi = x[known == -turn.bend], x[known == turn.bend]
         turn = evolve(turn, lo=max([turn.lo, *lo]), hi=min([turn.hi, *hi]))
     return turn

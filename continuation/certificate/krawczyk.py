@@ -63,11 +63,6 @@ class ByIntervals:
         return self.unknowns <= DIRECTIONS_THAT_PAY
 
     @property
-    def order(self) -> int:
-        """One more than that of the preconditioner."""
-        return 2 if self.moving else 1
-
-    @property
     def most(self) -> int:
         """See `Engine`."""
         return 8 if self.moving else 16
@@ -236,9 +231,12 @@ class Bounded:
             if not asked.any():
                 break
             parts, r = self.slabs.take(asked).halved(cuts), np.repeat(radius[asked], cuts, axis=0)
-            image = self.engine.judge(parts, r)._image(r)
-            r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
-            found = np.array([[x.lo, x.hi] for x in self.engine.judge(parts, r).turned(r)])
+            judged = self.engine.judge(parts, r)
+            if cuts > 1:
+                image = judged._image(r)
+                r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
+                judged = self.engine.judge(parts, r)
+            found = np.array([[x.lo, x.hi] for x in judged.turned(r)])
             ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), STRETCHES // cuts, axis=3)
             asked &= ~(ends[:, 0] * ends[:, 1] > 0.0).any(axis=0).all(axis=1)
         return Ends(*ends[0]), Ends(*ends[1])

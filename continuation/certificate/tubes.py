@@ -19,15 +19,17 @@ curve. The curve itself is found where it is, within the misfit."""
 STILL_ULPS = 1024.0
 """Units in the last place of the nodes: the same for a component that stands still."""
 
-FIRST_RADII = 0.1
-"""The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
+FIRST_RADII = 0.05
+"""The radii that a test begins with, in lengths of a slab: they widen the derivatives by so much."""
+
+WIDE = 10.0
+"""Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
 
 CELL_TESTS = 6
 """Tests of a cell, with more slabs or other radii each time."""
 
 CONTRACTING = 0.6
-"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
-power that is the engine's order; at half of it a test holds at once."""
+"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length."""
 
 
 def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
@@ -107,40 +109,39 @@ def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
 
 def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
-    slabs = cells.slabs.copy()
     least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
-    radius = np.maximum(FIRST_RADII * scale / (2.0 * slabs[:, None]), least)
+    slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[list[Piece]]] = [[] for _ in range(count)]
     pending = np.arange(count)
     for _ in range(CELL_TESTS):
-        if not len(pending):
-            break
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, 100.0 * scale[pending])
+        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, WIDE * scale[pending])
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
-        if good.any():
+        if engine.exact and good.any():
             seen = pieces(look, judged, parts, wanted[parts.owner], len(tried))
             for k in np.flatnonzero(good):
                 known[pending[k]] = seen[k]
         proved[pending] = good
         undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
-        more = ~good & (engine.exact | ~(kappa < CONTRACTING))
-        with np.errstate(all="ignore"):
-            factor = np.ceil(np.clip(2.0 * kappa / CONTRACTING, 2.0**engine.order, 8.0) ** (1.0 / engine.order))
-            cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
-            wider = np.where(good[:, None], wanted, INFLATION * wanted)
-        slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
-        first = np.maximum(FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), least[pending])
-        again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
-        radius[pending] = np.where(again[:, None], first, wider)
+        wider = np.isfinite(wanted).all(axis=1) & (kappa < CONTRACTING) & (not engine.exact)
+        slabs[pending] *= np.where(good | wider, 1, 2)
+        first = np.maximum(FIRST_RADII * scale[pending] / slabs[pending][:, None], least[pending])
+        kept = np.where(good[:, None], wanted, INFLATION * wanted)
+        radius[pending] = np.where((good | wider)[:, None], kept, first)
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Tubes(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known)
+        if not len(pending):
+            break
+    cells = cells.with_tubes(radius, np.minimum(slabs, engine.most))
+    if not engine.exact and proved.any():  # all at once
+        for k, found in zip(np.flatnonzero(proved), check(engine, cells.take(proved), look).pieces):
+            known[k] = found
+    return Tubes(cells, proved, undefined, known)
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:

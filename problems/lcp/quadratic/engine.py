@@ -34,7 +34,6 @@ class ByProducts:
 
     form: Quadratic
     exact: ClassVar[bool] = True
-    order: ClassVar[int] = 3
     most: ClassVar[int] = 4
 
     def together(self, m: int) -> int:
