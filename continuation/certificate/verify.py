@@ -31,9 +31,6 @@ POINT_DISTANCE = 1e-4
 RANGE = 0.25
 """Longer ranges with a turning point, in cells, do not say where it is."""
 
-PARAMETER_STEPS = 30
-"""Of Newton's method from the middle of a cell, along which its chart advances."""
-
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
     """The proof that these cells make.
@@ -212,15 +209,11 @@ def _place(engine: Engine, cells: Cells, event: LocatedEvent, path: Path) -> flo
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0 in a cell, by Newton's method."""
-    chord = cell.end - cell.begin
-    bend = 3.0 * chord - 2.0 * cell.slope_begin - cell.slope_end
-    rows = cell.begin - u, cell.slope_begin, bend, cell.slope_begin + cell.slope_end - 2.0 * chord
-    a, b, c, d = (float(cell.chart[0] @ row[0]) for row in rows)
-    t = 0.5
-    for _ in range(PARAMETER_STEPS):
-        t = min(max(t - (a + t * (b + t * (c + t * d))) / (b + t * (2.0 * c + 3.0 * t * d)), 0.0), 1.0)
-    return np.array([t])
+    """About where c . (p(t) - u) = 0 in a proved cell: the root next to it of a cubic that grows all over it."""
+    chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
+    rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
+    roots = np.roots([float(cell.chart[0] @ row[0]) for row in rows])
+    return np.clip(roots[np.argmin(np.abs(roots - 0.5)), None].real, 0.0, 1.0)
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:

@@ -179,10 +179,7 @@ def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
         method="highs",
         options={"primal_feasibility_tolerance": HIGHS_TOLERANCE, "dual_feasibility_tolerance": HIGHS_TOLERANCE},
     )  # fmt: skip
-    if result.status != 0:
-        return None
-    solution: Array = np.maximum(result.x, 0.0)
-    return solution
+    return np.maximum(result.x, 0.0) if result.status == 0 else None
 
 
 def transposed(matrix: Matrix) -> Matrix:
