@@ -31,6 +31,9 @@ POINT_DISTANCE = 1e-4
 RANGE = 0.25
 """Longer ranges with a turning point, in cells, do not say where it is."""
 
+PARAMETER_STEPS = 30
+"""Of Newton's method from the middle of a cell, along which its chart advances."""
+
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
     """The proof that these cells make.
@@ -209,11 +212,14 @@ def _place(engine: Engine, cells: Cells, event: LocatedEvent, path: Path) -> flo
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0 in a proved cell: the root next to it of a cubic that grows all over it."""
+    """About where c . (p(t) - u) = 0 in a proved cell, by Newton's method for a cubic that grows all over it."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
-    roots = np.roots([float(cell.chart[0] @ row[0]) for row in rows])
-    return np.clip(roots[np.argmin(np.abs(roots - 0.5)), None].real, 0.0, 1.0)
+    cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
+    t, slope = 0.5, cubic.deriv()
+    for _ in range(PARAMETER_STEPS):
+        t = min(max(t - cubic(t) / slope(t), 0.0), 1.0)
+    return np.array([t])
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
