@@ -309,7 +309,8 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
     for i, value in zip(chosen, solution[0]):
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
-    exact_w = tuple(_fraction_w(row, numerators, denominator) for row in rows)
+    # An integer row is a power of two times the float row, and that power is divided out.
+    exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
     wrong = _wrong_sign(problem, state, exact_x, exact_w)
     if wrong:
         return ExactCertificate(False, exact_x, exact_w, chosen, f"The exact point of the active set has {wrong}.")
@@ -330,8 +331,3 @@ def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tup
         if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
             return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
     return ""
-
-
-def _fraction_w(row: IntegerRow, numerators: list[int], denominator: int) -> Fraction:
-    """W_i exactly; the integer row is a power of two times the float row, and that power is divided out."""
-    return Fraction(row.times(numerators, denominator), denominator << row.shift)
