@@ -42,6 +42,9 @@ NEARER = 0.25
 """The distance of such a point from the end, of that of the one before. On 50 degenerate LCPs (n = 2 to 20, 618 points)
 it makes 768 boxes, 0.4 makes 792 and 0.1 784 with half more time."""
 
+LARGE_NUMBERS = 4_000_000
+"""Numbers of an array of 32 MB, the largest that has this effect."""
+
 
 @frozen(eq=False)
 class Node:
@@ -105,6 +108,9 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
     """A proof, what it was found by, and the pieces of the numbers that were looked at, the parameter's rate first."""
+    # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages again
+    # each time took a third of a proof. Nothing is written to this one.
+    np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
         tubes, gaps = TubeSearch(engine, homotopy, path, look).run()

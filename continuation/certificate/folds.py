@@ -12,6 +12,9 @@ from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_nod
 from continuation.certificate.engine import Engine, Judged
 from continuation.numbers.ends import EPS, Ends
 
+RANGE = 0.25
+"""Longer ranges with a turning point, in cells, do not say where it is."""
+
 PLACES = 32
 """At so many places in a range with a turning point the sign is asked, twice: a thousandth of it is left."""
 
@@ -121,8 +124,8 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
     return out, unknown
 
 
-def located(engine: Engine, cells: Cells, turn: Turn) -> Turn:
-    """The same in a shorter range.
+def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
+    """The same in shorter ranges, of those that are longer than `RANGE`.
 
     The number grows, or falls, all over a range: where it has the sign that it has before its zero, that lies behind.
     At points within a cell the order of parameters is that of the curve; next to nodes it need not be.
@@ -131,11 +134,13 @@ def located(engine: Engine, cells: Cells, turn: Turn) -> Turn:
     ----------
     engine : Engine
     cells : Cells
-    turn : Turn
+    found : list of Turn
         Of the parameter's rate.
     """
-    for _ in range(2):
-        x = np.linspace(turn.lo, turn.hi, PLACES + 2)[1:-1]
+    found = list(found)
+    wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]
+    for _ in range(2 if wide else 0):
+        x = np.concatenate([np.linspace(found[k].lo, found[k].hi, PLACES + 2)[1:-1] for k in wide])
         x = x[(np.abs(x - np.round(x)) > 2.0 * OVERHANG) & (x > 0.0) & (x < len(cells))]
         own = cells.take(x.astype(np.intp))
         slabs = at_node(own, x % 1.0)
@@ -143,6 +148,9 @@ def located(engine: Engine, cells: Cells, turn: Turn) -> Turn:
         # The curve lies in the image of its box.
         radius = np.minimum((judged.misfit + judged.spread(own.radius, own.radius)) * (1.0 + 4.0 * EPS), own.radius)
         known = signs(engine.judge(slabs, radius).tangent(radius, radius)[:, -1])
-        lo, hi = x[known == -turn.bend], x[known == turn.bend]
-        turn = evolve(turn, lo=max([turn.lo, *lo]), hi=min([turn.hi, *hi]))
-    return turn
+        for k in wide:
+            turn = found[k]
+            inside = (turn.lo < x) & (x < turn.hi)
+            lo, hi = x[inside & (known == -turn.bend)], x[inside & (known == turn.bend)]
+            found[k] = evolve(turn, lo=max([turn.lo, *lo]), hi=min([turn.hi, *hi]))
+    return found

@@ -24,7 +24,7 @@ from continuation.certificate.inverse import inverses, times
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient
-from continuation.numbers.ends import EPS, Ends, accumulated, bilinear, moved, thin
+from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
@@ -213,6 +213,11 @@ class Bounded:
     largest: Array
     E: Array
 
+    def take(self, index: Mask) -> Bounded:
+        """Those of some slabs."""
+        bounds = (self.misfit, self.Y, self.off, self.largest, self.E)
+        return Bounded(self.engine, self.slabs.take(index), *(bound[index] for bound in bounds))
+
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`; c . t = 1."""
         return self._solved(thin(self.Y[:, :, -1]), radius, tube)
@@ -230,10 +235,11 @@ class Bounded:
         for cuts in (1, STRETCHES):
             if not asked.any():
                 break
-            parts, r = self.slabs.take(asked).halved(cuts), np.repeat(radius[asked], cuts, axis=0)
-            judged = self.engine.judge(parts, r)
+            r = np.repeat(radius[asked], cuts, axis=0)
+            judged = self.take(asked)
             if cuts > 1:
-                image = judged._image(r)
+                parts = judged.slabs.halved(cuts)
+                image = self.engine.judge(parts, r)._image(r)
                 r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
                 judged = self.engine.judge(parts, r)
             found = np.array([[x.lo, x.hi] for x in judged.turned(r)])

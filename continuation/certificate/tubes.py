@@ -22,9 +22,6 @@ STILL_ULPS = 1024.0
 FIRST_RADII = 0.05
 """The radii that a test begins with, in lengths of a slab: they widen the derivatives by so much."""
 
-WIDE = 10.0
-"""Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
-
 CELL_TESTS = 6
 """Tests of a cell, with more slabs or other radii each time."""
 
@@ -120,7 +117,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, WIDE * scale[pending])
+        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             seen = pieces(look, judged, parts, wanted[parts.owner], len(tried))

@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Piece, located, turns
+from continuation.certificate.folds import RANGE, Piece, located, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.numbers.ends import EPS, Mask, thin
@@ -27,9 +27,6 @@ NOWHERE = "where the parameter turns is not known"
 POINT_DISTANCE = 1e-4
 """How far a point or an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of
 1e-6."""
-
-RANGE = 0.25
-"""Longer ranges with a turning point, in cells, do not say where it is."""
 
 PARAMETER_STEPS = 30
 """Of Newton's method from the middle of a cell, along which its chart advances."""
@@ -70,7 +67,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
     if end and radius is None and path.status is Status.REACHED_TARGET:
         # What is said of the end takes the place of the rest.
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
-    places = [_place(engine, cells, event, path) for event in path.events]
+    places = _places(engine, cells, path)
     ranges, more = _turning(engine, cells, _between_nodes(found, cells, ends, at), path, places)
     gaps += more + _events(path, places)
     if missing:
@@ -162,9 +159,7 @@ def _turning(
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
     ranges, taken, slack = [], set(), 2.0 * OVERHANG
-    for turn in understood:
-        if turn.hi - turn.lo > RANGE:
-            turn = located(engine, cells, turn)
+    for turn in located(engine, cells, understood):
         inside = {
             k
             for k, (place, _) in enumerate(listed)
@@ -194,20 +189,28 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
     return first, last
 
 
-def _place(engine: Engine, cells: Cells, event: LocatedEvent, path: Path) -> float | None:
-    """Cell and parameter of an event next to a point of the curve in the tube; None where there is none.
+def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
+    """Cell and parameter of each event next to a point of the curve in the tube; None where there is none."""
+    places = [_place(cells, event, path) for event in path.events]
+    known = [k for k, place in enumerate(places) if place is not None]
+    if known:
+        own = cells.take([min(int(places[k] or 0.0), len(cells) - 1) for k in known])
+        u, s = (np.array([getattr(path.events[k], name) for k in known]) for name in ("u", "arclength"))
+        near = nodes(engine, evolve(own, begin=u), np.zeros(len(u))).radius <= _allowed(own, u, s, path)
+        for k in np.flatnonzero(~near.all(axis=1)):
+            places[known[k]] = None
+    return places
 
-    Arclengths of cells are shares of those of a step, and tell little more than which step it is.
-    """
+
+def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
+    """Cell and parameter of an event in the tube. Arclengths of cells tell little more than in which step they are."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
-    begin, end = path.arclength[max(step - 2, 0)], path.arclength[min(step + 1, len(path) - 1)]
-    for k in np.flatnonzero((begin <= cells.place[:, 0]) & (cells.place[:, 1] <= end)).tolist():
+    begin, end = path.arclength[step - 1 : step + 1]
+    for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
         cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
         if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
-            at = nodes(engine, evolve(cell, begin=event.u[None]), np.zeros(1))
-            near = at.radius <= _allowed(cell, event.u, np.array([event.arclength]), path)
-            return float(k + t[0]) if near.all() else None
+            return float(k + t[0])
     return None
 
 
