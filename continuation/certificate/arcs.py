@@ -16,12 +16,12 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node, joined
-from continuation.certificate.engine import Engine, up_by
-from continuation.certificate.krawczyk import ByIntervals, engine_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, joined
+from continuation.certificate.engine import Engine, Judged, up_by
+from continuation.certificate.folds import Look, Piece, signs, turning, turns
+from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.switches import judged, signs_along, value_at
 from continuation.numbers.boxes import derivatives, with_gradient
 from continuation.numbers.ends import Ends, bilinear, thin
 from continuation.path import LocatedEvent, Path, Step
@@ -30,29 +30,22 @@ from continuation.status import Kind, Status
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
 """How far from its end the signs of a switch are asked, in lengths of the last cell: the first that will do."""
 
-NO_KINK = "a kink is listed where there is none"
+ARC_PARTS = 4
+"""Parts of a slab on which switches are looked at: one that vanishes at both ends of an arc has its sign in between."""
 
-Prove = Callable[[Any, Path, Cells | None], tuple[Proof, Engine]]
+NO_KINK = "a kink is listed where there is none"
+NOT_LISTED = "a kink that the path does not list"
+
+Prove = Callable[[Any, Path, Cells | None, Look], tuple[Proof, Engine, list[list[Piece]]]]
 
 
 @frozen(eq=False)
 class SmoothPart:
-    """What is between two kinks.
-
-    Attributes
-    ----------
-    signs : ndarray of int
-        Of the switches.
-    proof : Proof
-    engine : Engine
-    ends : tuple of tuple of int
-        The switches that vanish where it begins, and where it ends.
-    """
+    """What is between two kinks: the signs of the switches, the proof, and what it was found by."""
 
     signs: Array
     proof: Proof
     engine: Engine
-    ends: tuple[tuple[int, ...], tuple[int, ...]]
 
 
 def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
@@ -71,43 +64,46 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     kinks, gaps = _listed(path)
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
     tied = [(), *(kink.switches for kink in kinks), ()]
-    arcs, others = [], [event for event in path.events if event.kind is not Kind.KINK]
+    others = [event for event in path.events if event.kind is not Kind.KINK]
+    arcs: list[SmoothPart | None] = []
     before = None
     for k, (first, last) in enumerate(pairwise(places)):
         if first == last:  # a kink in which the path ends
+            arcs.append(None)
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
-        signs, told = _signs(homotopy, steps, ends, before)
-        gaps, before = gaps + told, None if told else signs
-        begin, end = steps[0].arclength, steps[-1].arclength
-        if told:
-            gaps.append(Gap(begin, end, "it is not on one piece"))
+        here, before = _signs(homotopy, steps, ends, before)
+        span = steps[0].arclength, steps[-1].arclength
+        if before is None:
+            arcs.append(None)
+            gaps += [Gap(*here, NOT_LISTED), Gap(*span, "it is not on one piece")]
             continue
         events = [e for e in others if (e.step > first or not first) and (e.step <= last or last == places[-1])]
-        known = None
+        known = cells
         if cells is not None:
-            known = cells.take((cells.place[:, 0] >= begin) & (cells.place[:, 1] <= end))
+            known = cells.take((cells.place[:, 0] >= span[0]) & (cells.place[:, 1] <= span[1]))
         status = path.status if last == places[-1] else Status.STOPPED_AT_EVENT
         points = _from(steps, kinks[k - 1] if k else None)
-        proof, engine = prove(homotopy.piece(signs), Path(steps=points, events=events, status=status), known)
-        arc = SmoothPart(signs, proof, engine, ends)
-        gaps += [*proof.gaps, *_kept(arc, switches, (begin, end))]
-        arcs.append(arc)
-    by_end = {arc.proof.cells.place[-1, 1]: arc for arc in arcs if len(arc.proof.cells)}
-    by_begin = {arc.proof.cells.place[0, 0]: arc for arc in arcs if len(arc.proof.cells)}
+        part = Path(steps=points, events=events, status=status)
+        proof, engine, numbers = prove(homotopy.piece(before), part, known, _look_at(switches))
+        arcs.append(SmoothPart(before, proof, engine))
+        gaps += proof.gaps
+        if len(proof.cells):
+            firsts, lasts = _at_ends(engine, switches, proof.cells)
+            for j, found in enumerate(numbers[1:]):
+                at = j in ends[0], j in ends[1]
+                why = _kept([firsts[j], *found, lasts[j]], len(proof.cells), int(before[j]), at)
+                gaps += [Gap(*span, why)] if why else []
     crossed = []
-    for kink in kinks:
-        left, right = by_end.get(kink.arclength), by_begin.get(kink.arclength)
-        if left is None or (right is None and kink.step < len(path) - 1):
-            continue  # there is a gap
-        found = _joined(homotopy, left, right, kink)
-        if isinstance(found, str):
-            gaps.append(Gap(kink.arclength, kink.arclength, found))
+    for kink, left, right in zip(kinks, arcs, arcs[1:]):
+        joint = _joined(homotopy, left, right, kink)
+        if isinstance(joint, str):
+            gaps.append(Gap(kink.arclength, kink.arclength, joint))
         else:
-            crossed.append(found)
-    if not arcs:
+            crossed.append(joint)
+    proofs = [arc.proof for arc in arcs if arc is not None]
+    if not proofs:
         return Proof.empty(path.u.shape[1], *merged(gaps))
-    proofs = [arc.proof for arc in arcs]
     return evolve(
         proofs[-1],
         cells=joined([proof.cells for proof in proofs]),
@@ -136,24 +132,22 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
 
 def _signs(
     homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
-) -> tuple[Array, list[Gap]]:
-    """Those of the switches between two kinks, given those before, and where the points are not on one piece."""
+) -> tuple[tuple[float, float], Array | None]:
+    """Where the points are not on one piece, and the signs of the switches, given those before: None in that case."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
-        signs = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
+        found = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
     if before is not None:
         # What vanishes at both ends of a step is zero in the middle of its chord, too.
-        crossed = [j for j in ends[0] if 0 <= j < len(signs)]
-        signs[crossed] = -before[crossed]
+        crossed = [j for j in ends[0] if 0 <= j < len(found)]
+        found[crossed] = -before[crossed]
     for row, end in zip((0, -1), ends):
-        known = [j for j in end if 0 <= j < len(signs)]
-        values[row, known] = signs[known]
-    wrong = [k for k, row in enumerate(values) if not (row * signs > 0.0).all()]
-    if not wrong:
-        return signs, []
-    k = max(wrong[0], 1)
-    return signs, [Gap(steps[k - 1].arclength, steps[k].arclength, "a kink that the path does not list")]
+        known = [j for j in end if 0 <= j < len(found)]
+        values[row, known] = found[known]
+    wrong = [k for k, row in enumerate(values) if not (row * found > 0.0).all()]
+    k = max(wrong[0], 1) if wrong else len(steps) - 1
+    return (steps[k - 1].arclength, steps[k].arclength), None if wrong else found
 
 
 def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
@@ -164,87 +158,105 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
     return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
-def _kept(arc: SmoothPart, switches: ByIntervals, span: tuple[float, float]) -> list[Gap]:
-    """Where switches do not surely keep their signs."""
-    cells = arc.proof.cells
-    if not len(cells):
-        return []
-    gaps = []
-    for j, found in enumerate(signs_along(arc.engine, switches, cells)):
-        told = judged(found, len(cells), int(arc.signs[j]), (j in arc.ends[0], j in arc.ends[1]))
-        if isinstance(told, str):
-            gaps.append(Gap(*span, told))
-    return gaps
+# --- the switches along an arc ----------------------------------------------------------------------------
+
+
+def _look_at(switches: ByIntervals) -> Look:
+    """The look at the parameter's rate and at switches: the curve lies in the tube, where their range is bounded.
+
+    Where that has no sign, the derivative along the curve has one perhaps, gradient times tangent.
+    """
+
+    def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
+        owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
+        box, t = slabs.halved(ARC_PARTS).box(radius[owner]), judged.tangent(radius, radius)[owner]
+        image = switches.image(with_gradient(box.lo, box.hi))
+        with np.errstate(all="ignore"):
+            slope = bilinear(np.matmul, Ends(*derivatives(image, radius.shape[1])), t[..., None])
+        both = (x.T.reshape(-1, len(slabs), ARC_PARTS) for x in (signs(image.c[0]), signs(slope[..., 0])))
+        return [*turning(judged, slabs, radius), *zip(*both)]
+
+    return look
+
+
+def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[Piece], list[Piece]]:
+    """Pieces of each switch at the first and the last point of an arc."""
+    s, sides = np.array([0.0, 1.0]), cells.take([0, -1])
+    radius = nodes(engine, sides, s).radius
+    radius = np.where((radius <= sides.radius).all(axis=1, keepdims=True), radius, np.nan)
+    first, last = _value_at(switches, at_node(sides, s), radius).tolist()
+    end = float(len(cells))
+    return [Piece(0.0, 0.0, sign, 0) for sign in first], [Piece(end, end, sign, 0) for sign in last]
+
+
+def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
+    """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
+    box = slabs.cubic[:, 0] + Ends(-radius, radius)
+    return signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
+
+
+def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
+    """Why a switch is not proved to have its sign on an arc of so many cells; empty where it is.
+
+    `at`: Whether it should vanish at the beginning, and at the end.
+    """
+    begin, *inner, end = found
+    # What vanishes there is zero but for rounding.
+    found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
+    understood, unknown = turns(found)
+    first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
+    last = [turn for turn in understood if turn.lo <= count <= turn.hi]
+    lo, hi = max((t.hi for t in first), default=-np.inf), min((t.lo for t in last), default=np.inf)
+    between = [piece.sign for piece in found if lo < 0.5 * (piece.lo + piece.hi) < hi]
+    if unknown or not any(between):
+        return "kinks could not be counted"
+    if len(understood) > len(first) + len(last) or -sign in between or (bool(first), bool(last)) > at:
+        return NOT_LISTED
+    return NO_KINK if (len(first), len(last)) != at else ""
+
+
+# --- from one arc to the next -----------------------------------------------------------------------------
 
 
 def _joined(
-    homotopy: Any, before: SmoothPart, after: SmoothPart | None, kink: LocatedEvent
+    homotopy: Any, before: SmoothPart | None, after: SmoothPart | None, kink: LocatedEvent
 ) -> tuple[float, float] | str:
-    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to.
-
-    Where the path ends in the kink there is no arc `after` it, and the next piece alone says whether the parameter
-    turns: the curve of its zeros goes on to where the switch has the sign that it had not before.
-    """
+    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to."""
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else NO_KINK
-    j = kink.switches[0]
-    if not 0 <= j < len(before.signs):
+    (j,), s = kink.switches, kink.arclength
+    if before is None or after is None:
+        return "there is no proof on either side of the kink"
+    if not 0 <= j < len(before.signs) or before.signs[j] == after.signs[j]:
         return NO_KINK
-    signs = np.where(np.arange(len(before.signs)) == j, -before.signs, before.signs) if after is None else after.signs
-    if before.signs[j] == signs[j]:
-        return NO_KINK
-    switches = ByIntervals(homotopy.switches, kink.u.size - 1)
-    left = before.proof.cells.take(slice(-1, None))
-    right = None if after is None else after.proof.cells.take(slice(0, 1))
+    left, right = before.proof.cells.take(slice(-1, None)), after.proof.cells.take(slice(0, 1))
     why = "two arcs are not joined in the kink"
+    if not (len(left) and len(right) and left.place[0, 1] == s == right.place[0, 0]):
+        return why
+    switches, sides = ByIntervals(homotopy.switches, kink.u.size - 1), joined([left, left])
     for delta in NEXT_TO.tolist():
-        sides = joined([left, left])
-        at = nodes(before.engine, sides, np.array([1.0 - delta, 1.0 + delta]))
         window = nodes(before.engine, left, np.ones(1), delta)
         # Within the tube it is the tube's curve; a nan, where nothing is proved, is not.
-        if not ((at.radius <= left.radius).all() and (window.radius <= left.radius).all()):
+        if not (window.radius <= left.radius).all():
             continue
         slabs = Slabs(np.arange(2), np.array([1.0 - delta, 1.0 + delta]), np.zeros(2), sides)
-        change = value_at(switches, slabs, at.radius)[:, j]
-        if change[0] != before.signs[j] or change[1] != signs[j]:
+        if (_value_at(switches, slabs, window.radius[[0, 0]])[:, j] != (before.signs[j], after.signs[j])).any():
             continue
         room = Slabs(np.zeros(1, dtype=np.intp), np.ones(1), np.full(1, delta), left)
         off = up_by(window.radius + (room.over[0] - thin(left.end)).magnitude(), 2)
-        if right is not None and not (reach(right, np.zeros(1), Ends(-off, off)) <= right.radius).all():
+        if not (reach(right, np.zeros(1), Ends(-off, off)) <= right.radius).all():
             continue
-        came = _rate(before.engine, left, 1.0, off)
-        if after is None or right is None:
-            onward = engine_of(homotopy.piece(signs), np.vstack([left.begin, left.end]))
-            goes = _rate(onward, left, 1.0, off, switches, j) * int(signs[j])
-        else:
-            goes = _rate(after.engine, right, 0.0, off)
+        came, goes = _rate(before.engine, left, 1.0, off), _rate(after.engine, right, 0.0, off)
         if not came * goes:
             why = "whether the parameter turns in the kink is not decided"
             continue
         if kink.name != ("kink" if came == goes else "turning kink"):
             return "the parameter does not turn in the kink as the path says"
-        (begin, end), later = left.place[0].tolist(), kink.arclength if right is None else float(right.place[0, 1])
-        return end - delta * (end - begin), end + OVERHANG * (later - end)
+        return s - delta * (s - float(left.place[0, 0])), s + OVERHANG * (float(right.place[0, 1]) - s)
     return why
 
 
-def _rate(engine: Engine, cell: Cells, s: float, off: Array, switches: ByIntervals | None = None, j: int = 0) -> int:
-    """The sign with which the parameter moves along the curve at a point within `off` of a node; 0 where it has none.
-
-    Along the curve is where the cell's chart advances, or where switch j grows.
-    """
+def _rate(engine: Engine, cell: Cells, s: float, off: Array) -> int:
+    """The sign with which the parameter moves along the curve at a point within `off` of a node; 0 for none."""
     t = engine.judge(at_node(cell, np.array([s])), off).tangent(off, off)
-    found = _sign(t[0, -1])
-    if switches is None:
-        return found
-    u = cell.end if s else cell.begin
-    box = thin(u) + Ends(-off, off)
-    slope = Ends(*derivatives(switches.image(with_gradient(box.lo, box.hi)), u.size))[0, j]
-    with np.errstate(all="ignore"):
-        grows = bilinear(np.matmul, slope, t[0])
-    return found * _sign(grows)
-
-
-def _sign(x: Ends) -> int:
-    """That of one interval."""
-    return int(x.lo > 0.0) - int(x.hi < 0.0)
+    return int(signs(t[0, -1]))

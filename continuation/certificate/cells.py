@@ -187,11 +187,10 @@ class Slabs:
         x = self.offset[:, None]
         return evaluated(self.cubic, Ends(-x, x))
 
-    @cached_property
+    @property
     def velocity(self) -> Ends:
         """The range of p' alone."""
-        x = self.offset[:, None]
-        return rate(self.cubic, Ends(-x, x))
+        return self.over[1]
 
     def box(self, radius: Array) -> Ends:
         """What is within `radius` of the cubics."""
@@ -239,13 +238,7 @@ def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
     q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
     by_last = x * q3
     second = q2 + by_last + by_last + by_last
-    return q0 + x * (q1 + x * (q2 + by_last)), rate(cubic, x), second
-
-
-def rate(cubic: Ends, x: Ends) -> Ends:
-    """Their derivative alone."""
-    q2, by_last = cubic[:, 2], x * cubic[:, 3]
-    return cubic[:, 1] + x * (q2 + q2 + by_last + by_last + by_last)
+    return q0 + x * (q1 + x * (q2 + by_last)), q1 + x * (q2 + second), second
 
 
 def advance(slabs: Slabs) -> Array:

@@ -9,10 +9,12 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells
 from continuation.certificate.links import Nodes, reach
-from continuation.certificate.tails import NEXT_TO_END
 from continuation.numbers.ends import Ends
 from continuation.path import Path, Step
 from continuation.status import Status
+
+NEXT_TO_END = 1e-6
+"""Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
 
 NO_CURVE = "no point of the curve was found at the end"
 LIMIT = "the end is the limit of a series, of which nothing is proved"

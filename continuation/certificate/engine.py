@@ -8,7 +8,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs
-from continuation.numbers.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
+from continuation.numbers.ends import TINIEST, Ends, accumulated
 
 
 class Judged(Protocol):
@@ -31,25 +31,17 @@ class Judged(Protocol):
         """
         ...
 
-    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends] | None:
-        """The ranges of the first two derivatives of the parameter along the curve, on parts of each slab of equal
-        length and in order, shape (slabs, parts); None where the bounds of a slab do not tell them.
+    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
+        """The ranges of the parameter's rate along the curve, or a multiple > 0 of it, and of the derivative of that.
 
-        The second is nan where the first has a sign all along.
+        They are those of parts of each slab, of equal length and in order, shape (slabs, parts).
+
+        The second is nan where it is not known, as where the first has a sign all along.
 
         Parameters
         ----------
         radius, tube : ndarray, shape (slabs, N + 1)
             As in `tangent`.
-        """
-        ...
-
-    def applied(self, v: Ends) -> Ends:
-        """The range of Y(s) v over each slab.
-
-        Parameters
-        ----------
-        v : Ends, shape (slabs, N + 1)
         """
         ...
 
@@ -75,11 +67,6 @@ class Engine(Protocol):
     exact: ClassVar[bool]
 
     @property
-    def order(self) -> int:
-        """To which power of a slab's length |I - Y(s) G'(p(s))| falls."""
-        ...
-
-    @property
     def most(self) -> int:
         """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
         ...
@@ -91,15 +78,6 @@ class Engine(Protocol):
         ----------
         m : int
             Unknowns, with the parameter.
-        """
-        ...
-
-    def bent(self, box: Ends, t: Ends) -> Ends | None:
-        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where there is none, or nobody asks.
-
-        Parameters
-        ----------
-        box, t : Ends, shape (slabs, N + 1)
         """
         ...
 
@@ -139,32 +117,3 @@ def up_by(x: Array, count: int) -> Array:
     """A bound for sums of `count` products of numbers >= 0 that were rounded in any order."""
     bound: Array = x * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
     return bound
-
-
-def applied(Y: Array, v: Ends) -> Ends:
-    """The range of matrices times interval vectors, slab by slab."""
-    image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
-    return Ends(image.lo[..., 0], image.hi[..., 0])
-
-
-def solution_range(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
-    """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
-
-    With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
-    two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
-
-    Parameters
-    ----------
-    judged : Judged
-    v : Ends
-    radius, tube : ndarray, shape (slabs, N + 1)
-        As in `Judged.tangent`.
-    """
-    with np.errstate(all="ignore"):
-        first = judged.spread(v.magnitude(), radius)
-        second = judged.spread(first, radius)
-        kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
-        theta = (judged.spread(second, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
-        factor = np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * (1.0 + 8.0 * EPS)
-        room = up_by(first + second + factor[:, None] * tube, 3)
-        return v + Ends(-room, room)

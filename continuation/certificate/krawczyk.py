@@ -19,12 +19,12 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs, cell_sizes
-from continuation.certificate.engine import Engine, Judged, SupportsProofEngine, applied, solution_range, up_by
+from continuation.certificate.engine import Engine, SupportsProofEngine, up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient
-from continuation.numbers.ends import Ends, accumulated, moved, thin
+from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
@@ -34,8 +34,8 @@ DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
 Bratu's equation with 30 none, and its proof took eight times as long."""
 
-STANDS_STILL = 1e-10
-"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
+STRETCHES = 8
+"""Into so many parts a slab is cut where the parameter may turn."""
 
 MISFIT_PARTS = 4
 """Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
@@ -51,25 +51,16 @@ class ByIntervals:
         ``residual(y, lam)``, of the homotopy.
     unknowns : int
         N. Up to `DIRECTIONS_THAT_PAY` the preconditioner follows the path.
-    still : bool
-        Whether some component stands still along all of the path: it has no size then in which to take differences of
-        second derivatives, and the preconditioner stays as it is.
     """
 
     residual: Callable[[Any, Any], Any]
     unknowns: int
-    still: bool = False
     exact: ClassVar[bool] = False
 
     @property
     def moving(self) -> bool:
         """Whether the preconditioner follows the path."""
-        return self.unknowns <= DIRECTIONS_THAT_PAY and not self.still
-
-    @property
-    def order(self) -> int:
-        """One more than that of the preconditioner."""
-        return 2 if self.moving else 1
+        return self.unknowns <= DIRECTIONS_THAT_PAY
 
     @property
     def most(self) -> int:
@@ -89,53 +80,42 @@ class ByIntervals:
             parts = [self.image(u.moved(partial(_boxes, half))) for half in halves]
             return _side_by_side(parts)
 
-    def probe(self, u: Array) -> None:
-        """Run the residual on one point: TypeError, naming the operation, where it cannot be."""
-        self.image(with_gradient(u[None], u[None]))
-
     def together(self, m: int) -> int:
         """As their boxes go through the residual together."""
         return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
-    def bent(self, box: Ends, t: Ends) -> Ends | None:
-        """See `Engine`."""
-        image = self.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).c
-        return image[2] if len(image.lo) == 3 else None  # constant along every line
+    def judge(self, slabs: Slabs, radius: Array) -> Bounded:
+        """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W.
 
-    def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """As `Engine.judge`; with a preconditioner that stands still where H' has no derivative, at kinks."""
-        if not (self.moving and slabs.half.any()):
-            return self._still(slabs, radius)
-        found = self._moving(slabs, radius)
-        rough = ~np.isfinite(found.off).all(axis=(1, 2))
-        if rough.any():
-            found.put(rough, self._still(slabs.take(rough), radius[rough]))
-        return found
-
-    def _still(self, slabs: Slabs, radius: Array) -> Bounded:
-        Y, off = self._inverse(slabs, slabs.box(radius))
-        return Bounded(self._misfit(slabs, Y), Y, up_by(off, 1), radius, np.zeros_like(Y), slabs.offset[:, None])
-
-    def _moving(self, slabs: Slabs, radius: Array) -> Bounded:
-        """With Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W for x = s - middle.
-
-        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole. With
-        R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D).
+        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole, x = s - m.
+        With R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). Where H' has
+        no derivative, at kinks, or too many, the preconditioner stands still: E = D = 0, and G_0 is over the whole box.
         """
-        m, x = radius.shape[1], slabs.offset[:, None, None]
-        Y, R = self._inverse(slabs, slabs.cubic[:, 0] + Ends(-radius, radius))
+        m, x, whole = radius.shape[1], slabs.offset[:, None, None], slabs.box(radius)
+        W = thin(np.full((len(slabs), m - 1, m), np.nan))
+        moving = self.moving and bool(slabs.half.any())
+        if moving:
+            size = cell_sizes(slabs.cells)
+            # What stands still has as much room as other components have, of lengths in which it counts as much.
+            unit = np.where(size < radius, radius * (size / radius).max(axis=1, keepdims=True), size)
+            W = self._change(whole, slabs.velocity, unit)
+        at, largest = slabs.cubic[:, 0] + Ends(-radius, radius), W.magnitude().sum(axis=(1, 2), keepdims=True)
+        along = np.isfinite(largest)
+        smooth = along[:, 0]
+        box = Ends(np.where(smooth, at.lo, whole.lo), np.where(smooth, at.hi, whole.hi))
+        Y, R = self._inverse(slabs, box)
         left = Y[:, :, :-1]
         with np.errstate(all="ignore"):
-            W = self._change(slabs.box(radius), slabs.velocity, cell_sizes(slabs.cells))
             middle = W.middle()
-            E = np.matmul(left, middle)
+            E = np.where(along, np.matmul(left, middle), 0.0)
             size_E = np.abs(E)
             D = np.matmul(np.abs(left), W.radius(middle) + accumulated(m) * np.abs(middle))
+            D = np.where(along, D, 0.0)
             square = np.abs(np.matmul(E, E)) + np.matmul(size_E, accumulated(m) * size_E + D)
             off = up_by(R + x * (D + np.matmul(size_E, R) + x * square), 4 * m)
-            misfit = self._misfit(slabs, Y)
+            misfit = self._misfit(slabs, Y, MISFIT_PARTS if moving else 1)
             misfit = up_by(misfit + x[:, 0] * times(size_E, misfit), m + 2)
-        return Bounded(misfit, Y, off, radius, E, x[:, 0])
+        return Bounded(self, slabs, misfit, Y, off, radius, E)
 
     def _inverse(self, slabs: Slabs, box: Ends) -> tuple[Array, Array]:
         """An inverse Y of the middle of G' over a box, and a bound of |I - Y G'| entry by entry."""
@@ -172,9 +152,8 @@ class ByIntervals:
         change = (both[0] - both[1]) * thin(0.5 / step.T[:, :, None])
         return Ends(*(v.transpose(1, 2, 0) for v in (change.lo, change.hi)))
 
-    def _misfit(self, slabs: Slabs, Y: Array) -> Array:
+    def _misfit(self, slabs: Slabs, Y: Array, parts: int) -> Array:
         """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
-        parts = MISFIT_PARTS if self.moving and slabs.half.any() else 1
         fine = slabs.halved(parts)
         x, left, count = fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0), len(fine)
         both = [moved(lambda *ends: np.concatenate(ends), fine.cubic[:, k], fine.over[k]) for k in range(3)]
@@ -189,14 +168,12 @@ class ByIntervals:
             return np.asarray(bound.reshape(len(slabs), parts, -1).max(axis=1))
 
 
-def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
-    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
+def engine_of(homotopy: Any) -> Engine:
+    """What bounds derivatives for this homotopy: what it knows itself, else interval arithmetic.
 
     Parameters
     ----------
     homotopy : Homotopy
-    points : ndarray, shape (m, N + 1), optional
-        Of the path.
 
     Raises
     ------
@@ -206,11 +183,16 @@ def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
     if isinstance(homotopy, SupportsProofEngine):
         return homotopy.proof_engine()
     y, lam = homotopy.start()
-    start = np.append(np.asarray(y, dtype=float), float(lam))
-    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
-    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
-    engine.probe(start)
+    start = np.append(np.asarray(y, dtype=float), float(lam))[None]
+    engine = ByIntervals(homotopy.residual, start.size - 1)
+    engine.image(with_gradient(start, start))
     return engine
+
+
+def applied(Y: Array, v: Ends) -> Ends:
+    """The range of matrices times interval vectors, slab by slab."""
+    image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
+    return image[..., 0]
 
 
 def size_of(Y: Array, v: Ends) -> Array:
@@ -223,32 +205,82 @@ def size_of(Y: Array, v: Ends) -> Array:
 class Bounded:
     """The bounds as a matrix: |I - Y G'| entry by entry, for all radii up to `largest`."""
 
+    engine: ByIntervals
+    slabs: Slabs
     misfit: Array
     Y: Array
     off: Array
     largest: Array
     E: Array
-    offset: Array
 
-    def put(self, index: Any, some: Bounded) -> None:
-        """Replace those of some slabs."""
-        for name in Bounded.__annotations__:
-            getattr(self, name)[index] = getattr(some, name)
+    def take(self, index: Mask) -> Bounded:
+        """Those of some slabs."""
+        bounds = (self.misfit, self.Y, self.off, self.largest, self.E)
+        return Bounded(self.engine, self.slabs.take(index), *(bound[index] for bound in bounds))
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`; c . t = 1."""
-        return solution_range(self, self._moved(thin(self.Y[:, :, -1])), radius, tube)
+        return self._solved(thin(self.Y[:, :, -1]), radius, tube)
 
-    def pace(self, radius: Array, tube: Array) -> None:
-        """They are valid for one tube."""
-        return
+    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
+        """See `Judged.pace`, of the multiple t of the tangent with c . t = 1.
 
-    def applied(self, v: Ends) -> Ends:
-        """Y(s) = (I - x E) Y_0."""
-        return self._moved(applied(self.Y, v))
+        Slabs on which it has no sign are cut. On a part the curve lies where it lies on the whole, and in the image of
+        that box, which is smaller: of a wide tube a tenth.
+        """
+        slope = self.tangent(radius, tube)[:, -1:]
+        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], STRETCHES, axis=3)
+        with np.errstate(all="ignore"):
+            asked = (self._image(radius) < radius).all(axis=1) & ~(slope.lo * slope.hi > 0.0)[:, 0]
+        for cuts in (1, STRETCHES):
+            if not asked.any():
+                break
+            r = np.repeat(radius[asked], cuts, axis=0)
+            judged = self.take(asked)
+            if cuts > 1:
+                parts = judged.slabs.halved(cuts)
+                image = self.engine.judge(parts, r)._image(r)
+                r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
+                judged = self.engine.judge(parts, r)
+            found = np.array([[x.lo, x.hi] for x in judged.turned(r)])
+            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), STRETCHES // cuts, axis=3)
+            asked &= ~(ends[:, 0] * ends[:, 1] > 0.0).any(axis=0).all(axis=1)
+        return Ends(*ends[0]), Ends(*ends[1])
 
-    def _moved(self, image: Ends) -> Ends:
-        return image + Ends(-self.offset, self.offset) * applied(self.E, image)
+    def _image(self, radius: Array) -> Array:
+        """How far from the cubic the test says the curve is at most."""
+        with np.errstate(all="ignore"):
+            return (self.misfit + self.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+
+    def turned(self, radius: Array) -> tuple[Ends, Ends]:
+        """The ranges of t's last component, and of its derivative along the curve, shape (slabs,).
+
+        H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the second is that of the last component of
+        -G'^{-1} (H''(t, t), 0), up to a factor.
+        """
+        t = self.tangent(radius, radius)
+        image = self.engine.image(along_curve(self.slabs.box(radius), t, thin(np.zeros_like(t.lo)))).c
+        if len(image.lo) < 3:  # constant along every line
+            return t[:, -1], thin(np.full(len(t), np.nan))
+        second = moved(lambda part: np.concatenate([part[2], np.zeros((len(t), 1))], axis=1), image)
+        return t[:, -1], -self._solved(applied(self.Y, second), radius, radius)[:, -1]
+
+    def _solved(self, v: Ends, radius: Array, tube: Array) -> Ends:
+        """The range of G'^{-1} b over the slabs, within `radius` of the cubic, for v that holds Y_0 b.
+
+        With F = I - Y(s) G' it is (I - F)^{-1} (I - x E) v, so that its distance from that is at most the sum of F^k
+        |(I - x E) v| over k >= 1: two terms, and a geometric series, as F^3 |(I - x E) v| <= theta r, F r <= kappa r.
+        """
+        x = self.slabs.offset[:, None]
+        with np.errstate(all="ignore"):
+            v = v + Ends(-x, x) * applied(self.E, v)
+            first = self.spread(v.magnitude(), radius)
+            second = self.spread(first, radius)
+            kappa = (self.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+            theta = (self.spread(second, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+            factor = np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * (1.0 + 8.0 * EPS)
+            room = up_by(first + second + factor[:, None] * tube, 3)
+            return v + Ends(-room, room)
 
     def spread(self, x: Array, radius: Array) -> Array:
         """Nothing is known (nan) beyond the largest radii."""

@@ -13,28 +13,15 @@ from continuation.certificate.proof import Gap, Proof
 from continuation.path import Path, Step
 
 
-class Lifting(Protocol):
-    """A homotopy with further unknowns in front, whose zeros are those of another with what these are there."""
-
-    def start(self) -> tuple[Array, float]:
-        """A point of it."""
-        ...
-
-    def residual(self, y: Any, lam: Any) -> Any:
-        """Its equations, in plain numpy."""
-        ...
-
-    def lifted(self, u: Array, before: Array | None) -> Array:
-        """A point of the other with the further unknowns; of several such, the one that is near to `before`."""
-        ...
-
-
 @runtime_checkable
 class SupportsWrittenOut(Protocol):
     """A homotopy that may eliminate unknowns by factorisations, and says what it is without that."""
 
-    def written_out(self, points: Array) -> Lifting | None:
-        """The equations with all unknowns, for a path with these points; None where nothing is eliminated.
+    def written_out(self, points: Array) -> Any:
+        """The homotopy with all unknowns, for a path with these points; None where nothing is eliminated.
+
+        It has a method `lifted(u, before)`: a point of this one with the further unknowns in front; of several, the
+        one that is near to `before`.
 
         Parameters
         ----------
@@ -62,7 +49,7 @@ def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, 
     return homotopy if whole is None else whole, longer
 
 
-def _lifted(whole: Lifting, path: Path, cells: Cells | None) -> Path:
+def _lifted(whole: Any, path: Path, cells: Cells | None) -> Path:
     """The path with the further unknowns."""
     rows = () if cells is None else (*cells.begin, *cells.end)
     known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}

@@ -18,8 +18,8 @@ from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along,
 from continuation.certificate.engine import Engine, Judged, together, up_by
 from continuation.numbers.ends import EPS, Ends, Mask
 
-NODE_TESTS, RADII = 4, 12
-"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with the bounds of one test."""
+RADII = 12
+"""Radii that are tried with the bounds of one test."""
 
 INFLATION = 1.1
 """How much wider than what the test gives the next radii are: a fixed point is approached from above."""
@@ -84,20 +84,16 @@ def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
-    bounded = FIRST_BOX * cells.radius + 4.0 * least
-    judged = engine.judge(slabs, bounded)
-    for k in range(NODE_TESTS):
-        if k and not engine.exact:
-            judged = engine.judge(slabs, bounded)
-        radius, _, done = settled(judged, slabs.owner, least, bounded, bounded)
+    for bounded in (FIRST_BOX * cells.radius + 4.0 * least, cells.radius):
+        judged = engine.judge(slabs, bounded)
+        radius, _, done = settled(judged, slabs.owner, least, bounded)
         done &= (radius <= bounded).all(axis=1)
         if done.all():
             break
-        bounded = np.where(done[:, None], bounded, 8.0 * bounded)
     return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 
-def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Array) -> tuple[Array, Array, Mask]:
+def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple[Array, Array, Mask]:
     """Radii a little above what the test gives back, the bound of the contraction, and whether it holds; a cell.
 
     Parameters
@@ -105,8 +101,8 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Ar
     judged : Judged
     owner : ndarray of int, shape (slabs,)
         The cell of each slab.
-    least, bounded, wide : ndarray, shape (cells, N + 1)
-        Radii to begin with, those for which bounds are valid, and those that are given up.
+    least, bounded : ndarray, shape (cells, N + 1)
+        Radii to begin with, and those for which bounds are valid.
     """
     with np.errstate(all="ignore"):
         off = largest_by_cell(judged.misfit, owner, len(least))
@@ -116,7 +112,7 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Ar
             image = largest_by_cell(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, len(least))
             kappa, total = (image / radius).max(axis=1), off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            if (inside | ~(radius <= wide).all(axis=1)).all():
+            if inside.all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
     return radius, kappa, inside

@@ -8,7 +8,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
-from continuation.certificate.folds import Piece, told
+from continuation.certificate.folds import Look, Piece, pieces
 from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
@@ -19,18 +19,14 @@ curve. The curve itself is found where it is, within the misfit."""
 STILL_ULPS = 1024.0
 """Units in the last place of the nodes: the same for a component that stands still."""
 
-FIRST_RADII = 0.1
-"""The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
-
-WIDE = 10.0
-"""Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
+FIRST_RADII = 0.05
+"""The radii that a test begins with, in lengths of a slab: they widen the derivatives by so much."""
 
 CELL_TESTS = 6
 """Tests of a cell, with more slabs or other radii each time."""
 
 CONTRACTING = 0.6
-"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
-power that is the engine's order; at half of it a test holds at once."""
+"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length."""
 
 
 def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
@@ -54,26 +50,47 @@ def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
 
 @frozen(eq=False)
 class Tubes:
-    """What came of a search for tubes.
+    """Cells with radii and slabs, and what came of their tests.
 
     Attributes
     ----------
     cells : Cells
-        With radii and slabs.
     proved : ndarray of bool, shape (cells,)
     undefined : ndarray of bool, shape (cells,)
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
-    pieces : list of list of Piece
-        Of each cell; none where it is not proved, or the engine's bounds do not hold for all radii.
+    pieces : list of list of list of Piece
+        Of each proved cell, of each number that is looked at.
     """
 
     cells: Cells
     proved: Mask
     undefined: Mask
-    pieces: list[list[Piece]]
+    pieces: list[list[list[Piece]]]
+
+    @classmethod
+    def joined(cls, parts: list[Tubes]) -> Tubes:
+        """One after the other."""
+        return cls(
+            joined([part.cells for part in parts]),
+            np.concatenate([part.proved for part in parts]),
+            np.concatenate([part.undefined for part in parts]),
+            [cell for part in parts for cell in part.pieces],
+        )
+
+    def take(self, index: Index) -> Tubes:
+        """Some of them."""
+        return Tubes(self.cells.take(index), self.proved[index], self.undefined[index], [self.pieces[k] for k in index])
+
+    def numbers(self) -> list[list[Piece]]:
+        """Of each number that is looked at the pieces of all cells, in cells."""
+        placed = [
+            [[Piece(k + piece.lo, k + piece.hi, piece.sign, piece.bend) for piece in part] for part in parts]
+            for k, parts in enumerate(self.pieces)
+        ]
+        return [[piece for part in parts for piece in part] for parts in zip(*placed)]
 
 
-def search(engine: Engine, cells: Cells) -> Tubes:
+def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
     """Radii and slabs for cells that have none, many of them in one batch a round.
 
     Parameters
@@ -81,52 +98,47 @@ def search(engine: Engine, cells: Cells) -> Tubes:
     engine : Engine
     cells : Cells
         With lengths of components that stand still for radii.
+    look : callable
+        What is asked of proved cells.
     """
-    found = [_search(engine, cells.take(place)) for place in together(engine, cells)]
-    return Tubes(
-        joined([one.cells for one in found]),
-        np.concatenate([one.proved for one in found]),
-        np.concatenate([one.undefined for one in found]),
-        [some for one in found for some in one.pieces],
-    )
+    return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
 
 
-def _search(engine: Engine, cells: Cells) -> Tubes:
+def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
-    slabs = cells.slabs.copy()
     least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
-    radius = np.maximum(FIRST_RADII * scale / (2.0 * slabs[:, None]), least)
+    slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
-    known: list[list[Piece]] = [[] for _ in range(count)]
+    known: list[list[list[Piece]]] = [[] for _ in range(count)]
     pending = np.arange(count)
     for _ in range(CELL_TESTS):
-        if not len(pending):
-            break
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded, WIDE * scale[pending])
+        wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
-            for piece in told(judged, parts, wanted[parts.owner]):
-                if good[piece.cell]:
-                    known[pending[piece.cell]].append(piece)
+            seen = pieces(look, judged, parts, wanted[parts.owner], len(tried))
+            for k in np.flatnonzero(good):
+                known[pending[k]] = seen[k]
         proved[pending] = good
         undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
-        more = ~good & (engine.exact | ~(kappa < CONTRACTING))
-        with np.errstate(all="ignore"):
-            factor = np.ceil(np.clip(2.0 * kappa / CONTRACTING, 2.0**engine.order, 8.0) ** (1.0 / engine.order))
-            cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
-            wider = np.where(good[:, None], wanted, INFLATION * wanted)
-        slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
-        first = np.maximum(FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), least[pending])
-        again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
-        radius[pending] = np.where(again[:, None], first, wider)
+        wider = np.isfinite(wanted).all(axis=1) & (kappa < CONTRACTING) & (not engine.exact)
+        slabs[pending] *= np.where(good | wider, 1, 2)
+        first = np.maximum(FIRST_RADII * scale[pending] / slabs[pending][:, None], least[pending])
+        kept = np.where(good[:, None], wanted, INFLATION * wanted)
+        radius[pending] = np.where((good | wider)[:, None], kept, first)
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Tubes(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known)
+        if not len(pending):
+            break
+    cells = cells.with_tubes(radius, np.minimum(slabs, engine.most))
+    if not engine.exact and proved.any():  # all at once
+        for k, found in zip(np.flatnonzero(proved), check(engine, cells.take(proved), look).pieces):
+            known[k] = found
+    return Tubes(cells, proved, undefined, known)
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
@@ -136,18 +148,20 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells) -> Mask:
-    """Whether the tubes of these cells are proved, with the radii and slabs that they have, cell by cell.
+def check(engine: Engine, cells: Cells, look: Look) -> Tubes:
+    """What is proved of these cells with the radii and slabs that they have.
 
     Parameters
     ----------
-    engine : Engine
-    cells : Cells
+    engine, cells, look
+        As for `search`.
     """
-    good = []
+    found = []
     for place in together(engine, cells):
         some = cells.take(place)
         parts = slabs_of(some)
         radius = some.radius[parts.owner]
-        good.append(_every(contracts(parts, engine.judge(parts, radius), radius), parts.owner, len(some)))
-    return np.concatenate(good)
+        judged = engine.judge(parts, radius)
+        good = _every(contracts(parts, judged, radius), parts.owner, len(some))
+        found.append(Tubes(some, good, ~good, pieces(look, judged, parts, radius, len(some))))
+    return Tubes.joined(found)

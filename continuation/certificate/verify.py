@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve
-from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
+from continuation.certificate.folds import RANGE, Piece, located, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import check
 from continuation.numbers.ends import EPS, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
@@ -34,58 +32,47 @@ PARAMETER_STEPS = 30
 """Of Newton's method from the middle of a cell, along which its chart advances."""
 
 
-def verified(
-    engine: Engine,
-    cells: Cells,
-    path: Path,
-    homotopy: Any,
-    gaps: list[Gap],
-    found: list[Piece] | None = None,
-) -> Proof:
+def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
     """The proof that these cells make.
 
     Parameters
     ----------
     engine : Engine
     cells : Cells
-        In order.
+        In order, their tubes tested.
     path : Path
         What they are to prove.
     homotopy : Homotopy
     gaps : list of Gap
         Known already.
-    found : list of Piece, optional
-        The pieces of the cells, where their tubes have been tested already.
+    found : list of Piece
+        The pieces of the cells, by the parameter's rate.
     """
-    gaps = list(gaps)
-    if found is None and len(cells):
-        good = check(engine, cells)
-        gaps += [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~good].tolist()]
-        cells = cells.take(good)
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
     at, joints, ends = _joined_up(engine, cells)
-    gaps += [
-        Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
-        for k in np.flatnonzero(~joints)
-        if cells.place[k, 1] == cells.place[k + 1, 0]
+    gaps = [
+        *gaps,
+        *(
+            Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
+            for k in np.flatnonzero(~joints)
+            if cells.place[k, 1] == cells.place[k + 1, 0]
+        ),
+        *_order(cells, path, ends.take(slice(0, 1))),
+        *_beside(cells, at, ends.take(slice(0, 1)), path),
     ]
-    gaps += _order(cells, path, ends.take(slice(0, 1)))
-    gaps += _beside(engine, cells, at, ends.take(slice(0, 1)), path)
     end, radius, missing = ending(cells, at, ends, path, homotopy)
     before, last = float(cells.place[-1, 1]), float(path.arclength[-1])
     if end and radius is None and path.status is Status.REACHED_TARGET:
         # What is said of the end takes the place of the rest.
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
-    places = [_place(cells, event, path.arclength) for event in path.events]
-    _leave_out(engine, cells, path, places)
-    told = _between_nodes(found or pieces(engine, cells), cells, ends, at)
-    turning, more = _turning(engine, cells, told, path, places)
+    places = _places(engine, cells, path)
+    ranges, more = _turning(engine, cells, _between_nodes(found, cells, ends, at), path, places)
     gaps += more + _events(path, places)
     if missing:
         gaps.append(Gap(before if missing == LIMIT else last, last, missing))
-    return Proof(cells, at.radius, merged(gaps), turning, end, radius)
+    return Proof(cells, at.radius, merged(gaps), ranges, end, radius)
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
@@ -131,23 +118,21 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
     return gaps
 
 
-def _beside(engine: Engine, cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
+def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
     """That each node is next to a point of the curve: a wide tube holds points that are not, as a start that was moved.
 
     Of standing paths nodes are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
-    count = len(cells)
-    owner = np.append(0, np.arange(count))
-    own, u = cells.take(owner), np.vstack([cells.begin[:1], cells.end])
+    own, u = cells.take(np.append(0, np.arange(len(cells)))), np.vstack([cells.begin[:1], cells.end])
     place = np.append(cells.place[0, 0], cells.place[:, 1])
-    allowed = _allowed(own, u, place, path)
-    far = ~(np.vstack([first.radius, at.radius]) <= allowed).all(axis=1)
+    far = ~(np.vstack([first.radius, at.radius]) <= _allowed(own, u, place, path)).all(axis=1)
     return [Gap(s, s, OFF_CURVE) for s in place[far].tolist()]
 
 
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
     """How far a point in a cell may be from the curve, component by component."""
-    size = np.maximum(cell_sizes(own), np.abs(np.diff(path.u, axis=0))[_later(path.arclength, arclength) - 1])
+    step = np.clip(np.searchsorted(path.arclength, arclength), 1, len(path) - 1)
+    size = np.maximum(cell_sizes(own), np.abs(path.u[step] - path.u[step - 1]))
     # Of what stands still a cell knows no size but the tube's.
     return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 
@@ -162,8 +147,8 @@ def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) ->
         lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
         signs.append(int(np.sign(lo)) if lo * hi > 0.0 and (node.radius[k] <= cells.radius[k]).all() else 0)
     first, last = signs
-    begin = [Piece(0, 0.0, 0.0, first, 0)] if first else []
-    return [*begin, *found, *([Piece(found[-1].cell, 1.0, 1.0, last, 0)] if last else [])]
+    end = float(len(cells))
+    return [*([Piece(0.0, 0.0, first, 0)] if first else []), *found, *([Piece(end, end, last, 0)] if last else [])]
 
 
 def _turning(
@@ -174,7 +159,7 @@ def _turning(
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
     ranges, taken, slack = [], set(), 2.0 * OVERHANG
-    for turn in located(engine, cells, understood, [place for place, _ in listed if place is not None]):
+    for turn in located(engine, cells, understood):
         inside = {
             k
             for k, (place, _) in enumerate(listed)
@@ -204,19 +189,24 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
     return first, last
 
 
-def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> float | None:
-    """Cell and parameter of a point that lies in the tube; None where it lies in none.
+def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
+    """Cell and parameter of each event next to a point of the curve in the tube; None where there is none."""
+    places = [_place(cells, event, path) for event in path.events]
+    known = [k for k, place in enumerate(places) if place is not None]
+    if known:
+        own = cells.take([min(int(places[k] or 0.0), len(cells) - 1) for k in known])
+        u, s = (np.array([getattr(path.events[k], name) for k in known]) for name in ("u", "arclength"))
+        near = nodes(engine, evolve(own, begin=u), np.zeros(len(u))).radius <= _allowed(own, u, s, path)
+        for k in np.flatnonzero(~near.all(axis=1)):
+            places[known[k]] = None
+    return places
 
-    Arclengths of cells are shares of those of a step between two of `knots`,
-    which tell little more than which step it is.
-    """
-    s = event.arclength
-    span = cells.place[:, 1] - cells.place[:, 0]
-    near = (cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span)
-    if knots is not None:
-        k = int(_later(knots, np.array(s)))
-        near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
-    for k in np.flatnonzero(near).tolist():
+
+def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
+    """Cell and parameter of an event in the tube. Arclengths of cells tell little more than in which step they are."""
+    step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
+    begin, end = path.arclength[step - 1 : step + 1]
+    for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
         cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
         if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
@@ -224,32 +214,14 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
     return None
 
 
-def _later(knots: Array, s: Array) -> NDArray[np.intp]:
-    """The ends of the steps, between two of these arclengths, that others are in."""
-    return np.clip(np.searchsorted(knots, s), 1, len(knots) - 1)
-
-
-def _leave_out(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> None:
-    """Make None of the places of events next to which there is no point of the curve, in a wide tube."""
-    known = {k: place for k, place in enumerate(places) if place is not None}
-    if not known:
-        return
-    own = cells.take(np.clip(np.array([*known.values()]).astype(int), 0, len(cells) - 1))
-    u, s = (np.array([getattr(path.events[k], name) for k in known]) for name in ("u", "arclength"))
-    near = nodes(engine, evolve(own, begin=u), np.zeros(len(u))).radius <= _allowed(own, u, s, path)
-    for k in np.flatnonzero(~near.all(axis=1)):
-        places[[*known][k]] = None
-
-
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0 in a cell, by Newton's method."""
-    chord = cell.end - cell.begin
-    bend = 3.0 * chord - 2.0 * cell.slope_begin - cell.slope_end
-    rows = cell.begin - u, cell.slope_begin, bend, cell.slope_begin + cell.slope_end - 2.0 * chord
-    a, b, c, d = (float(cell.chart[0] @ row[0]) for row in rows)
-    t = 0.5
+    """About where c . (p(t) - u) = 0 in a proved cell, by Newton's method for a cubic that grows all over it."""
+    chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
+    rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
+    cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
+    t, slope = 0.5, cubic.deriv()
     for _ in range(PARAMETER_STEPS):
-        t = min(max(t - (a + t * (b + t * (c + t * d))) / (b + t * (2.0 * c + 3.0 * t * d)), 0.0), 1.0)
+        t = min(max(t - cubic(t) / slope(t), 0.0), 1.0)
     return np.array([t])
 
 

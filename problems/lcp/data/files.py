@@ -28,6 +28,9 @@ ROWS = 1 << 22
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
 """In the name of a file that holds named arrays."""
 
+NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
+"""What null in a list of JSON is among bounds of that name."""
+
 _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
 
@@ -65,7 +68,8 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
     try:
         problem: MixedLCP = LCP(A, _flat(vector))
         if any(name in contents for name in BOUNDS):
-            problem = MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in BOUNDS))
+            ends: list[Any] = [None if k not in contents else _flat(_named(contents, k, "path", path)) for k in BOUNDS]
+            problem = MixedLCP(A, _flat(vector), *ends)
         if problem.n == 0:
             raise ValueError("A: expected a square matrix, found shape (0, 0)")
         return problem
@@ -92,28 +96,15 @@ def read_program(path: str | PathLike[str]) -> Program | None:
     contents = _contents("path", path)
     if "c" not in contents or "q" in contents or "A" in contents:
         return None
-    given: dict[str, Any] = {}
-    for name in PROGRAM:
-        if name in contents and name in ("h", *BOUNDS, "rows_lower"):
-            given[name] = _bound(contents, name, path)
-        elif name in contents:
-            value = _named(contents, name, "path", path)
-            given[name] = _flat(value) if name in ("c", "b_eq") else value
+    given: dict[str, Any] = {name: None for name in PROGRAM if name in contents}
+    for name in given:
+        given[name] = _named(contents, name, "path", path)
+        if name not in ("P", "G", "A_eq"):
+            given[name] = _flat(given[name])
     try:
         return from_lp(**given) if "P" not in given else from_qp(**given)
     except (ValueError, TypeError, OverflowError) as error:
         raise InputError("path", f"{error}, in {_shown(path)}") from None
-
-
-def _bound(contents: Mapping[str, Any], name: str, path: str | PathLike[str]) -> Any:
-    """A vector of bounds, None in a list of JSON being none."""
-    if name not in contents:
-        return None
-    value = contents[name]
-    if isinstance(value, list):
-        none = -math.inf if name in ("lower", "rows_lower") else math.inf
-        value = [none if entry is None else entry for entry in value]
-    return _flat(_named({name: value}, name, "path", path))
 
 
 def read_matrix(path: str | PathLike[str]) -> Matrix:
@@ -170,6 +161,8 @@ def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | Pa
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
     value = contents.get(name, contents.get(ALONE))
+    if isinstance(value, list) and name in NONE:
+        value = [NONE[name] if entry is None else entry for entry in value]
     try:
         if sp.issparse(value):
             if max(value.shape) > max(ROWS, Path(_parted(path)[0]).stat().st_size):

@@ -257,9 +257,6 @@ def _optimality(P: Matrix, rows: list[Matrix], both: int) -> Matrix:
         whole = sp.block_array([[sp.csr_array(P), -R.T, None], [R, None, -E], [None, E.T, sp.csr_array((both, both))]])
         return sp.csr_array(whole)
     R = np.vstack(rows)
-    (k, n), size = R.shape, sum(R.shape) + both
-    A = np.zeros((size, size))
-    A[:n, :n], A[:n, n : n + k], A[n : n + k, :n] = P, -R.T, R
-    multipliers, activities = np.arange(n + k - both, n + k), np.arange(n + k, size)
-    A[multipliers, activities], A[activities, multipliers] = -1.0, 1.0
-    return A
+    k, n = R.shape
+    E, none = np.eye(k)[:, k - both :], np.zeros((n, both))
+    return np.block([[P, -R.T, none], [R, np.zeros((k, k)), -E], [none.T, E.T, np.zeros((both, both))]])

@@ -237,12 +237,8 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
-    if sp.issparse(pattern):
-        counts, columns = np.diff(pattern.indptr), pattern.indices
-    else:
-        counts, columns = np.count_nonzero(pattern, axis=1), pattern.nonzero()[1]
-    starts = np.concatenate([[0], np.cumsum(counts), np.full(n, columns.size)])
-    graph = sp.csr_array((np.ones(columns.size), n + columns, starts), shape=(2 * n, 2 * n))
+    entries = sp.coo_array(pattern)
+    graph = sp.coo_array((entries.data, (entries.row, n + entries.col)), shape=(2 * n, 2 * n))
     labels = connected_components(graph, directed=False)[1]
     return labels[:n], labels[n:]
 

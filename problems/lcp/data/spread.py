@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 
-from continuation.arrays import Array, largest, least
+from continuation.arrays import largest, least
 from problems.lcp.data.problem import MixedLCP
 
 EXTREME = 1e90
@@ -62,17 +61,18 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
 
 def far_apart(problem: MixedLCP) -> bool:
     """Whether some entries are extreme beside others: `extreme`, whatever factor all of them have."""
-    size = _sizes(problem)
-    return bool(size.size and largest(size) * (1.0 / EXTREME) > least(size))
-
-
-def _sizes(problem: MixedLCP) -> Array:
-    values = problem.A.data if sp.issparse(problem.A) else problem.A.ravel()
-    size: Array = np.abs(np.concatenate([values, problem.q]))
-    return size if np.count_nonzero(size) == size.size else size[size > 0.0]
+    low, high = _range(problem)
+    return high * (1.0 / EXTREME) > low
 
 
 def extreme(problem: MixedLCP) -> bool:
     """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
-    size = _sizes(problem)
-    return bool(size.size and (largest(size) > EXTREME or least(size) < 1.0 / EXTREME))
+    low, high = _range(problem)
+    return high > EXTREME or low < 1.0 / EXTREME
+
+
+def _range(problem: MixedLCP) -> tuple[float, float]:
+    """The sizes of the least entry that is not zero and of the largest; 1 where there is none."""
+    size = np.abs(np.concatenate([problem.A.data if problem.sparse else problem.A.ravel(), problem.q]))
+    size = size if np.count_nonzero(size) == size.size else size[size > 0.0]
+    return (least(size), largest(size)) if size.size else (1.0, 1.0)

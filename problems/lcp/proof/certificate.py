@@ -15,6 +15,7 @@ from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
 from problems.lcp.proof.off import DROWNED, drowned_part, shares_in_rows
+from problems.lcp.proof.pieces import SMALLEST_NORMAL
 from problems.lcp.proof.rational import IntegerRow, block_of, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
@@ -28,9 +29,6 @@ ROUND_OFF = 64 * float(np.finfo(float).eps)
 
 BOTH_ZERO = 1e-6
 """Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
-
-SMALLEST_NORMAL = float(np.finfo(float).smallest_normal)
-"""An x_j below this in size is a multiple of 2^-1074, and may be off by half of that."""
 
 MOST_MADE_UP = 2.0**-50
 """2^-1074 times the largest float: more of one x_j no row can have."""
@@ -178,6 +176,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
+    # Below this an x_j is a multiple of 2^-1074, and may be off by half of that.
     sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
     asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
     reach = sizes @ (subnormal & away).astype(float)
@@ -309,7 +308,8 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
     for i, value in zip(chosen, solution[0]):
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
-    exact_w = tuple(_fraction_w(row, numerators, denominator) for row in rows)
+    # An integer row is a power of two times the float row, and that power is divided out.
+    exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
     wrong = _wrong_sign(problem, state, exact_x, exact_w)
     if wrong:
         return ExactCertificate(False, exact_x, exact_w, chosen, f"The exact point of the active set has {wrong}.")
@@ -330,8 +330,3 @@ def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tup
         if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
             return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
     return ""
-
-
-def _fraction_w(row: IntegerRow, numerators: list[int], denominator: int) -> Fraction:
-    """W_i exactly; the integer row is a power of two times the float row, and that power is divided out."""
-    return Fraction(row.times(numerators, denominator), denominator << row.shift)

@@ -179,10 +179,7 @@ def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
         method="highs",
         options={"primal_feasibility_tolerance": HIGHS_TOLERANCE, "dual_feasibility_tolerance": HIGHS_TOLERANCE},
     )  # fmt: skip
-    if result.status != 0:
-        return None
-    solution: Array = np.maximum(result.x, 0.0)
-    return solution
+    return np.maximum(result.x, 0.0) if result.status == 0 else None
 
 
 def transposed(matrix: Matrix) -> Matrix:
@@ -265,7 +262,8 @@ class _Scaled:
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):
-                return multiplier(self.problem, self.system.integers_on_rows(candidate, self.problem.n))
+                whole = np.array(candidate, dtype=object)
+                return multiplier(self.problem, self.system.on_rows(whole, self.problem.n).tolist())
         return None
 
     def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:

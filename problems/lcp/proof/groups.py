@@ -8,9 +8,10 @@ none of its faces holds a solution (Farkas), and groups that are all faces toget
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
@@ -107,7 +108,7 @@ def _all_of_them(groups: NDArray[np.bool_]) -> bool:
     return all(_all_of_them(rest[groups[:, side, i]]) for side in (0, 1))
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Excluding:
     """Finds and checks the multipliers of groups of one problem.
 
@@ -115,25 +116,20 @@ class Excluding:
     """
 
     problem: LCP
-    slopes: Array = field(init=False)
-    _sizes: Array = field(init=False)
-    _exact: list[tuple[list[list[int]], list[int], Conditions]] = field(init=False, factory=list)
 
-    @slopes.default
-    def _slopes(self) -> Array:
+    @cached_property
+    def slopes(self) -> Array:
         """The rows by which y gives what multiplies x and w in 0 = q'y - y'w + (A'y)'x, shape (2n, n)."""
         return np.vstack([-self.problem.A.T, np.eye(self.problem.n)])
 
-    @_sizes.default
-    def _absolute(self) -> Array:
+    @cached_property
+    def _sizes(self) -> Array:
         return np.abs(self.slopes)
 
-    @property
+    @cached_property
     def exact(self) -> tuple[list[list[int]], list[int], Conditions]:
         """A and q in integers over one scale, and the conditions on multipliers."""
-        if not self._exact:
-            self._exact.append((*whole_numbers(self.problem)[:2], conditions_of(self.problem)))
-        return self._exact[0]
+        return *whole_numbers(self.problem)[:2], conditions_of(self.problem)
 
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
         """The group, if a dictionary's row excludes it: its basic variable, times the sign, would have to be negative.

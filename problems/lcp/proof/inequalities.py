@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -46,22 +47,14 @@ class Inequalities:
         """Whether A is stored as a sparse array."""
         return bool(sp.issparse(self.A))
 
-    def integers_on_rows(self, y: list[int], n: int) -> list[int]:
-        """Multipliers of these rows as those of the n rows of the problem."""
+    def on_rows(self, y: Any, n: int) -> Any:
+        """Multipliers of these rows, floats or integers, as an array of those of the n rows of the problem."""
+        y = np.asarray(y)
         if self.rows is None or self.signs is None:
             return y
-        total = [0] * n
-        for value, row, sign in zip(y, self.rows, self.signs):
-            if row >= 0:
-                total[row] += int(sign) * value
+        own, total = self.rows >= 0, np.zeros(n, dtype=y.dtype)
+        np.add.at(total, self.rows[own], np.where(self.signs[own] > 0.0, y[own], -y[own]))
         return total
-
-    def on_rows(self, y: Array, n: int) -> Array:
-        """The same for floats."""
-        if self.rows is None or self.signs is None:
-            return y
-        own = self.rows >= 0
-        return np.asarray(np.bincount(self.rows[own], (self.signs * y)[own], n), dtype=float)
 
 
 def inequalities(problem: MixedLCP) -> Inequalities:
@@ -73,27 +66,23 @@ def inequalities(problem: MixedLCP) -> Inequalities:
     # An x_j with a bound at zero is z_j or -z_j, any other one a difference of two.
     up = low == 0.0
     down = (high == 0.0) & ~up
-    both = ~up & ~down
+    both = np.flatnonzero(~up & ~down)
     every: NDArray[np.intp] = np.arange(n)
-    columns = np.concatenate([every, every[both]])
-    column_signs = np.concatenate([np.where(down, -1.0, 1.0), -np.ones(int(both.sum()))])
-    of_w = [(every[~finite_high], 1.0), (every[~finite_low], -1.0)]
-    of_x = [(every[finite_low & ~up], 1.0, -low), (every[finite_high & ~down], -1.0, high)]
-    rows = np.concatenate([i for i, _ in of_w])
-    row_signs = np.concatenate([np.full(i.size, sign) for i, sign in of_w])
-    A = sp.csr_array(problem.A)[rows][:, columns]
-    parts = [sp.diags_array(row_signs) @ A @ sp.diags_array(column_signs)] if rows.size else []
-    constants = [row_signs * problem.q[rows]]
-    identity = sp.eye_array(n, format="csr")[:, columns] @ sp.diags_array(column_signs)
-    for indices, sign, bound in of_x:
-        if indices.size:
-            parts.append(sign * identity[indices])
-            constants.append(bound[indices])
-    number = sum(part.shape[0] for part in parts) - rows.size
-    matrix = sp.vstack(parts, format="csr")
-    owner = np.concatenate([rows, np.full(number, -1)])
-    signs = np.concatenate([row_signs, np.ones(number)])
-    return Inequalities(matrix if problem.sparse else matrix.toarray(), np.concatenate(constants), owner, signs)
+    columns = sp.csr_array(sp.diags_array(np.where(down, -1.0, 1.0)))
+    columns = sp.hstack([columns, -sp.eye_array(n, format="csr")[:, both]], format="csr")
+    A, identity = sp.csr_array(problem.A), sp.eye_array(n, format="csr")
+    # Rows of w, and those of x, with a sign, and what is added.
+    parts = [
+        (A, ~finite_high, 1.0, problem.q, every),
+        (A, ~finite_low, -1.0, -problem.q, every),
+        (identity, finite_low & ~up, 1.0, -low, np.full(n, -1)),
+        (identity, finite_high & ~down, -1.0, high, np.full(n, -1)),
+    ]
+    matrix = sp.vstack([sign * (rows[kept] @ columns) for rows, kept, sign, _, _ in parts], format="csr")
+    q = np.concatenate([constant[kept] for _, kept, _, constant, _ in parts])
+    owner = np.concatenate([place[kept] for _, kept, _, _, place in parts])
+    signs = np.concatenate([np.full(int(kept.sum()), sign) for _, kept, sign, _, _ in parts])
+    return Inequalities(matrix if problem.sparse else matrix.toarray(), q, owner, signs)
 
 
 @frozen

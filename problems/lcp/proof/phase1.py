@@ -63,22 +63,14 @@ def strictly_feasible_start(problem: LCP) -> Array:
         if x0 is not None and is_strictly_feasible(problem, x0):
             return x0
     certificate = empty_interior(problem)
-    if certificate is None:
-        message = (
-            "A, q: expected a point with x > 0 and A x + q > 0; the linear program reached only the scaled margin "
-            f"{largest:.1e}. This is numerical: no exact proof that there is none was found. "
-            "A start need not be feasible."
-        )
-    elif certificate.no_feasible_point:
-        message = (
-            "A, q: expected a point with x > 0 and A x + q > 0; proved exactly that not even x >= 0 and A x + q >= 0 "
-            "holds anywhere, so the LCP has no solution."
-        )
-    else:
-        message = (
-            "A, q: expected a point with x > 0 and A x + q > 0; proved exactly that there is none. "
-            "The LCP may still have solutions, and a start need not be feasible."
-        )
+    said = {
+        None: f"the linear program reached only the scaled margin {largest:.1e}. This is numerical: no exact proof "
+        "that there is none was found. A start need not be feasible.",
+        True: "proved exactly that not even x >= 0 and A x + q >= 0 holds anywhere, so the LCP has no solution.",
+        False: "proved exactly that there is none. The LCP may still have solutions, and a start need not be feasible.",
+    }
+    reason = said[None if certificate is None else certificate.no_feasible_point]
+    message = f"A, q: expected a point with x > 0 and A x + q > 0; {reason}"
     raise NoStrictlyFeasiblePoint(message, certificate, largest)
 
 

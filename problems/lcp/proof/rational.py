@@ -154,62 +154,40 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
     """Solve block z = right, lifting modulo powers of the prime until a rational vector passes the exact check."""
-    residual = right
+    residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    power, steps, attempt = 1, 0, 4
-    longest = _hadamard_steps(block, right, prime)
+    # From there on Hadamard's and Cramer's bounds leave no other rational vector.
+    bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
+    enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:
         reduced = (residual % prime).astype(np.int64)
-        digit = ((inverse * reduced) % prime).sum(axis=1) % prime
-        digits = digit.astype(object)
+        digits = (((inverse * reduced) % prime).sum(axis=1) % prime).astype(object)
         residual = (residual - block @ digits) // prime
         expansion = expansion + digits * power
         power *= prime
-        steps += 1
-        if steps >= attempt or steps >= longest:
+        if power >= min(attempt, enough):
             found = _reconstruct(expansion, power)
             if found is not None and (block @ np.array(found[0], dtype=object) == right * found[1]).all():
                 return found
-            if steps >= longest:
+            if power >= enough:
                 return None
-            attempt = min(longest, attempt + attempt // 2)
-
-
-def _hadamard_steps(block: Integers, right: Integers, prime: int) -> int:
-    """Lifting steps after which Hadamard's and Cramer's bounds leave no other rational vector."""
-    bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
-    bits += max(int(abs(value)).bit_length() for value in right)
-    return int(2 * bits / (prime.bit_length() - 1)) + 2
+            attempt = power * isqrt(power)
 
 
 def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
     """Numerators and one common denominator, all below sqrt(modulus / 2), congruent to the expansion; else None."""
     bound = isqrt(modulus // 2)
     denominator = 1
-    numerators: list[int] = []
     for value in expansion:
-        scaled = int(value) * denominator % modulus
-        if scaled > modulus // 2:
-            scaled -= modulus
-        if abs(scaled) > bound:
-            factor = _denominator(scaled % modulus, modulus, bound)
-            denominator *= factor
-            if denominator > bound:
-                return None
-            numerators = [numerator * factor for numerator in numerators]
-            scaled = scaled * factor % modulus
-            if scaled > modulus // 2:
-                scaled -= modulus
-        numerators.append(scaled)
-    return numerators, denominator
-
-
-def _denominator(value: int, modulus: int, bound: int) -> int:
-    """The denominator of the fraction congruent to value with numerator at most bound (Euclid's algorithm, halfway)."""
-    before, now = modulus, value
-    factor_before, factor = 0, 1
-    while now > bound:
-        quotient = before // now
-        before, now = now, before - quotient * now
-        factor_before, factor = factor, factor_before - quotient * factor
-    return abs(factor)
+        # The denominator of the fraction congruent to it with numerator at most bound (Euclid's algorithm, halfway).
+        before, now = modulus, int(value) * denominator % modulus
+        factor_before, factor = 0, 1
+        while min(now, modulus - now) > bound:
+            quotient = before // now
+            before, now = now, before - quotient * now
+            factor_before, factor = factor, factor_before - quotient * factor
+        denominator *= abs(factor)
+        if denominator > bound:
+            return None
+    centred = [(int(value) * denominator + modulus // 2) % modulus - modulus // 2 for value in expansion]
+    return centred, denominator

@@ -15,7 +15,6 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
 from continuation.certificate.engine import Judged
-from continuation.numbers.ends import Ends
 from problems.lcp.quadratic.derivative import Derivative
 from problems.lcp.quadratic.form import Quadratic
 from problems.lcp.quadratic.polynomial import Polynomial
@@ -35,16 +34,11 @@ class ByProducts:
 
     form: Quadratic
     exact: ClassVar[bool] = True
-    order: ClassVar[int] = 3
     most: ClassVar[int] = 4
 
     def together(self, m: int) -> int:
         """See `Engine`."""
         return max(1, CACHED_NUMBERS // (m * m))
-
-    def bent(self, box: Ends, t: Ends) -> None:
-        """See `Engine`; `Judged.pace` tells more."""
-        return
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`; valid for all radii."""

@@ -123,15 +123,6 @@ class Polynomial:
         """|Y(s) H(p(s))|."""
         return self._along(0)
 
-    def applied(self, v: Ends) -> Ends:
-        """Y(s) = (I - x E + x^2 C) Y_0."""
-        image, t = Ball.of(v[..., None]).through(self.Y), self.slabs.offset[:, None]
-        total = image.ends[..., 0]
-        if self.E is not None and self.C is not None:
-            by_E, by_C = (image.through(matrix.astype(float)).ends[..., 0] for matrix in (self.E, self.C))
-            total = total + Ends(-t, t) * by_E + Ends(np.zeros_like(t), t * t * (1.0 + 4.0 * EPS)) * by_C
-        return total * thin(self.d)
-
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
         """A vector x, and a bound of what rounding and Y_0 G_0 leave of |I - Y G'| x; both in the units.

@@ -52,7 +52,7 @@ def test_what_is_bounded_is_smaller(Homotopy, n):
     slabs = slabs_of(certify(path, homotopy).cells)
     assert len(slabs) > 3
     radius = slabs.cells.radius
-    judged = engine_of(homotopy, path.u).judge(slabs, radius)
+    judged = engine_of(homotopy).judge(slabs, radius)
     assert isinstance(judged, Polynomial)
     misfit, spread = judged.misfit, judged.spread(radius, radius)
     shares = []
@@ -81,7 +81,7 @@ def test_the_parameter_moves_along_the_curve_as_is_bounded():
     path = trace(homotopy)
     proof = certify(path, homotopy)
     slabs = slabs_of(proof.cells)
-    judged = engine_of(homotopy, path.u).judge(slabs, slabs.cells.radius)
+    judged = engine_of(homotopy).judge(slabs, slabs.cells.radius)
     first, second = judged.pace(slabs.cells.radius, slabs.cells.radius)
     parts = first.lo.shape[1]
     share = rng.uniform(-1.0, 1.0, len(slabs))

@@ -77,11 +77,12 @@ def test_a_path_is_proved_with_all_its_turning_points(name):
 def test_the_true_path_lies_in_the_tube():
     homotopy = FreudensteinRoth()
     path = trace(homotopy)
-    proof = certify(path, homotopy)
-    for s in np.linspace(0.0, path.arclength[-1], 60):
-        # The nearest parameter's point of the cubic may lie along the path from the refined one: across it counts.
-        u = refine(homotopy, path, float(s))
-        assert verify._place(proof.cells, evolve(path.events[0], u=u, arclength=float(s))) is not None
+    middle = path.arclength[:-1] + 0.4 * np.diff(path.arclength)
+    events = [
+        evolve(path.events[0], name="a look", kind=0, u=refine(homotopy, path, float(s)), arclength=float(s), step=k)
+        for k, s in enumerate(middle, 1)
+    ]
+    assert not certify(evolve(path, events=sorted([*path.events, *events], key=lambda e: e.arclength)), homotopy).gaps
 
 
 class Scaled:
@@ -155,10 +156,10 @@ def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
     homotopy, _, proof = corrupted.subjects(3)[0]
     engine = engine_of(homotopy)
     wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
-    assert tubes.check(engine, proof.cells).all()
-    assert not tubes.check(engine, wide).all()
+    assert tubes.check(engine, proof.cells, folds.turning).proved.all()
+    assert not tubes.check(engine, wide, folds.turning).proved.all()
     monkeypatch.setattr(tubes, "contracts", lambda slabs, judged, radius: (judged.misfit < radius).all(axis=1))
-    assert tubes.check(engine, wide).all()
+    assert tubes.check(engine, wide, folds.turning).proved.all()
 
 
 def test_a_branch_point_is_a_gap_with_its_reason():
