@@ -31,12 +31,6 @@ and what they claim is checked."""
 PIVOTS_PER_NODE = 50
 """Times the order: of 600 nodes of order 20 to 60 none took more than the order itself; without end is none."""
 
-LARGEST_FACE = 40
-"""Up to this order a complementary point whose face is not accepted in floats is decided in rationals: 0.2 s."""
-
-UNLIKELY = 1e6
-"""Gains beyond this are alike: the child has no feasible point."""
-
 
 @frozen(eq=False)
 class Node:
@@ -135,8 +129,6 @@ class Branching:
         if self.accepts(x > w):
             self.accepted = True
             return False
-        if n > LARGEST_FACE:
-            return False
         entries, q, _ = self._excluding.exact
         point = face_point(entries, q, indices(sum(1 << int(i) for i in (x > w).nonzero()[0])))
         if point is not None:
@@ -186,7 +178,8 @@ class Branching:
         falling, costs = -table[rows, :n], np.maximum(table[n, :n], 0.0)
         possible = ~node.fixed[dictionary.nonbasic] & (falling > ROUNDED_TO_ZERO)
         least = np.where(possible, costs / np.where(possible, falling, 1.0), np.inf).min(axis=1)
-        of_x, of_w = np.minimum(least * table[rows, n], UNLIKELY).reshape(2, -1)
+        # A child without a feasible point costs infinitely much.
+        of_x, of_w = np.nan_to_num(least * table[rows, n]).reshape(2, -1)
         k = int(np.abs(of_x - of_w).argmax())
         self._put(node, int(between[k]), bool(of_x[k] < of_w[k]))
 
