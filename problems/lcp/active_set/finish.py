@@ -21,21 +21,11 @@ SIGN_CORRECTIONS = 2
 Each gains the digits that the condition of the face leaves (Higham, section 12.1): two are enough up to 1e8.
 """
 
-WORTH_MORE = 0.1
-"""A correction that gains less than a digit is not followed by another: what it leaves is no rounding."""
-
 CORRECTIONS_WITHOUT_GAIN = 3
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
 On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where
 this takes 5,259; on 24 monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
-"""
-
-PROXIMAL_SHIFTS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-"""Of the diagonal, in units of its mean, in the rounds of the proximal method.
-
-On those 24 all five take 291 factorisations, every second one of them 289, the first alone 296: the small ones are for
-matrices whose least singular values a large shift would drown.
 """
 
 AFTER_MULTIPLIERS = Policy(steps=3)
@@ -52,11 +42,8 @@ ZEROS = (0.0, 1e-18, 1e-14, 1e-12)
 
 The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
 
-DESCENT_ROUNDS = 200
-"""Of the proximal method where A is not semidefinite."""
-
 PROXIMAL_ROUND = Policy(steps=24, patience=5)
-"""In one of its rounds, more patient: what is solved there has one solution, and mostly a way to it."""
+"""In one round of the proximal method, more patient: what is solved there has one solution, and mostly a way to it."""
 
 
 @define(eq=False)
@@ -113,62 +100,33 @@ class Finish:
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
 
-    def proximal_active_set(self, state: State | None = None) -> Array | None:
-        """The solution by the proximal method: for a positive semidefinite A, singular or nearly.
+    def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
+        """The solution by the proximal method, where A + shift I is positive definite; None without one.
 
         Each round solves the LCP of A + shift I, whose point x is unique, near the point of the round before, and then
-        tries the active set that comes out on A itself.
-
-        Parameters
-        ----------
-        state : State, optional
-            The guess. Default: the last that was tried.
-
-        References
-        ----------
-        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Cottle,
-        Pang and Stone, section 5.6 (regularization).
-        """
-        state = self.tried.last if state is None else state
-        if state is None:
-            return None
-        x = self.problem.near_zero
-        A = self.problem.A
-        # Of a linear program the diagonal is zero.
-        unit = float(np.mean(A.diagonal())) or float(np.mean(abs(A).max(axis=1)))
-        for shift in PROXIMAL_SHIFTS:
-            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift * unit, counts=self.counts)
-            if moved.ended in (Ended.SINGULAR, Ended.CYCLING):
-                return None
-            state, x = moved.state, self.problem.clipped(moved.x)
-            solved = self.settle(state, Policy(steps=1), x)
-            if solved is not None:
-                return solved
-        return None
-
-    def descend(self, state: State) -> Array | None:
-        """A KKT point of min 1/2 x'A x + q'x over a box, A symmetric but not semidefinite; None without one.
-
-        Each round is a step of the proximal method with a shift that makes A definite, so that the objective falls;
-        where that is too small for the active sets to settle, it is doubled.
+        tries the active set that comes out on A itself. Of a symmetric A the quadratic function falls in each round.
+        Where A is so nearly singular, or indefinite, that the active sets do not settle, the shift is doubled.
 
         Parameters
         ----------
         state : State
             The guess.
+        shift : float
+        rounds : int
 
         References
         ----------
-        Kaplan and Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998).
+        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Kaplan and
+        Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998); Cottle, Pang and
+        Stone, section 5.6 (regularization).
         """
-        problem = self.problem
-        x, shift = problem.near_zero, 1.1 * below_zero(problem.A)
-        for _ in range(DESCENT_ROUNDS):
+        x = self.problem.near_zero
+        for _ in range(rounds):
             moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
             if moved.ended is not Ended.SETTLED:
                 shift *= 2.0
                 continue
-            state, x = moved.state, problem.clipped(moved.x)
+            state, x = moved.state, self.problem.clipped(moved.x)
             solved = self.settle(state, Policy(steps=1), x)
             if solved is not None:
                 return solved
@@ -255,11 +213,8 @@ class Finish:
             better = face.refined(x, now.w if np.array_equal(now.x, x) else None)
             if not np.isfinite(better).all():
                 break
-            x, before = better, best.relative_residual
-            now = certified(self.problem, self.problem.clipped(x))
+            x, now = better, certified(self.problem, self.problem.clipped(better))
             best = min(best, now, key=lambda one: one.relative_residual)
-            if best.relative_residual > WORTH_MORE * before:
-                break
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
             if self.problem.standard:

@@ -19,8 +19,8 @@ median, and each time that the parameter has fallen by this factor since. On 80 
 40) 0.2, 0.4, 0.6 and 0.8 take 6,099, 5,567, 5,844 and 6,138 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""At each try on a path. Singular faces, as of contacts, take more: of 25 stacks and 25 arches of bodies, n = 40 to
-496, within 3 s each, 21 and 25 are solved without (16.1 and 4.0 s together), 23 and 25 with 12 (7.1 and 3.3 s)."""
+"""At each try on a path. Of 25 stacks and 25 arches of bodies, n = 40 to 496, within 3 s each, 21 and 25 are solved
+where singular faces are steps (16.1 and 4.0 s together), 23 and 25 where they are none (7.1 and 3.3 s)."""
 
 
 @define(eq=False)

@@ -195,17 +195,20 @@ class Dictionary:
         """Of rows whose constants are tied the one that is least in eps, eps^2, ..., relative to a scale."""
         # The coefficients of eps^k are those of the inverse basis: of a variable of the first one with their sign, and
         # of a row whose basic variable is of the first one 1 at its power, where others have 0.
-        places, own = self.places[self.rows], self.basic[tied] - self.rows[0]
-        ratios = np.zeros((tied.size, places.size))
-        ratios[:, places >= 0] = self.table[tied[:, None], places[places >= 0]] / -scale[:, None]
-        first = np.flatnonzero(own < places.size)
-        ratios[first, own[first]] = np.inf
+        places = self.places[self.rows]
+        powers = (places >= 0).nonzero()[0]
+        own = np.minimum(self.basic[tied] - self.rows[0], places.size)
+        ratios = self.table[tied[:, None], places[powers]] / -scale[:, None]
         while tied.size > 1:
             low, high = np.minimum.reduce(ratios), np.maximum.reduce(ratios)
-            limit = low + TIE * np.maximum(np.maximum(np.where(high < np.inf, high, 0.0), -low), 1.0)
+            limit = low + TIE * np.maximum(np.maximum(high, -low), 1.0)
             told = (high > limit).nonzero()[0]
-            if not told.size:
-                break
-            kept = ratios[:, told[0]] <= limit[told[0]]
-            tied, ratios = tied[kept], ratios[kept]
+            kept = own >= (powers[told[0]] if told.size else places.size)
+            if not kept.any():
+                return int(tied[own.argmax()])
+            if kept.all():
+                if not told.size:
+                    break
+                kept = ratios[:, told[0]] <= limit[told[0]]
+            tied, own, ratios = tied[kept], own[kept], ratios[kept]
         return int(tied[0])

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve
 
 from continuation.arrays import least
 from problems.lcp.active_set.finish import CORRECTIONS_WITHOUT_GAIN, Finish, below_zero
@@ -22,8 +22,8 @@ from problems.lcp.proof.verdict import to_precision
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, pivotable
 from problems.lcp.search.search import Search
 
-FIRST = "The first active set, where q < 0, is right."
 SETTLED = "Solved by active sets alone, before any path."
+SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
@@ -33,10 +33,8 @@ MOST_Z_STEPS = 1000
 MOST_AUGMENTED = 2000
 """Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
 
-
-def guessed(search: Search) -> bool:
-    """Whether something is known of where x is positive: by the caller, or by coarser problems."""
-    return search.asked.x0 is not None or search.asked.near is not None or suitable(search.structure)
+ROUNDS, DESCENT_ROUNDS = 2, 200
+"""Of the proximal method where A is semidefinite, and of descent in a box."""
 
 
 @define(eq=False)
@@ -51,19 +49,13 @@ class ActiveSets:
         if zero_solves(problem):
             search.accept(problem.near_zero)
             return "q >= 0, so x = 0 is a solution." if problem.standard else "The point nearest to zero is a solution."
-        if not (search.finish is None or not problem.standard or problem.sparse or guessed(search)):
-            if search.settle(active_state(problem.q < 0.0), Policy(steps=0, regular=True)):
-                return FIRST
-            # Where the equations of a face are singular, as those of contact are, pivots are quicker.
-            if search.finish.ended is Ended.IRREGULAR and pivotable(search) and not search.facts.symmetric:
-                return ""
-        return next((said for said, found in self._attempts(int(work)) if found), "")
+        if search.finish is None:
+            return ""
+        return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
 
-    def _attempts(self, steps: int) -> Iterator[tuple[str, bool]]:
+    def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
         """What is said, and whether it has led to a solution, of one guess after another."""
-        search, problem, asked, finish = self.search, self.search.problem, self.search.asked, self.search.finish
-        if finish is None:
-            return
+        search, problem, asked, facts = self.search, self.search.problem, self.search.asked, self.search.facts
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
             found = search.settle(state) or (problem.n <= LARGEST_TABLE and by_guess(search, asked.near))
@@ -72,21 +64,21 @@ class ActiveSets:
             yield SETTLED, search.settle(problem.states(asked.x0, problem.w(asked.x0)), Policy(steps))
         if suitable(search.structure):
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
-        facts = search.facts
-        definite = facts.symmetric and not facts.z_matrix and not facts.negative_diagonal
-        first = projected_state(problem) if definite and not problem.standard else first_state(search)
-        if definite:
-            yield SETTLED, search.found(finish.proximal_active_set(first))
-        policy = Policy(steps, patience=CORRECTIONS_WITHOUT_GAIN, regular=pivotable(search))
+        convex = facts.symmetric and not facts.z_matrix and not facts.negative_diagonal
+        first = projected_state(problem) if convex and not problem.standard else first_state(search)
+        policy = Policy(steps, patience=CORRECTIONS_WITHOUT_GAIN)
         if facts.z_matrix:
             policy = Policy(min(problem.n, MOST_Z_STEPS))
-        yield SETTLED, search.settle(first if finish.following is None else finish.following, policy)
-        if not facts.symmetric and search.semidefinite():
-            yield "Solved by active sets of A + shift I, before any path.", search.found(finish.proximal_active_set())
-        ends = problem.lower, problem.upper
-        box = facts.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
-        if box:
-            yield DESCENDED, search.found(finish.descend(first))
+        elif pivotable(search) and not facts.symmetric:
+            # Where the equations of a face are singular, as those of contact are, pivots are quicker.
+            policy = evolve(policy, singular=0)
+        yield SETTLED, search.settle(first, policy)
+        if convex or (not (facts.symmetric or finish.ended is Ended.SINGULAR) and search.semidefinite()):
+            unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
+            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, ROUNDS))
+        if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
+            shift = 1.1 * below_zero(problem.A)
+            yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
         elif problem.primal and not problem.standard:
             yield AUGMENTED, self._augmented(finish)
 
