@@ -62,24 +62,15 @@ class Tried:
     A singular face has many points, and the one taken is the nearest to where the iteration is: from elsewhere it is
     tried again.
 
-    `last`: The last of them.
+    `last`: The last of them. `known`: Keys of all, of a singular face with the point it was tried at.
     """
 
-    last: State | None = field(default=None, init=False)
-    _known: set[bytes] = field(factory=set, init=False)
-
-    def known(self, state: State, x: Array) -> bool:
-        """Whether a set need not be tried at x."""
-        key = _key(state)
-        return key in self._known or key + x.tobytes() in self._known
-
-    def add(self, state: State, x: Array, singular: bool) -> None:
-        """Take a set in, that of a singular face at x alone."""
-        self._known.add(_key(state) + (x.tobytes() if singular else b""))
-        self.last = state
+    last: State | None = None
+    known: set[bytes] = field(factory=set)
 
 
-def _key(state: State) -> bytes:
+def key_of(state: State) -> bytes:
+    """A state in few bytes."""
     key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
     return key + np.packbits(above).tobytes() if above.any() else key
 
@@ -129,17 +120,20 @@ def iterate(
     changes: list[int] = []
     singular = 0
     while len(changes) - (singular if policy.singular else 0) <= policy.steps:
-        if tried is not None and tried.known(state, x):
-            return Iterated(Ended.TRIED, state, x)
+        if tried is not None:
+            key = key_of(state)
+            if key in tried.known or key + x.tobytes() in tried.known:
+                return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
         face = faces.face(state, shift or 0.0, centre)
-        inexact = face is None or not face.exact
-        singular += inexact
+        singular += face is None or not face.exact
+        if policy.singular is not None and singular > policy.singular:
+            return Iterated(Ended.SINGULAR, state, x)
         if tried is not None:
-            tried.add(state, x, inexact)
-        allowed = policy.singular is None or singular <= policy.singular
-        point = None if face is None or not allowed else face.point(x)
+            tried.known.add(key if face is None or face.exact else key + x.tobytes())
+            tried.last = state
+        point = None if face is None else face.point(x)
         if face is None or point is None:
             return Iterated(Ended.SINGULAR, state, x)
         x, w = point

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from attrs import define, evolve
+from attrs import define
 
 from continuation.arrays import least
 from problems.lcp.active_set.finish import CORRECTIONS_WITHOUT_GAIN, Finish, below_zero
@@ -55,7 +55,7 @@ class ActiveSets:
 
     def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
         """What is said, and whether it has led to a solution, of one guess after another."""
-        search, problem, asked, facts = self.search, self.search.problem, self.search.asked, self.search.facts
+        search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
             found = search.settle(state) or (problem.n <= LARGEST_TABLE and by_guess(search, asked.near))
@@ -64,16 +64,14 @@ class ActiveSets:
             yield SETTLED, search.settle(problem.states(asked.x0, problem.w(asked.x0)), Policy(steps))
         if suitable(search.structure):
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
-        convex = facts.symmetric and not facts.z_matrix and not facts.negative_diagonal
-        first = projected_state(problem) if convex and not problem.standard else first_state(search)
-        policy = Policy(steps, patience=CORRECTIONS_WITHOUT_GAIN)
-        if facts.z_matrix:
-            policy = Policy(min(problem.n, MOST_Z_STEPS))
-        elif pivotable(search) and not facts.symmetric:
-            # Where the equations of a face are singular, as those of contact are, pivots are quicker.
-            policy = evolve(policy, singular=0)
-        yield SETTLED, search.settle(first, policy)
-        if convex or (not (facts.symmetric or finish.ended is Ended.SINGULAR) and search.semidefinite()):
+        first = first_state(search)
+        yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
+        facts = search.facts  # costs what a small problem takes
+        if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
+            return  # singular equations, as those of contact are: pivots are quicker
+        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, CORRECTIONS_WITHOUT_GAIN)
+        yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
+        if not facts.negative_diagonal if facts.symmetric else search.semidefinite():
             unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
             yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, ROUNDS))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
@@ -96,10 +94,11 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state that the point nearest to zero asks for."""
+    """The state that the point nearest to zero asks for, or of a convex function one a few projected gradients on."""
     problem = search.problem
     if not problem.standard:
-        return problem.states(problem.near_zero, problem.w(problem.near_zero))
+        convex = search.facts.symmetric and not search.facts.negative_diagonal
+        return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
     # Of a sparse Z-matrix, a grid, zeros of q too, which else join one by one (Chandrasekaran's method).
     grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
     return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)
