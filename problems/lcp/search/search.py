@@ -25,7 +25,7 @@ from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.proof.verdict import NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
-from problems.lcp.search.work import share_of_default
+from problems.lcp.search.work import default_budget
 
 AT_END = Policy(steps=2)
 """Corrections of an active set that is right but for rounding: a method's last one."""
@@ -127,7 +127,7 @@ class Search:
     @cached_property
     def share(self) -> float:
         """The budget over the default one, at most 1: of what a method may do by default it does so much."""
-        return share_of_default(self.problem, self.budget)
+        return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
     def facts(self) -> MatrixFacts:
