@@ -138,7 +138,7 @@ class Finish:
         Parameters
         ----------
         below : float
-            How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite.
+            More than what makes P positive semidefinite; 0 where it is.
         most : int
             Factorisations.
         """

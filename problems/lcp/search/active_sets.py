@@ -83,7 +83,7 @@ class ActiveSets:
     def _augmented(self, finish: Finish) -> bool:
         """Whether the augmented Lagrangian of a program led to a solution, if only to working precision."""
         search, n = self.search, self.search.problem.primal
-        below = 0.0 if search.semidefinite() else below_zero(search.problem.A[:n][:, :n])
+        below = 0.0 if search.semidefinite() else 1.1 * below_zero(search.problem.A[:n][:, :n])
         found = search.found(finish.augmented(below, MOST_AUGMENTED))
         return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
 
