@@ -10,7 +10,7 @@ from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
-from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
+from problems.lcp.active_set.iteration import AT_END, Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
@@ -28,19 +28,8 @@ On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,3
 this takes 5,259; on 24 monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
 """
 
-AFTER_MULTIPLIERS = Policy(steps=3)
-"""At each change of the multipliers of the augmented Lagrangian."""
-
-WORTH_POLISHING = 1e-6
-"""The normwise residual below which its points are corrected on the face that they say,"""
-
 MORE_MULTIPLIERS = 5
-"""and so many changes without half of the residual after which it is given up."""
-
-ZEROS = (0.0, 1e-18, 1e-14, 1e-12)
-"""What is taken for zero at a point with bounds, in natural units: the first that leaves the least residual.
-
-The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
+"""So many changes without half of the residual, after which it is given up."""
 
 PROXIMAL_ROUND = Policy(steps=24, patience=5)
 """In one round of the proximal method, more patient: what is solved there has one solution, and mostly a way to it."""
@@ -148,31 +137,14 @@ class Finish:
         start, since, best = self.counts.factorizations, 0, np.inf
         x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
         for state, point in guesses(saddle, below, x, self.counts, factoring):
-            solved = self.settle(state, AFTER_MULTIPLIERS, point)
+            solved = self.settle(state, AT_END, point)
             if solved is not None:
                 return solved
             now = self.problem.relative_residual(point)
-            if now <= WORTH_POLISHING and self._polished(state, point):
-                assert self.certificate is not None
-                return self.certificate.x
             since, best = (0, now) if now < 0.5 * best else (since + 1, best)
             if since > MORE_MULTIPLIERS or self.counts.factorizations - start > most:
                 break
         return None
-
-    def _polished(self, state: State, near: Array) -> bool:
-        """Correct a point on its face, in twice the precision; whether that is a solution."""
-        self.counts.factorizations += 1
-        face = self.faces.face(state)
-        point = None if face is None else face.point(near)
-        if face is None or point is None:
-            return False
-        x = point[0]
-        for _ in range(SIGN_CORRECTIONS):
-            x = face.refined(x)
-        if not np.isfinite(x).all():
-            return False
-        return self._kept(with_zeros(self.problem, certify(self.problem, self.problem.clipped(x)), self.tolerance))
 
     def take(self, x: Array) -> Array | None:
         """The point itself, where it is a solution; else it may be the nearest.
@@ -217,12 +189,7 @@ class Finish:
             best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
-            if self.problem.standard:
-                zeros = np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0)
-            else:
-                zeros = self.problem.settled(best.x, best.w)
-            if (zeros != best.x).any():
-                best = certified(self.problem, zeros)
+            best = with_zeros(self.problem, best, self.tolerance)
         if self._kept(best):
             return best.x, best.w, True
         return x, self.problem.w(x), False
@@ -247,7 +214,7 @@ def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certifi
     What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
     """
     settled = problem.settled(end.x, end.w)
-    exact = (certify(problem, settled, zero) for zero in (*ZEROS, tolerance))
+    exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
     return min(end, *exact, key=lambda one: one.relative_residual)
 
 

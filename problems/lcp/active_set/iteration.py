@@ -55,6 +55,10 @@ class Policy:
     singular: int | None = None
 
 
+AT_END = Policy(steps=2)
+"""Corrections of an active set that is right but for rounding: a method's last one."""
+
+
 @define(eq=False)
 class Tried:
     """The active sets that were tried on one problem: none is worth a second factorisation.

@@ -221,9 +221,6 @@ class Paths:
         if not arrived:
             return end
         if not search.confirmed(end):
-            zeros = certify(problem, x, search.tolerance)
-            end = zeros if zeros.relative_residual < end.relative_residual else end
-        if not problem.standard:
             end = with_zeros(problem, end, search.tolerance)
         finish = search.finish
         if finish is None or end.relative_residual <= ROUND_OFF:

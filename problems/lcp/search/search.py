@@ -16,7 +16,7 @@ from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.path import Path
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.active_set.iteration import Policy
+from problems.lcp.active_set.iteration import AT_END, Policy
 from problems.lcp.data.matrix_facts import MatrixFacts
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.data.scaling import Scaled
@@ -26,9 +26,6 @@ from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.proof.verdict import NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.work import default_budget
-
-AT_END = Policy(steps=2)
-"""Corrections of an active set that is right but for rounding: a method's last one."""
 
 
 @frozen(eq=False)
