@@ -20,7 +20,7 @@ from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
-from problems.lcp.search.exclusion import TRIED
+from problems.lcp.search.exclusion import TRIED, decide
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
 
@@ -82,14 +82,8 @@ def exactly(search: Search, found: Solution) -> Solution:
     """
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
-    tried = exhaust(search.problem, filtered=True)
-    if tried.point is None or not np.isfinite(tried.point).all():
-        return found
-    before, search.ends, search.exhaustion = (search.ends, search.exhaustion), [], tried
-    if search.accept(tried.point):
-        return answer(search, TRIED)
-    search.ends, search.exhaustion = before
-    return found
+    search.ends = []
+    return answer(search, TRIED) if decide(search) else found
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:

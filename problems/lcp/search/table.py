@@ -50,7 +50,7 @@ def always(search: Search) -> bool:
 AUTOMATIC = (
     Row("active sets", ActiveSets, lambda s: not game(s), 30, "corrections of each guess"),
     Row("all faces", Leaves, few_faces, 8, "faces in doubt"),
-    Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 1e6 over it, at least 3 times"),
+    Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 9e6 over it"),
     Row("few groups of faces", Exclusion, lambda s: s.problem.n <= LARGEST_TREE, 100, "linear programs"),
     Row("reflections", Reflections, reflectable, 4, "rounds, of 4e8 iterations times n^2 at most"),
     Row("groups of faces", Exclusion, always, 10_000, "linear programs, of n <= 40, else one"),
