@@ -138,7 +138,9 @@ class Faces:
         """The problem."""
         return self.structure.problem if self.current is None else self.current
 
-    def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+    def face(
+        self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False
+    ) -> Face | None:
         """The face of a state, factored; None where that is impossible.
 
         Parameters
@@ -148,11 +150,13 @@ class Faces:
             Added to the diagonal of A.
         centre : Array, optional
             Of a proximal problem, whose q is ``q - shift centre``.
+        regular : bool
+            Whether it is impossible where its equations are singular.
         """
         if self.kept is None or shift or centre is not None:
-            return self._made(state, shift, centre)
+            return self._made(state, shift, centre, regular)
         key = state.tobytes()
-        face = self.kept.pop(key, None) or self._made(state, shift, centre)
+        face = self.kept.pop(key, None) or self._made(state, shift, centre, regular)
         if face is None:
             return None
         self.kept[key] = face
@@ -161,7 +165,7 @@ class Faces:
         same = face.problem is self.problem
         return face if same else evolve(face, problem=self.problem, q=self.problem.q)
 
-    def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
+    def _made(self, state: State, shift: float, centre: Array | None, regular: bool) -> Face | None:
         problem = self.problem
         active = state == BETWEEN
         ranges = None if problem.standard else self.structure.ranges
@@ -175,7 +179,7 @@ class Faces:
             inverse, exact = self._banded(active, shift), True
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
-            factor, exact = self._sparse(block, shift) if problem.sparse else self._dense(block, shift)
+            factor, exact = self._sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
             inverse = None if factor is None else factor.solve
         if inverse is None:
             return None
@@ -183,7 +187,7 @@ class Faces:
             inverse = ranges.completed(active, inside, inverse, shift)
         return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
-    def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
+    def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
@@ -193,11 +197,11 @@ class Faces:
         if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
-        definite = symmetric and self.structure.semidefinite
+        definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
         # A shift of a block of zeros would have to have units.
-        if not (norm := _norm(block)):
+        if regular or not (norm := _norm(block)):
             return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
         return (_cholesky if definite else _lu)(block), False

@@ -15,12 +15,6 @@ from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
-SIGN_CORRECTIONS = 2
-"""Corrections, with w in twice the working precision, of a point whose signs are nearly right.
-
-Each gains the digits that the condition of the face leaves (Higham, section 12.1): two are enough up to 1e8.
-"""
-
 CORRECTIONS_WITHOUT_GAIN = 3
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
@@ -167,7 +161,7 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off.
+        """The point, clipped to the bounds and certified; corrected once in twice the precision.
 
         Parameters
         ----------
@@ -178,18 +172,19 @@ class Finish:
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = now = certified(self.problem, self.problem.clipped(x))
-        for _ in range(SIGN_CORRECTIONS):
-            if best.relative_residual <= ROUND_OFF:
-                break
-            better = face.refined(x, now.w if np.array_equal(now.x, x) else None)
-            if not np.isfinite(better).all():
-                break
-            x, now = better, certified(self.problem, self.problem.clipped(better))
-            best = min(best, now, key=lambda one: one.relative_residual)
+        best = certified(self.problem, self.problem.clipped(x))
+        if best.relative_residual > ROUND_OFF:
+            # It gains the digits that the condition of the face leaves (Higham, section 12.1).
+            better = face.refined(x, best.w if np.array_equal(best.x, x) else None)
+            if np.isfinite(better).all():
+                x, now = better, certified(self.problem, self.problem.clipped(better))
+                best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
-            best = with_zeros(self.problem, best, self.tolerance)
+            if not self.problem.standard:
+                best = with_zeros(self.problem, best, self.tolerance)
+            elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
+                best = certified(self.problem, zeros)
         if self._kept(best):
             return best.x, best.w, True
         return x, self.problem.w(x), False
