@@ -71,7 +71,7 @@ class ActiveSets:
             return  # singular equations, as those of contact are: pivots are quicker
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, CORRECTIONS_WITHOUT_GAIN)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
-        if not facts.negative_diagonal if facts.symmetric else search.semidefinite():
+        if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
             unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
             yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, ROUNDS))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
@@ -83,7 +83,7 @@ class ActiveSets:
     def _augmented(self, finish: Finish) -> bool:
         """Whether the augmented Lagrangian of a program led to a solution, if only to working precision."""
         search, n = self.search, self.search.problem.primal
-        below = 0.0 if search.semidefinite() else 1.1 * below_zero(search.problem.A[:n][:, :n])
+        below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
         found = search.found(finish.augmented(below, MOST_AUGMENTED))
         return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
 

@@ -123,7 +123,7 @@ class Sets:
 
 def reflectable(search: Search) -> bool:
     """Where projections are no burden, and pivots do not end at a solution or a proof, as for a semidefinite A."""
-    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.semidefinite()
+    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
 
 
 @define(eq=False)

@@ -131,10 +131,6 @@ class Search:
         """What is known of the matrix."""
         return MatrixFacts(self.structure)
 
-    def semidefinite(self) -> bool:
-        """Whether A is known to be positive semidefinite: costs a factorisation."""
-        return self.facts.semidefinite
-
     @property
     def solved(self) -> bool:
         """Whether the last end is a solution."""
