@@ -26,8 +26,8 @@ from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 from problems.lcp.data.ranges import ranges
 
 PENALTY, MOST, GROWTH = 20.0, 1e8, 10.0
-"""The first penalty, as published: times the ratio of the objective to the violations. Penalties, and the inverse of the
-proximal term of a convex function, grow by a factor with each change of the multipliers, which then converge faster
+"""The first penalty, as published: times the ratio of the objective to the violations. The penalty, and the inverse of
+the proximal term of a convex function, grow by a factor with each change of the multipliers, which then converge faster
 than linearly. Of 45 programs of Maros and Meszaros as many are solved as by a penalty for each row."""
 
 STEPS_PER_CHANGE = 100

@@ -15,18 +15,15 @@ from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
-CORRECTIONS_WITHOUT_GAIN = 3
+PATIENCE = 5
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
-On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where
-this takes 5,259; on 24 monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
+On 80 planted problems of five kinds (n = 20, 40) 2, 3, 5, 10, infinity: 5,210, 5,259, 5,338, 5,529, 5,989
+factorisations; on 24 monotone ones (n = 100, 200) 303, 291, 278, 273, 273.
 """
 
 MORE_MULTIPLIERS = 5
 """So many changes without half of the residual, after which it is given up."""
-
-PROXIMAL_ROUND = Policy(steps=24, patience=5)
-"""In one round of the proximal method, more patient: what is solved there has one solution, and mostly a way to it."""
 
 
 @define(eq=False)
@@ -105,7 +102,7 @@ class Finish:
         """
         x = self.problem.near_zero
         for _ in range(rounds):
-            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
+            moved = iterate(self.faces, state, Policy(24, PATIENCE), near=x, shift=shift, counts=self.counts)
             if moved.ended is not Ended.SETTLED:
                 shift *= 2.0
                 continue
@@ -115,20 +112,18 @@ class Finish:
                 return solved
         return None
 
-    def augmented(self, below: float, most: int) -> Array | None:
+    def augmented(self, below: float) -> Array | None:
         """A KKT point of a program by way of its augmented Lagrangian; None without one, and `nearest` is the best.
 
         Parameters
         ----------
         below : float
             More than what makes P positive semidefinite; 0 where it is.
-        most : int
-            Factorisations.
         """
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
-        start, since, best = self.counts.factorizations, 0, np.inf
+        since, best = 0, np.inf
         x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
         for state, point in guesses(saddle, below, x, self.counts, factoring):
             solved = self.settle(state, AT_END, point)
@@ -136,7 +131,7 @@ class Finish:
                 return solved
             now = self.problem.relative_residual(point)
             since, best = (0, now) if now < 0.5 * best else (since + 1, best)
-            if since > MORE_MULTIPLIERS or self.counts.factorizations - start > most:
+            if since > MORE_MULTIPLIERS:
                 break
         return None
 

@@ -80,7 +80,7 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     state, steps = _interpolated(coarse, d[kept], factoring, counts)
     found = iterate(Faces(Structure(coarse), factoring=factoring), state, Policy(steps), counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
-    # Interpolation is wrong by a few lines about the boundary of the contact set; sweeps mend what each says of the next.
+    # Interpolation is wrong by a few lines about the boundary of the contact set, which sweeps mend.
     for _ in range(3):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
     return _states(problem, x), 1

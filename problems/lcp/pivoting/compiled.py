@@ -45,7 +45,7 @@ def pivots(
     most: int,
     tiny: tuple[float, float],
 ) -> tuple[int, int, int]:
-    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (pivots, entering variable, the last to leave).
+    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (pivots, entering variable, last to leave).
 
     -1 leaves where the entering variable grows along a ray.
 

@@ -13,7 +13,7 @@ import numpy as np
 from attrs import define
 
 from continuation.arrays import least
-from problems.lcp.active_set.finish import CORRECTIONS_WITHOUT_GAIN, Finish, below_zero
+from problems.lcp.active_set.finish import PATIENCE, Finish, below_zero
 from problems.lcp.active_set.iteration import Ended, Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.active_set.projected import projected_state
@@ -29,9 +29,6 @@ AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
 """Corrections for a Z-matrix, of which n are enough: each makes the active set larger until it is right."""
-
-MOST_AUGMENTED = 2000
-"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
 
 ROUNDS, DESCENT_ROUNDS = 2, 200
 """Of the proximal method where A is semidefinite, and of descent in a box."""
@@ -69,7 +66,7 @@ class ActiveSets:
         facts = search.facts  # costs what a small problem takes
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
             return  # singular equations, as those of contact are: pivots are quicker
-        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, CORRECTIONS_WITHOUT_GAIN)
+        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
             unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
@@ -84,7 +81,7 @@ class ActiveSets:
         """Whether the augmented Lagrangian of a program led to a solution, if only to working precision."""
         search, n = self.search, self.search.problem.primal
         below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
-        found = search.found(finish.augmented(below, MOST_AUGMENTED))
+        found = search.found(finish.augmented(below))
         return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
 
 

@@ -21,6 +21,7 @@ from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import Exhaustion
 
+
 class Outcome(Described):
     """What became of the problem; ``str()`` of each is a sentence."""
 

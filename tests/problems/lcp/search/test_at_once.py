@@ -8,7 +8,7 @@ import pytest
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.active_set.face import Face, Faces
+from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.iteration import Ended, Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import active_state

@@ -139,7 +139,7 @@ def test_large_problems_and_small_budgets_have_fewer_rounds_but_one(n, share, ro
     over = []
     monkeypatch.setattr(Sets, "of", classmethod(lambda *a: evolve_rounds(over)))
     structure = lcp.Structure(LCP(-np.eye(n), -np.ones(n)))
-    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget(steps=math.inf, factorizations=170_000 * share))
+    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget(factorizations=170_000 * share))
     assert Reflections(search).run(16) == ""
     assert len(over) - 1 == rounds
 
