@@ -98,7 +98,7 @@ class Solution:
     certificate : Certificate or None
         Of the point `x`, whatever the outcome; None where there is no point at all.
     paths : tuple of Path
-        Every path traced, in order. Of many or long ones only the ends are kept; an archive holds them whole.
+        Every path traced, in order. Of restarts that solved nothing only the ends are kept; an archive holds them.
     best : int
         Index of the path that led to `x`; -1 where none did.
     counts : Counts
