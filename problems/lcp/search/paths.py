@@ -221,7 +221,10 @@ class Paths:
         if not arrived:
             return end
         if not search.confirmed(end):
-            end = with_zeros(problem, end, search.tolerance)
+            # A stationary point of an LCP stays one: nothing but what is zero to the tolerance is moved.
+            zeros = certify(problem, x, search.tolerance)
+            zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
+            end = min(end, zeros, key=lambda one: one.relative_residual)
         finish = search.finish
         if finish is None or end.relative_residual <= ROUND_OFF:
             return end
