@@ -52,6 +52,16 @@ def hostile(seed: int) -> Iterator[Problem]:
             yield lcp.LCP(A * 10.0 ** r.uniform(-200, 200, (n, n)), q * 10.0 ** r.uniform(-200, 200, n))
 
 
+def published(seed: int) -> Iterator[Problem]:
+    """The families of docs/lcp_benchmark.md, n = 20 to 300."""
+    g = generators
+    for n in (20, 100, 300):
+        yield from (g.positive_definite(n, seed), g.semidefinite(n, seed), g.bimatrix(n, seed))
+        yield from (g.frictional_contact(min(n, 100), seed + k) for k in range(3))
+    yield from (f(n) for f in (g.murty, g.fathi) for n in (10, 20, 50))
+    yield from (g.american_option(300), g.obstacle_1d(300), g.obstacle_2d(17))
+
+
 def nonmonotone(seed: int) -> Iterator[Problem]:
     """Gaussian, with a planted solution, n = 20 to 300."""
     yield from (generators.random_planted(n, seed + k) for n in (20, 50, 100) for k in range(5))
@@ -110,7 +120,7 @@ def some(family: Callable[[int], Iterator[outside.Data]], most: int) -> Callable
 
 
 MIX: dict[str, Callable[[int], Iterator[Problem]]] = {
-    "ten random kinds": random_kinds, "hostile": hostile, "nonmonotone": nonmonotone,
+    "ten random kinds": random_kinds, "hostile": hostile, "published": published, "nonmonotone": nonmonotone,
     "infeasible": infeasible, "with bounds": with_bounds, "scenes": scenes,
     **{f.__name__: some(f, k) for f, k in ((outside.box_qp, 10), (outside.collapse, 15), (outside.contact, 10),
        (outside.unsolvable, 15), (outside.games, 14), (outside.monotone, 12), (outside.small, 40), (outside.grids, 6),
@@ -120,10 +130,10 @@ MIX: dict[str, Callable[[int], Iterator[Problem]]] = {
 
 SETS = {
     "active sets, pivots": ("active sets", "pivots"),
-    "without reflections": ("active sets", "all faces", "pivots", "few groups of faces", "groups of faces",
+    "without reflections": ("active sets", "all faces", "pivots", "root", "few groups of faces", "groups of faces",
                             "paths", "restarts"),
     "without exclusion": ("active sets", "pivots", "reflections", "paths", "reflections, further", "restarts"),
-    "without paths": ("active sets", "all faces", "pivots", "few groups of faces", "reflections",
+    "without paths": ("active sets", "all faces", "pivots", "root", "few groups of faces", "reflections",
                       "groups of faces", "reflections, further"),
     "paths, restarts": ("paths", "restarts"),
 }  # fmt: skip
@@ -140,12 +150,12 @@ def late(*_: object) -> None:
 def measured(problem: Problem, limit: float) -> tuple[str, float]:
     """Outcome and seconds of the processor."""
     began = time.thread_time()
-    signal.setitimer(signal.ITIMER_REAL, limit)
+    signal.setitimer(signal.ITIMER_PROF, limit)
     try:
         outcome = lcp.solve(problem, budget=Budget(steps=math.inf)).outcome.name
     except TimeoutError:
         outcome = "late"
-    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
     return outcome, time.thread_time() - began
 
 
@@ -165,7 +175,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--limit", type=float, default=1.5)
     arguments = parser.parse_args()
-    signal.signal(signal.SIGALRM, late)
+    signal.signal(signal.SIGPROF, late)
     problems = {name: list(family(arguments.seed)) for name, family in MIX.items()}
     every = [problem for family in problems.values() for problem in family]
     print("| | solved | proved to have no solution | left | all | median |\n|---|---:|---:|---:|---:|---:|")
