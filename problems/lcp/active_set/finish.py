@@ -10,53 +10,20 @@ from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
-from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
+from problems.lcp.active_set.iteration import AT_END, Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
-SIGN_CORRECTIONS = 2
-"""Corrections, with w in twice the working precision, of a point whose signs are nearly right.
-
-Each gains the digits that the condition of the face leaves (Higham, section 12.1): two are enough up to 1e8.
-"""
-
-WORTH_MORE = 0.1
-"""A correction that gains less than a digit is not followed by another: what it leaves is no rounding."""
-
-CORRECTIONS_WITHOUT_GAIN = 3
+PATIENCE = 5
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
-On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where
-this takes 5,259; on 24 monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
+On 80 planted problems of five kinds (n = 20, 40) 2, 3, 5, 10, infinity: 5,210, 5,259, 5,338, 5,529, 5,989
+factorisations; on 24 monotone ones (n = 100, 200) 303, 291, 278, 273, 273.
 """
-
-PROXIMAL_SHIFTS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
-"""Of the diagonal, in units of its mean, in the rounds of the proximal method.
-
-On those 24 all five take 291 factorisations, every second one of them 289, the first alone 296: the small ones are for
-matrices whose least singular values a large shift would drown.
-"""
-
-AFTER_MULTIPLIERS = Policy(steps=3)
-"""At each change of the multipliers of the augmented Lagrangian."""
-
-WORTH_POLISHING = 1e-6
-"""The normwise residual below which its points are corrected on the face that they say,"""
 
 MORE_MULTIPLIERS = 5
-"""and so many changes without half of the residual after which it is given up."""
-
-ZEROS = (0.0, 1e-18, 1e-14, 1e-12)
-"""What is taken for zero at a point with bounds, in natural units: the first that leaves the least residual.
-
-The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
-
-DESCENT_ROUNDS = 200
-"""Of the proximal method where A is not semidefinite."""
-
-PROXIMAL_ROUND = Policy(steps=24, patience=5)
-"""In one of its rounds, more patient: what is solved there has one solution, and mostly a way to it."""
+"""So many changes without half of the residual, after which it is given up."""
 
 
 @define(eq=False)
@@ -113,108 +80,60 @@ class Finish:
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
 
-    def proximal_active_set(self, state: State | None = None) -> Array | None:
-        """The solution by the proximal method: for a positive semidefinite A, singular or nearly.
+    def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
+        """The solution by the proximal method, where A + shift I is positive definite; None without one.
 
         Each round solves the LCP of A + shift I, whose point x is unique, near the point of the round before, and then
-        tries the active set that comes out on A itself.
+        tries the active set that comes out on A itself. Of a symmetric A the quadratic function falls in each round.
+        Where A is so nearly singular, or indefinite, that the active sets do not settle, the shift is doubled.
 
         Parameters
         ----------
-        state : State, optional
-            The guess. Default: the last that was tried.
+        state : State
+            The guess.
+        shift : float
+        rounds : int
 
         References
         ----------
-        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Cottle,
-        Pang and Stone, section 5.6 (regularization).
+        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Kaplan and
+        Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998); Cottle, Pang and
+        Stone, section 5.6 (regularization).
         """
-        state = self.tried.last if state is None else state
-        if state is None:
-            return None
         x = self.problem.near_zero
-        A = self.problem.A
-        # Of a linear program the diagonal is zero.
-        unit = float(np.mean(A.diagonal())) or float(np.mean(abs(A).max(axis=1)))
-        for shift in PROXIMAL_SHIFTS:
-            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift * unit, counts=self.counts)
-            if moved.ended in (Ended.SINGULAR, Ended.CYCLING):
-                return None
+        for _ in range(rounds):
+            moved = iterate(self.faces, state, Policy(24, PATIENCE), near=x, shift=shift, counts=self.counts)
+            if moved.ended is not Ended.SETTLED:
+                shift *= 2.0
+                continue
             state, x = moved.state, self.problem.clipped(moved.x)
             solved = self.settle(state, Policy(steps=1), x)
             if solved is not None:
                 return solved
         return None
 
-    def descend(self, state: State) -> Array | None:
-        """A KKT point of min 1/2 x'A x + q'x over a box, A symmetric but not semidefinite; None without one.
-
-        Each round is a step of the proximal method with a shift that makes A definite, so that the objective falls;
-        where that is too small for the active sets to settle, it is doubled.
-
-        Parameters
-        ----------
-        state : State
-            The guess.
-
-        References
-        ----------
-        Kaplan and Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998).
-        """
-        problem = self.problem
-        x, shift = problem.near_zero, 1.1 * below_zero(problem.A)
-        for _ in range(DESCENT_ROUNDS):
-            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
-            if moved.ended is not Ended.SETTLED:
-                shift *= 2.0
-                continue
-            state, x = moved.state, problem.clipped(moved.x)
-            solved = self.settle(state, Policy(steps=1), x)
-            if solved is not None:
-                return solved
-        return None
-
-    def augmented(self, below: float, most: int) -> Array | None:
+    def augmented(self, below: float) -> Array | None:
         """A KKT point of a program by way of its augmented Lagrangian; None without one, and `nearest` is the best.
 
         Parameters
         ----------
         below : float
-            How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite.
-        most : int
-            Factorisations.
+            More than what makes P positive semidefinite; 0 where it is.
         """
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
-        start, since, best = self.counts.factorizations, 0, np.inf
+        since, best = 0, np.inf
         x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
         for state, point in guesses(saddle, below, x, self.counts, factoring):
-            solved = self.settle(state, AFTER_MULTIPLIERS, point)
+            solved = self.settle(state, AT_END, point)
             if solved is not None:
                 return solved
             now = self.problem.relative_residual(point)
-            if now <= WORTH_POLISHING and self._polished(state, point):
-                assert self.certificate is not None
-                return self.certificate.x
             since, best = (0, now) if now < 0.5 * best else (since + 1, best)
-            if since > MORE_MULTIPLIERS or self.counts.factorizations - start > most:
+            if since > MORE_MULTIPLIERS:
                 break
         return None
-
-    def _polished(self, state: State, near: Array) -> bool:
-        """Correct a point on its face, in twice the precision; whether that is a solution."""
-        self.counts.factorizations += 1
-        face = self.faces.face(state)
-        point = None if face is None else face.point(near)
-        if face is None or point is None:
-            return False
-        x = point[0]
-        for _ in range(SIGN_CORRECTIONS):
-            x = face.refined(x)
-        if not np.isfinite(x).all():
-            return False
-        return self._kept(with_zeros(self.problem, certify(self.problem, self.problem.clipped(x)), self.tolerance))
 
     def take(self, x: Array) -> Array | None:
         """The point itself, where it is a solution; else it may be the nearest.
@@ -237,7 +156,7 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off.
+        """The point, clipped to the bounds and certified; corrected once in twice the precision.
 
         Parameters
         ----------
@@ -248,25 +167,18 @@ class Finish:
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = now = certified(self.problem, self.problem.clipped(x))
-        for _ in range(SIGN_CORRECTIONS):
-            if best.relative_residual <= ROUND_OFF:
-                break
-            better = face.refined(x, now.w if np.array_equal(now.x, x) else None)
-            if not np.isfinite(better).all():
-                break
-            x, before = better, best.relative_residual
-            now = certified(self.problem, self.problem.clipped(x))
-            best = min(best, now, key=lambda one: one.relative_residual)
-            if best.relative_residual > WORTH_MORE * before:
-                break
+        best = certified(self.problem, self.problem.clipped(x))
+        if best.relative_residual > ROUND_OFF:
+            # It gains the digits that the condition of the face leaves (Higham, section 12.1).
+            better = face.refined(x, best.w if np.array_equal(best.x, x) else None)
+            if np.isfinite(better).all():
+                x, now = better, certified(self.problem, self.problem.clipped(better))
+                best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
-            if self.problem.standard:
-                zeros = np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0)
-            else:
-                zeros = self.problem.settled(best.x, best.w)
-            if (zeros != best.x).any():
+            if not self.problem.standard:
+                best = with_zeros(self.problem, best, self.tolerance)
+            elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
                 best = certified(self.problem, zeros)
         if self._kept(best):
             return best.x, best.w, True
@@ -292,7 +204,7 @@ def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certifi
     What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
     """
     settled = problem.settled(end.x, end.w)
-    exact = (certify(problem, settled, zero) for zero in (*ZEROS, tolerance))
+    exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
     return min(end, *exact, key=lambda one: one.relative_residual)
 
 

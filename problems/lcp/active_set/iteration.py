@@ -31,8 +31,7 @@ class Ended(Enum):
     SOLVED = "the point was judged to be the solution"
     SETTLED = "the signs ask for the same set again"
     TRIED = "the set was tried before"
-    SINGULAR = "the equations of the face have no finite solution"
-    IRREGULAR = "the equations of the face are singular, and regular ones were asked for"
+    SINGULAR = "the equations of the face have no finite solution, or too many were singular"
     CYCLING = "the number of changes does not fall"
     STEPS = "all steps are used up"
 
@@ -47,16 +46,17 @@ class Policy:
         Corrections of the guess, so that steps + 1 faces are solved at most.
     patience : int or None
         Corrections in a row without a new low of the number of changed indices, after which it is given up.
-    regular : bool
-        Whether it ends before the first face whose equations are singular.
-    singular : int
-        So many faces with singular equations are allowed then, and are no steps, whose points may lie anywhere on them.
+    singular : int, optional
+        So many faces with singular equations are allowed, whose points may lie anywhere on them, and are no steps.
     """
 
     steps: int
     patience: int | None = None
-    regular: bool = False
-    singular: int = 0
+    singular: int | None = None
+
+
+AT_END = Policy(steps=2)
+"""Corrections of an active set that is right but for rounding: a method's last one."""
 
 
 @define(eq=False)
@@ -66,32 +66,15 @@ class Tried:
     A singular face has many points, and the one taken is the nearest to where the iteration is: from elsewhere it is
     tried again.
 
-    `last`: The last of them.
+    `last`: The last of them. `known`: Keys of all, of a singular face with the point it was tried at.
     """
 
-    last: State | None = field(default=None, init=False)
-    _known: set[bytes] = field(factory=set, init=False)
-
-    def add(self, state: State, x: Array) -> bool:
-        """Take a set in; whether it is new at x."""
-        key = _key(state)
-        if key in self._known or key + x.tobytes() in self._known:
-            return False
-        self._known.add(key)
-        self.last = state
-        return True
-
-    def singular(self, state: State, x: Array) -> None:
-        """Know the last set for one of a singular face, which was tried at x alone."""
-        self.forget(state)
-        self._known.add(_key(state) + x.tobytes())
-
-    def forget(self, state: State) -> None:
-        """Let a set be tried again."""
-        self._known.discard(_key(state))
+    last: State | None = None
+    known: set[bytes] = field(factory=set)
 
 
-def _key(state: State) -> bytes:
+def key_of(state: State) -> bytes:
+    """A state in few bytes."""
     key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
     return key + np.packbits(above).tobytes() if above.any() else key
 
@@ -140,19 +123,20 @@ def iterate(
     centre = None if shift is None else x
     changes: list[int] = []
     singular = 0
-    while len(changes) - min(singular, policy.singular) <= policy.steps:
-        if tried is not None and not tried.add(state, x):
-            return Iterated(Ended.TRIED, state, x)
+    while len(changes) - (singular if policy.singular else 0) <= policy.steps:
+        if tried is not None:
+            key = key_of(state)
+            if key in tried.known or key + x.tobytes() in tried.known:
+                return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(state, shift or 0.0, centre, policy.regular, x)
+        face = faces.face(state, shift or 0.0, centre, policy.singular == 0)
         singular += face is None or not face.exact
-        if policy.regular and singular:
-            if tried is not None:
-                tried.forget(state)
-            return Iterated(Ended.IRREGULAR, state, x)
-        if tried is not None and face is not None and not face.exact:
-            tried.singular(state, x)
+        if policy.singular is not None and singular > policy.singular:
+            return Iterated(Ended.SINGULAR, state, x)
+        if tried is not None:
+            tried.known.add(key if face is None or face.exact else key + x.tobytes())
+            tried.last = state
         point = None if face is None else face.point(x)
         if face is None or point is None:
             return Iterated(Ended.SINGULAR, state, x)

@@ -22,25 +22,16 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 COARSEST_ORDER = 200
-"""A problem of this order is not made coarser: its faces cost less than the interpolation."""
-
-COARSEST = Policy(steps=COARSEST_ORDER - 1)
-"""There: for an M-matrix each step from x = 0 enlarges the active set until it is right, so this is enough."""
+"""A problem of this order is not made coarser: its faces cost less than the interpolation. So many corrections are made
+of it at most, since for an M-matrix each from x = 0 enlarges the active set until it is right, and one on other levels,
+where what is still wrong is mended on the next: on 316 x 316 points two faces of each leave two of the finest, of which
+one of each leaves three."""
 
 LEAST_COARSENING = 0.8
 """Coarsening that keeps more than this share of the unknowns, where a grid keeps half of them, is given up."""
 
-ELSEWHERE = Policy(steps=1)
-"""On every other level, where what is still wrong is mended on the next: on 316 x 316 points two faces of each leave
-two of the finest, of which one of each leaves three."""
-
-UNGUESSED = Policy(steps=11)
-"""Where coarsening was given up, and nothing is known."""
-
-JACOBI_SWEEPS, DAMPING = 3, 0.8
-"""Of the damped Jacobi method, projected, on what was interpolated: it is wrong by a few lines about the boundary of
-the contact set, and so they mend. Each level solved, 316 x 316 points need 3 faces without sweeps, 2 with 2 or 5."""
-
+DAMPING = 0.8
+"""Of the damped Jacobi method."""
 
 SMOOTHINGS = 60
 """Of the damped Jacobi method on A d = 0 from ones, where their rows sum to less than zero: units that differ from one
@@ -79,19 +70,20 @@ def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
     return _interpolated(problem, _smooth(problem.A), factoring, counts)[0]
 
 
-def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, Policy]:
-    """The pieces that the next coarser problem says, and how long they are corrected."""
+def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, int]:
+    """The pieces that the next coarser problem says, and how often they are corrected."""
     P, kept = (None, None) if problem.n <= COARSEST_ORDER else _interpolation(problem.A, d)
     if P is None or P.shape[1] > LEAST_COARSENING * problem.n:
-        return _states(problem, problem.near_zero), COARSEST if P is None else UNGUESSED
+        return _states(problem, problem.near_zero), COARSEST_ORDER
     A, q = sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q
     coarse = LCP(A, q) if problem.standard else MixedLCP(A, q, problem.lower[kept], problem.upper[kept])
-    state, policy = _interpolated(coarse, d[kept], factoring, counts)
-    found = iterate(Faces(Structure(coarse), factoring=factoring), state, policy, counts=counts)
+    state, steps = _interpolated(coarse, d[kept], factoring, counts)
+    found = iterate(Faces(Structure(coarse), factoring=factoring), state, Policy(steps), counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
-    for _ in range(JACOBI_SWEEPS):
+    # Interpolation is wrong by a few lines about the boundary of the contact set, which sweeps mend.
+    for _ in range(3):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
-    return _states(problem, x), ELSEWHERE
+    return _states(problem, x), 1
 
 
 def _states(problem: MixedLCP, x: Array) -> State:

@@ -9,7 +9,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.pivoting.compiled import RAY, REACHED, available, kernel
+from problems.lcp.pivoting.compiled import available, kernel
 from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
 
 REBUILT_AFTER = 100
@@ -17,10 +17,6 @@ REBUILT_AFTER = 100
 
 PATH_LEFT = -1e-7
 """A basic variable that is this negative once the table is exact, relative to the largest: the path was left."""
-
-
-KEPT = "basic", "nonbasic", "places"
-"""What a dictionary has beside its table."""
 
 
 class Ended(Enum):
@@ -89,13 +85,13 @@ class AlmostComplementary:
     def _steps(self, most: int) -> None:
         """So many pivots, compiled."""
         both = self.dictionaries[0], self.dictionaries[-1]
-        ended, done, entering = kernel()(
-            (both[0].table, both[1].table), *(tuple(getattr(one, name) for one in both) for name in KEPT),
-            (int(both[0].rows[0]), int(both[1].rows[0])), self.entering, (min(self.stop), max(self.stop)), self.n,
-            min(most, REBUILT_AFTER + self.n - self._since), (ZERO_PIVOT, TIE),
+        kept = (tuple(getattr(one, name) for one in both) for name in ("table", "basic", "nonbasic", "places"))
+        done, entering, leaving = kernel()(
+            *kept, (int(both[0].rows[0]), int(both[1].rows[0])), self.entering, (min(self.stop), max(self.stop)),
+            self.n, min(most, REBUILT_AFTER + self.n - self._since), (ZERO_PIVOT, TIE),
         )  # fmt: skip
         self.pivots, self.entering = self.pivots + done, int(entering)
-        self.ended = {REACHED: Ended.REACHED, RAY: Ended.RAY}.get(ended)
+        self.ended = Ended.RAY if leaving < 0 else Ended.REACHED if leaving in self.stop else None
         self._counted(done)
 
     def left(self, leaving: int) -> None:

@@ -17,10 +17,6 @@ from continuation.arrays import Array
 
 Indices = NDArray[np.intp]
 
-REACHED, RAY, MORE = 0, 1, 2
-"""How a run of pivots ends: with one of the last variables, on a ray, or because all of them are done."""
-
-
 def available() -> bool:
     """Whether the program has imported numba."""
     return hasattr(sys.modules.get("numba"), "njit")
@@ -49,13 +45,16 @@ def pivots(
     most: int,
     tiny: tuple[float, float],
 ) -> tuple[int, int, int]:
-    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (how it ended, pivots, entering variable).
+    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (pivots, entering variable, last to leave).
+
+    -1 leaves where the entering variable grows along a ray.
 
     `tables`, by columns, `basics`, `nonbasics`, `places`: Of two dictionaries, one of which may be empty. `firsts`: The
     first of the variables that were basic at the beginning, m of them in a row. `stop`: The variables that end it.
     `tiny`: `dictionary.ZERO_PIVOT` and `TIE`.
     """
     zero, tie = tiny
+    leaving = 2 * n + 1  # none
     for done in range(most):
         which = 0 if entering < places[0].size and places[0][entering] >= 0 else 1
         table, basic, nonbasic, place = tables[which], basics[which], nonbasics[which], places[which]
@@ -78,7 +77,7 @@ def pivots(
                 if stops < 0 and (basic[i] == stop[0] or basic[i] == stop[1]):
                     stops = i
         if number == 0:
-            return RAY, done, entering
+            return done, entering, -1
         if number > 1 and stops >= 0:
             row = stops
         else:
@@ -117,6 +116,6 @@ def pivots(
         basic[row], nonbasic[column] = entering, leaving
         place[leaving], place[entering] = column, -1
         if leaving == stop[0] or leaving == stop[1]:
-            return REACHED, done + 1, entering
+            return done + 1, entering, leaving
         entering = leaving + n if leaving < n else leaving - n
-    return MORE, most, entering
+    return most, entering, leaving

@@ -20,10 +20,6 @@ Indices = NDArray[np.intp]
 ZERO_PIVOT = 1e-10
 """An entry below this, relative to its column's largest, counts as rounding: a pivot on it loses the path."""
 
-AT_FIRST = 512
-"""Entries of tied rows that are compared first; twice as many columns next. Mostly two rows are tied, as at contacts,
-where all columns at once are no slower than a few."""
-
 TIE = 1e-11
 """How far basic variables may fall below zero, relative to the largest constant, if another row leaves than the first.
 
@@ -33,12 +29,10 @@ Rows are tied if any of them may leave so (Harris, "Pivot selection methods of t
 DELAYED = 32
 """Pivots of a large table that are put into it together, by one product of matrices;"""
 
-LARGEST_AT_ONCE = 100_000
+LARGE = 100_000
 """one of more entries is large. Microseconds a pivot of a game, one by one and 32 together: 31 and 29 (90,000 entries),
-53 and 40 (250,000), 280 and 86 (1e6); of traffic with 5.6e6 entries 2,700 and 460. 16 and 64 together take as long."""
-
-LARGEST_COMPILED = 300_000
-"""One by one, but compiled, a pivot takes 30 us with 250,000 entries (37 in numpy), and 51 (44) with 360,000."""
+53 and 40 (250,000), 280 and 86 (1e6); of traffic with 5.6e6 entries 2,700 and 460. 16 and 64 together take as long.
+Compiled, one by one, they win little beyond it: 30 us with 250,000 entries, 51 with 360,000 where these take 44."""
 
 
 @define(eq=False)
@@ -64,7 +58,7 @@ class Dictionary:
     def __attrs_post_init__(self) -> None:
         self._table = np.array(self.first, order="F")
         m, k = self.first.shape
-        room = DELAYED if m * k > LARGEST_AT_ONCE else 0
+        room = DELAYED if m * k > LARGE else 0
         self._left, self._right = np.empty((m, room), order="F"), np.empty((k, room), order="F")
         self.basic, self.nonbasic = self.rows.copy(), self.columns.copy()
         self.places = np.full(1 + max(int(one.max(initial=0)) for one in (self.rows, self.columns)), -1)
@@ -80,7 +74,7 @@ class Dictionary:
     @property
     def compilable(self) -> bool:
         """Whether numba's pivots are quicker; a single row or column it would not take for a table by columns."""
-        return min(self._table.shape) > 1 and self._table.size <= LARGEST_COMPILED
+        return min(self._table.shape) > 1 and self._table.size <= LARGE
 
     @property
     def table(self) -> Array:
@@ -204,27 +198,17 @@ class Dictionary:
         places = self.places[self.rows]
         powers = (places >= 0).nonzero()[0]
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)
-        at, width = 0, AT_FIRST // tied.size + 1
+        ratios = self.table[tied[:, None], places[powers]] / -scale[:, None]
         while tied.size > 1:
-            # Some columns at a time: of many rows the first few tell most apart.
-            now = powers[at : at + width]
-            ratios = self.table[tied[:, None], places[now]] / -scale[:, None]
             low, high = np.minimum.reduce(ratios), np.maximum.reduce(ratios)
             limit = low + TIE * np.maximum(np.maximum(high, -low), 1.0)
             told = (high > limit).nonzero()[0]
-            first = told.item(0) if told.size else now.size
-            until = powers.item(at + first) if at + first < powers.size else places.size
-            kept = own >= until
-            held = np.count_nonzero(kept)
-            if held == 0:
+            kept = own >= (powers[told[0]] if told.size else places.size)
+            if not kept.any():
                 return int(tied[own.argmax()])
-            if held == tied.size:
-                if told.size:
-                    kept = ratios[:, first] <= limit[first]
-                    first += 1
-                elif until == places.size:
+            if kept.all():
+                if not told.size:
                     break
-                else:
-                    width *= 2
-            tied, scale, own, at = tied[kept], scale[kept], own[kept], at + first
+                kept = ratios[:, told[0]] <= limit[told[0]]
+            tied, own, ratios = tied[kept], own[kept], ratios[kept]
         return int(tied[0])

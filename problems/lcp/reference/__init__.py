@@ -1,8 +1,5 @@
 """Reference methods for comparison: Lemke's pivots, the modulus iteration, a damped min-Newton."""
 
-from problems.lcp.reference.lemke import lemke
-from problems.lcp.reference.modulus import modulus
-from problems.lcp.reference.newton import min_newton
-from problems.lcp.reference.result import ReferenceResult
+from problems.lcp.reference.methods import ReferenceResult, lemke, min_newton, modulus
 
 __all__ = ["ReferenceResult", "lemke", "min_newton", "modulus"]

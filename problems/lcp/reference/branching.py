@@ -31,12 +31,6 @@ and what they claim is checked."""
 PIVOTS_PER_NODE = 50
 """Times the order: of 600 nodes of order 20 to 60 none took more than the order itself; without end is none."""
 
-LARGEST_FACE = 40
-"""Up to this order a complementary point whose face is not accepted in floats is decided in rationals: 0.2 s."""
-
-UNLIKELY = 1e6
-"""Gains beyond this are alike: the child has no feasible point."""
-
 
 @frozen(eq=False)
 class Node:
@@ -120,13 +114,9 @@ class Branching:
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
         values = np.zeros(2 * n)
-        basic, constants, free = dictionary.basic[:n], dictionary.entries(-1)[:n], ~fixed[dictionary.nonbasic]
+        basic, constants = dictionary.basic[:n], dictionary.entries(-1)[:n]
         values[basic] = constants
         zero = ROUNDED_TO_ZERO * largest(constants)
-        rising = (dictionary.table[:n, :n] >= 0.0) | ~free
-        never = (constants > zero) & np.logical_and.reduce(rising, axis=1)
-        if never.any() and self._implied(node, never):
-            return True
         x, w = values[:n], values[n:]
         between = np.minimum(x, w) > zero
         if between.any():
@@ -135,8 +125,6 @@ class Branching:
         if self.accepts(x > w):
             self.accepted = True
             return False
-        if n > LARGEST_FACE:
-            return False
         entries, q, _ = self._excluding.exact
         point = face_point(entries, q, indices(sum(1 << int(i) for i in (x > w).nonzero()[0])))
         if point is not None:
@@ -144,37 +132,14 @@ class Branching:
             return False
         return self._divided(node, node.fixed[:n] | node.fixed[n : 2 * n])
 
-    def _excluded(self, node: Node, row: int, sign: float | None = None) -> bool:
+    def _excluded(self, node: Node, row: int) -> bool:
         """Whether a row was proved to exclude the node."""
         dictionary, n = node.dictionary, self.problem.n
-        if sign is None:
-            sign = 1.0 if dictionary.entries(-1)[row] < 0.0 else -1.0
+        sign = 1.0 if dictionary.entries(-1)[row] < 0.0 else -1.0
         group = self._excluding.group(node.fixed[: 2 * n], dictionary.basic[:n], row, sign)
         if group is not None:
             self._groups.append(group)
         return group is not None
-
-    def _implied(self, node: Node, never: Active) -> bool:
-        """Fix what is opposite to variables that are positive at each point of a node; whether it is another one now.
-
-        It waits again then, unless one of them is fixed, so that there is no point.
-        """
-        dictionary, n, fixed = node.dictionary, self.problem.n, node.fixed.copy()
-        for row in never.nonzero()[0]:
-            variable = int(dictionary.basic[row])
-            opposite = (variable + n) % (2 * n)
-            if fixed[opposite]:
-                continue
-            without = fixed.copy()
-            without[variable] = True
-            if self._excluded(Node(without, dictionary), int(row), -1.0):
-                if fixed[variable]:
-                    return True
-                fixed[opposite] = True
-        if (fixed == node.fixed).all():
-            return False
-        self._waiting.append(Node(fixed, dictionary))
-        return True
 
     def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
         """Fix the pair whose two children differ most in what they cost at least; the cheaper child is next."""
@@ -186,7 +151,8 @@ class Branching:
         falling, costs = -table[rows, :n], np.maximum(table[n, :n], 0.0)
         possible = ~node.fixed[dictionary.nonbasic] & (falling > ROUNDED_TO_ZERO)
         least = np.where(possible, costs / np.where(possible, falling, 1.0), np.inf).min(axis=1)
-        of_x, of_w = np.minimum(least * table[rows, n], UNLIKELY).reshape(2, -1)
+        # A child without a feasible point costs infinitely much.
+        of_x, of_w = np.nan_to_num(least * table[rows, n]).reshape(2, -1)
         k = int(np.abs(of_x - of_w).argmax())
         self._put(node, int(between[k]), bool(of_x[k] < of_w[k]))
 

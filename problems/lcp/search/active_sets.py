@@ -13,7 +13,7 @@ import numpy as np
 from attrs import define
 
 from continuation.arrays import least
-from problems.lcp.active_set.finish import CORRECTIONS_WITHOUT_GAIN, Finish, below_zero
+from problems.lcp.active_set.finish import PATIENCE, Finish, below_zero
 from problems.lcp.active_set.iteration import Ended, Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.active_set.projected import projected_state
@@ -22,21 +22,16 @@ from problems.lcp.proof.verdict import to_precision
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, pivotable
 from problems.lcp.search.search import Search
 
-FIRST = "The first active set, where q < 0, is right."
 SETTLED = "Solved by active sets alone, before any path."
+SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
 """Corrections for a Z-matrix, of which n are enough: each makes the active set larger until it is right."""
 
-MOST_AUGMENTED = 2000
-"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
-
-
-def guessed(search: Search) -> bool:
-    """Whether something is known of where x is positive: by the caller, or by coarser problems."""
-    return search.asked.x0 is not None or search.asked.near is not None or suitable(search.structure)
+ROUNDS, DESCENT_ROUNDS = 2, 200
+"""Of the proximal method where A is semidefinite, and of descent in a box."""
 
 
 @define(eq=False)
@@ -51,19 +46,13 @@ class ActiveSets:
         if zero_solves(problem):
             search.accept(problem.near_zero)
             return "q >= 0, so x = 0 is a solution." if problem.standard else "The point nearest to zero is a solution."
-        if not (search.finish is None or not problem.standard or problem.sparse or guessed(search)):
-            if search.settle(active_state(problem.q < 0.0), Policy(steps=0, regular=True)):
-                return FIRST
-            # Where the equations of a face are singular, as those of contact are, pivots are quicker.
-            if search.finish.ended is Ended.IRREGULAR and pivotable(search) and not search.facts.symmetric:
-                return ""
-        return next((said for said, found in self._attempts(int(work)) if found), "")
+        if search.finish is None:
+            return ""
+        return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
 
-    def _attempts(self, steps: int) -> Iterator[tuple[str, bool]]:
+    def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
         """What is said, and whether it has led to a solution, of one guess after another."""
-        search, problem, asked, finish = self.search, self.search.problem, self.search.asked, self.search.finish
-        if finish is None:
-            return
+        search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
             found = search.settle(state) or (problem.n <= LARGEST_TABLE and by_guess(search, asked.near))
@@ -72,29 +61,27 @@ class ActiveSets:
             yield SETTLED, search.settle(problem.states(asked.x0, problem.w(asked.x0)), Policy(steps))
         if suitable(search.structure):
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
-        facts = search.facts
-        definite = facts.symmetric and not facts.z_matrix and not facts.negative_diagonal
-        first = projected_state(problem) if definite and not problem.standard else first_state(search)
-        if definite:
-            yield SETTLED, search.found(finish.proximal_active_set(first))
-        policy = Policy(steps, patience=CORRECTIONS_WITHOUT_GAIN, regular=pivotable(search))
-        if facts.z_matrix:
-            policy = Policy(min(problem.n, MOST_Z_STEPS))
-        yield SETTLED, search.settle(first if finish.following is None else finish.following, policy)
-        if not facts.symmetric and search.semidefinite():
-            yield "Solved by active sets of A + shift I, before any path.", search.found(finish.proximal_active_set())
-        ends = problem.lower, problem.upper
-        box = facts.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
-        if box:
-            yield DESCENDED, search.found(finish.descend(first))
+        first = first_state(search)
+        yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
+        facts = search.facts  # costs what a small problem takes
+        if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
+            return  # singular equations, as those of contact are: pivots are quicker
+        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
+        yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
+        if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
+            unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
+            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, ROUNDS))
+        if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
+            shift = 1.1 * below_zero(problem.A)
+            yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
         elif problem.primal and not problem.standard:
             yield AUGMENTED, self._augmented(finish)
 
     def _augmented(self, finish: Finish) -> bool:
         """Whether the augmented Lagrangian of a program led to a solution, if only to working precision."""
         search, n = self.search, self.search.problem.primal
-        below = 0.0 if search.semidefinite() else below_zero(search.problem.A[:n][:, :n])
-        found = search.found(finish.augmented(below, MOST_AUGMENTED))
+        below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
+        found = search.found(finish.augmented(below))
         return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
 
 
@@ -104,10 +91,11 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state that the point nearest to zero asks for."""
+    """The state that the point nearest to zero asks for, or of a convex function one a few projected gradients on."""
     problem = search.problem
     if not problem.standard:
-        return problem.states(problem.near_zero, problem.w(problem.near_zero))
+        convex = search.facts.symmetric and not search.facts.negative_diagonal
+        return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
     # Of a sparse Z-matrix, a grid, zeros of q too, which else join one by one (Chandrasekaran's method).
     grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
     return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)

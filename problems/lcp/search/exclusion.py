@@ -62,6 +62,17 @@ class Leaves:
         return TRIED if found or not left.size else ""
 
 
+def decide(search: Search) -> bool:
+    """Try all faces in exact arithmetic; whether a solution was found that floats hold."""
+    return taken(search, exhaust(search.problem, filtered=True))
+
+
+def taken(search: Search, found: Exhaustion) -> bool:
+    """Take into account what trying all faces came to; whether that is a solution that floats hold."""
+    search.exhaustion = found
+    return found.point is not None and bool(np.isfinite(found.point).all()) and search.accept(found.point)
+
+
 @define(eq=False)
 class Exclusion:
     """The tree of one problem, which goes on where it was left."""
@@ -77,13 +88,14 @@ class Exclusion:
             assert self.tree is not None
             if search.proof is None:
                 return f"The complementary faces were enumerated in groups, by {self.tree.nodes} linear programs."
-        elif not self.sought and not self._undecided() and self._affordable():
+        elif not self.sought and (self.tree is None or not self.tree.open) and self._affordable():
             self.sought, search.proof = True, infeasibility(search.problem)
         if search.proof is not None:
             return "A linear program gave the proof."
         if not work or search.finish is None or not decidable(search.problem, LARGEST_DECIDED):
             return ""
-        return TRIED if self._decided() else ""
+        decide(search)
+        return TRIED
 
     def _branched(self, nodes: int) -> bool:
         """Whether the tree settled the problem; a Farkas vector where its root alone did."""
@@ -97,23 +109,9 @@ class Exclusion:
         root = None if found.groups is None else found.groups.root
         search.proof = None if root is None else multiplier(problem, root)
         if search.proof is None:
-            search.exhaustion = found
-            self._accepted(found)
+            taken(search, found)
         return True
-
-    def _undecided(self) -> bool:
-        """Whether the tree has shown that its root is not to be excluded, and goes on."""
-        return self.tree is not None and self.tree.open
 
     def _affordable(self) -> bool:
         problem = self.search.problem
         return bool(problem.n * (problem.A.nnz if problem.sparse else problem.n**2) <= LARGEST_PROOF)
-
-    def _decided(self) -> bool:
-        self.search.exhaustion = exhaust(self.search.problem, filtered=True)
-        self._accepted(self.search.exhaustion)
-        return True
-
-    def _accepted(self, found: Exhaustion) -> None:
-        if found.point is not None and np.isfinite(found.point).all():
-            self.search.accept(found.point)

@@ -7,7 +7,6 @@ import time
 
 import numpy as np
 from attrs import evolve
-from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.counts import Counts
@@ -20,12 +19,9 @@ from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
-from problems.lcp.search.exclusion import TRIED
+from problems.lcp.search.exclusion import TRIED, decide
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
-
-MOST_LISTED = 5
-"""Fixed unknowns that a message names."""
 
 
 def answer(search: Search, message: str) -> Solution:
@@ -82,14 +78,8 @@ def exactly(search: Search, found: Solution) -> Solution:
     """
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
-    tried = exhaust(search.problem, filtered=True)
-    if tried.point is None or not np.isfinite(tried.point).all():
-        return found
-    before, search.ends, search.exhaustion = (search.ends, search.exhaustion), [], tried
-    if search.accept(tried.point):
-        return answer(search, TRIED)
-    search.ends, search.exhaustion = before
-    return found
+    search.ends = []
+    return answer(search, TRIED) if decide(search) else found
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
@@ -142,7 +132,9 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
     `rest`: None where nothing is left. `tolerance`: Of the relative residual.
     """
     problem = small.whole
-    said = f"Fixed, and eliminated: {_listed(np.flatnonzero(problem.fixed))}."
+    fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
+    more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
+    said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
     if rest is None:
         certificate = certify(problem, small.x(None))
         message = f"{Outcome.SOLVED} All unknowns are fixed."
@@ -184,12 +176,6 @@ def of_program(program: Program, found: Solution) -> Solution:
     elif found.float_farkas is not None:
         parts.append(program.reading(found.float_farkas.y))
     return evolve(found, program=program, message=" ".join(part for part in parts if part))
-
-
-def _listed(indices: NDArray[np.intp]) -> str:
-    """Unknowns by index, the first few of many."""
-    shown = ", ".join(f"x[{i}]" for i in indices[:MOST_LISTED])
-    return shown if indices.size <= MOST_LISTED else f"{shown} and {indices.size - MOST_LISTED} more"
 
 
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from concurrent.futures import Executor
 from functools import partial
 from typing import Any
@@ -31,10 +30,8 @@ LARGEST_ALL_FACES = 8
 (n = 8), where `solve` takes 3 and 4 ms; at n = 9 both take 4 ms."""
 
 TABLE_ENTRIES = 1 << 16
-"""Entries of the tables that are pivoted together: half a megabyte, which stays in the cache."""
-
-AT_A_TIME = 4096
-"""Problems handed to an executor together: whatever the workers, the same problems are."""
+"""Entries of the tables that are pivoted together: half a megabyte, which stays in the cache. So many problems are
+handed to an executor together: whatever the workers, the same are."""
 
 
 @frozen(eq=False)
@@ -91,7 +88,7 @@ def solve_many(
     budget : continuation.Budget, optional
         Of each problem that is solved by itself; as for `solve`.
     executor : concurrent.futures.Executor, optional
-        Over which the problems are spread, some thousands at a time. The answers are the same.
+        Over which the problems are spread, those that are pivoted together at a time. The answers are the same.
 
     Returns
     -------
@@ -113,9 +110,9 @@ def solve_many(
     if executor is not None:
         instance_with("executor", executor, ("map",), "a concurrent.futures.Executor")
     k, n = constants.shape
-    together = max(TABLE_ENTRIES // (n * (n + 2)), 1) if 0 < n <= LARGEST_TOGETHER else AT_A_TIME
-    one = partial(_answers, together=together, tolerance=tolerance, budget=budget)
-    parts = [slice(begin, begin + AT_A_TIME) for begin in range(0, max(k, 1), AT_A_TIME)]
+    together = max(TABLE_ENTRIES // max(n * (n + 2), 1), 1)
+    one = partial(_answers, tolerance=tolerance, budget=budget)
+    parts = [slice(begin, begin + together) for begin in range(0, max(k, 1), together)]
     given = [matrices[part] for part in parts], [constants[part] for part in parts]
     found = list(map(one, *given) if executor is None else executor.map(one, *given))
     singly = [answers.singly + part.start for answers, part in zip(found, parts)]
@@ -141,7 +138,7 @@ def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
     return np.broadcast_to(matrices, (k, n, n)), constants
 
 
-def _answers(A: Array, q: Array, *, together: int, tolerance: float, budget: Budget | None) -> Answers:
+def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> Answers:
     """What becomes of some of them."""
     k, n = q.shape
     x, outcome = np.full((k, n), np.nan), np.full(k, Outcome.NOT_FOUND, dtype=np.int8)
@@ -156,11 +153,11 @@ def _answers(A: Array, q: Array, *, together: int, tolerance: float, budget: Bud
 
     with np.errstate(all="ignore"):
         if 0 < n <= LARGEST_TOGETHER:
-            for which in _parts(np.arange(k), together):
-                active, ended = lemke_bases(A[which], q[which])
-                settle(which[ended], active[ended])
+            active, ended = lemke_bases(A, q)
+            settle(np.flatnonzero(ended), active[ended])
         if 0 < n <= LARGEST_ALL_FACES:
-            for which in _parts(np.flatnonzero(left), max(together >> n, 1)):
+            rest, size = np.flatnonzero(left), max(k >> n, 1)
+            for which in (rest[begin : begin + size] for begin in range(0, rest.size, size)):
                 doubtful = faces_in_doubt(A[which], q[which])
                 none = which[~doubtful.any(axis=1)]
                 outcome[none], left[none] = Outcome.UNSOLVABLE, False
@@ -173,8 +170,3 @@ def _answers(A: Array, q: Array, *, together: int, tolerance: float, budget: Bud
         if found.x is not None and found.solved:
             x[i] = found.x
     return Answers(x, outcome, residual, relative, singly)
-
-
-def _parts(which: NDArray[np.intp], size: int) -> Iterator[NDArray[np.intp]]:
-    """So many of them at a time."""
-    return (which[begin : begin + size] for begin in range(0, which.size, size))

@@ -21,9 +21,6 @@ from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import Exhaustion
 
-LARGEST_SOUGHT = 5
-"""Order up to which faces may have been excluded before a Farkas vector was looked for."""
-
 
 class Outcome(Described):
     """What became of the problem; ``str()`` of each is a sentence."""
@@ -101,7 +98,7 @@ class Solution:
     certificate : Certificate or None
         Of the point `x`, whatever the outcome; None where there is no point at all.
     paths : tuple of Path
-        Every path traced, in order. Of many or long ones only the ends are kept; an archive holds them whole.
+        Every path traced, in order. Of restarts that solved nothing only the ends are kept; an archive holds them.
     best : int
         Index of the path that led to `x`; -1 where none did.
     counts : Counts
@@ -109,8 +106,8 @@ class Solution:
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
-        The proof of UNSOLVABLE where there is no feasible point; where all faces of a problem up to order
-        `LARGEST_SOUGHT` were excluded at once it is looked for when it is asked for.
+        The proof of UNSOLVABLE where there is no feasible point; where all faces of a small problem were excluded at
+        once it is looked for when it is asked for.
     exhaustion : Exhaustion or None
         What trying all faces came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
@@ -146,8 +143,8 @@ class Solution:
     @property
     def farkas(self) -> Farkas | None:
         """The proof of UNSOLVABLE where there is no feasible point."""
-        sought = self._farkas is None and self.outcome is Outcome.UNSOLVABLE and self.problem.n <= LARGEST_SOUGHT
-        if not sought or not self.problem.standard:
+        at_once = self.exhaustion is not None and self.exhaustion.groups is None and self.problem.standard
+        if not at_once or self._farkas is not None or self.outcome is not Outcome.UNSOLVABLE:
             return self._farkas
         with np.errstate(all="ignore"):
             proof = infeasibility(self.problem)

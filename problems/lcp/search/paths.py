@@ -7,8 +7,8 @@ has what was measured).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Callable, Iterator, Mapping
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -26,22 +26,16 @@ from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish, with_zeros
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.active_set.on_path import AlongPath, smallest_parameter
+from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
-from problems.lcp.homotopies.starts import natural_units, random_start
+from problems.lcp.homotopies.starts import random_start
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import stationary
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Candidate, Search
-
-LEAST_START = 1e-3
-"""In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
-
-SETTLED_PRODUCT = 5e-5
-"""Products x z1 below this, in natural units: what the active set is then, it remains."""
 
 RESTART_STEPS = 60
 """Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many. The first
@@ -51,15 +45,11 @@ LARGEST_MADE_DENSE = 500
 """A sparse matrix of at most this order is made dense for paths, whose matrices of order n or 2n fill: with 5 % entries
 and n = 200 a path takes a tenth of the time then."""
 
-LOOSE, PURE = Tolerance(relative=5e-2), 1e-4
-"""Of the last increment on a restart, which Newton's method about squares: with the finish, whose end is exact, and
-without."""
+LOOSE = Tolerance(relative=5e-2)
+"""Of the last increment on a restart with the finish, whose end is exact: Newton's method about squares it."""
 
-IN_FLIGHT = 64
-"""Restarts handed to an executor before the first of them has come back: more than one machine has workers."""
-
-LARGEST_KEPT = 4_000_000
-"""Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
+AT_ONCE = 64
+"""Restarts handed to an executor together: more than one machine has workers."""
 
 Patience = Callable[[Step], str]
 """A step to the reason for which its path is given up, or to nothing."""
@@ -124,19 +114,13 @@ class Restart:
 
     def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
         """The path, to its end or until it is given up."""
-        # The end of a pure path is the answer. With the finish only the active set counts that the path leads to.
-        homotopy, pure = self.homotopy(), self.tolerance is None
-        finish = None if self.tolerance is None else Finish(Faces(self.structure), self.tolerance)
-        least = 0.0 if pure else smallest_parameter(homotopy, SETTLED_PRODUCT)
-        longest = np.inf if pure else RESTART_STEPS + homotopy.n
-
-        def patience(step: Step) -> str:
-            if step.kind == Kind.REGULAR and step.lam < least:
-                return "so near the end the active set no longer changes, and it is not that of a solution"
-            return unending(step, longest) or exhausted()
-
-        parts = {"preset": SEARCH, "tolerance": PURE if pure else LOOSE, "examine": pure}
-        return follow(homotopy, finish, budget, patience, observers, **{**parts, **self.options})
+        homotopy, parts, longest, finish = self.homotopy(), {"preset": SEARCH, "examine": True}, np.inf, None
+        if self.tolerance is not None:
+            # The end of a pure path is the answer. Here only the active set counts that the path leads to.
+            finish, longest = Finish(Faces(self.structure), self.tolerance), RESTART_STEPS + homotopy.n
+            parts |= {"tolerance": LOOSE, "examine": False}
+        return follow(homotopy, finish, budget, lambda step: unending(step, longest) or exhausted(), observers,
+                      **{**parts, **self.options})  # fmt: skip
 
 
 def unending(step: Step, longest: float) -> str:
@@ -166,7 +150,6 @@ class Paths:
 
     search: Search
     _begun: bool = False
-    _kept: int = 0
 
     def run(self, work: float) -> str:
         """The first path, and the next time up to so many restarts; what settled the problem."""
@@ -205,8 +188,8 @@ class Paths:
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
-        if start is not None and problem.standard and not start.all():
-            start = np.where(start > 0.0, start, LEAST_START * natural_units(problem)[0])
+        if start is not None and problem.standard and not start.all():  # paths need positive starts
+            start = None
         homotopy = known.from_x0(problem, start, search.structure)
         if automatic and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
             homotopy = known.from_x0(problem, None, search.structure)
@@ -228,8 +211,7 @@ class Paths:
             arrived = path.status is Status.REACHED_TARGET
             at_stationary = arrived and stationary(search.problem, path.endpoint.y)
             search.ends.append(Candidate(self._certified(path, arrived), len(search.paths), at_stationary))
-            self._kept += len(path) * path.endpoint.u.size
-        search.paths.append(light(path) if self._kept > LARGEST_KEPT else path)
+        search.paths.append(path)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
@@ -239,10 +221,10 @@ class Paths:
         if not arrived:
             return end
         if not search.confirmed(end):
+            # A stationary point of an LCP stays one: nothing but what is zero to the tolerance is moved.
             zeros = certify(problem, x, search.tolerance)
-            end = zeros if zeros.relative_residual < end.relative_residual else end
-        if not problem.standard:
-            end = with_zeros(problem, end, search.tolerance)
+            zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
+            end = min(end, zeros, key=lambda one: one.relative_residual)
         finish = search.finish
         if finish is None or end.relative_residual <= ROUND_OFF:
             return end
@@ -250,56 +232,37 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
+        """Trace restarts until one solves the problem, or the budget or the count is used up; how many were taken.
 
-        Over an executor the first solution in the order of the restarts is taken among those that are there.
+        Over an executor some are traced together, and the first solution in the order of the restarts is taken.
         """
         search, asked = self.search, self.search.asked
         tolerance = None if search.finish is None else search.tolerance
-
-        def task(k: int) -> Restart:
-            return Restart(search.structure, name, asked.seed, k, tolerance, asked.options)
-
-        if asked.executor is not None:
-            return self._distributed(asked.executor, task, count)
-        for k in range(count):
-            if search.exhausted:
-                return k
-            self.add(task(k).trace(self._left(), lambda: search.exhausted, self._observers()))
-            if search.solved:
-                return k + 1
+        together = 1 if asked.executor is None else AT_ONCE
+        for begin in range(0, count, together):
+            if search.exhausted or (together > 1 and search.seconds > search.budget.seconds):
+                return begin
+            numbers = range(begin, min(begin + together, count))
+            tasks = [Restart(search.structure, name, asked.seed, k, tolerance, asked.options) for k in numbers]
+            for taken, path in enumerate(self._traced(tasks), begin + 1):
+                self.add(path)
+                if search.solved:
+                    return taken
+                light(path)
         return count
 
-    def _distributed(self, executor: Executor, task: Callable[[int], Restart], count: int) -> int:
-        search = self.search
-        waiting: dict[Future[Path], Restart] = {}
-        begun = 0
-
-        def submit() -> None:
-            nonlocal begun
-            # Here the processor is the workers', and nothing but the clock says how long they take.
-            if begun < count and not search.exhausted and search.seconds < search.budget.seconds:
-                one, seconds = task(begun), max(search.budget.seconds - search.seconds, 1e-3)
-                waiting[executor.submit(trace_light, one, evolve(self._left(), seconds=seconds))] = one
-                begun += 1
-
-        try:
-            for _ in range(IN_FLIGHT):
-                submit()
-            while waiting:
-                done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in sorted(done, key=lambda one: waiting[one].k):
-                    restart, path = waiting.pop(future), future.result()
-                    if search.asked.log is not None:
-                        show(path, restart.homotopy(), Padded.of(search.asked.log, search.problem))
-                    self.add(path)
-                    if search.solved:
-                        return begun
-                    submit()
-            return begun
-        finally:
-            for future in waiting:
-                future.cancel()
+    def _traced(self, tasks: list[Restart]) -> Iterator[Path]:
+        """The paths of restarts, in order."""
+        search, asked = self.search, self.search.asked
+        if asked.executor is None:
+            yield tasks[0].trace(self._left(), lambda: search.exhausted, self._observers())
+            return
+        # The processor is the workers', and nothing but the clock says how long they take.
+        left = evolve(self._left(), seconds=max(search.budget.seconds - search.seconds, 1e-3))
+        for task, path in zip(tasks, asked.executor.map(trace_light, tasks, repeat(left))):
+            if asked.log is not None:
+                show(path, task.homotopy(), Padded.of(asked.log, search.problem))
+            yield path
 
     def _observers(self) -> tuple[Observer, ...]:
         asked = self.search.asked

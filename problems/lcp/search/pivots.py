@@ -24,17 +24,17 @@ from problems.lcp.search.search import Nearby, Search
 LARGEST_TABLE = 3000
 """A larger order is not pivoted: its table is 72 MB, and a pivot goes through all of it."""
 
-PIVOT_WORK, LEAST_PIVOTS = 1_000_000, 3
-"""Pivots over the order, and at least so many times the order: a second at n = 1000, where traffic takes one pivot per
-unknown, and a path ten seconds."""
+PIVOT_WORK = LARGEST_TABLE**2
+"""Pivots times the order at most: at the largest order one pivot per unknown, as traffic takes, at n = 1000 a second's,
+where a path takes ten."""
 
-COVERINGS, SPREAD = 5, (-3.0, 0.0)
-"""Covering vectors that are tried on a quadratic program, with twice the pivots each, and the decimal logarithms of
-their entries. On 40 indefinite box QPs (n = 40 to 200) 5 suffice; entries from 0.1 to 3 need up to 51."""
+COVERINGS = 5
+"""Covering vectors that are tried on a quadratic program, with twice the pivots each: on 40 indefinite box QPs (n = 40
+to 200) 5 suffice whose entries are 10^U(-3, 0); entries from 0.1 to 3 need up to 51."""
 
-SHORT_PATHS = 4
+SHORT_PATHS = 8
 """Of uniform and normal games of order 1000, whose paths mostly take more than 10,000 pivots, 6 to 14 % of the labels
-have a path of less than n / 2, half of them of less than n / 4: so many labels are tried as long, and twice as many."""
+have a path of less than n / 2, half of them of less than n / 4: as long are tried so many labels times the work."""
 
 GAME_WORK = 1_000_000_000
 """Entries of its table that a path of a game goes through at most: covariant games (rho = -.9) of order 300 take 5,000
@@ -49,7 +49,7 @@ def most_pivots(n: int, per_order: float = 10.0) -> int:
     n : int
     per_order : float
     """
-    return max(min(int(per_order * n), PIVOT_WORK // n), LEAST_PIVOTS * n)
+    return min(int(per_order * n), PIVOT_WORK // n)
 
 
 def pivotable(search: Search) -> bool:
@@ -90,7 +90,7 @@ class Pivots:
         if bounds.any():
             random = np.random.default_rng(self.search.asked.seed)
             for _ in range(COVERINGS):
-                d = np.where(bounds, 0.0, unit * 10.0 ** random.uniform(*SPREAD, problem.n))
+                d = np.where(bounds, 0.0, unit * 10.0 ** random.uniform(-3.0, 0.0, problem.n))
                 yield covering(problem, d), 2 * most
         yield covering(problem, np.full(problem.n, unit)), most
 
@@ -102,7 +102,7 @@ class Pivots:
         Codenotti, De Rossi and Pagan, "An experimental analysis of Lemke-Howson algorithm", arXiv 0811.3247, 2008.
         """
         n, m = played.problem.n, played.actions
-        most, batch = int(work * n), int(SHORT_PATHS * work)
+        most = int(work * n)
         paths: list[AlmostComplementary] = []
         for label in (0, n - 1):
             paths.append(played.path(label))
@@ -111,8 +111,7 @@ class Pivots:
             most *= 2
             yield from ((path, most) for path in paths if path.ended is None)
         labels = np.random.default_rng(self.search.asked.seed).permutation(n)
-        yield from ((played.path(int(label)), n // SHORT_PATHS) for label in labels[:batch])
-        yield from ((played.path(int(label)), 2 * n // SHORT_PATHS) for label in labels[batch : 3 * batch])
+        yield from ((played.path(int(label)), n // 2) for label in labels[: int(SHORT_PATHS * work)])
 
 
 def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool:

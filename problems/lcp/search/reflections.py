@@ -35,10 +35,6 @@ CHECKED = 25
 """Iterations between two looks at the faces: 1 at n = 30 costs as much as 25 iterations. One that is the same at both
 is tried; a run that has come to a solution stays at its face."""
 
-BALANCINGS = 5
-"""Of rows and columns in turn: for a dense matrix the fifth changes less than a percent."""
-
-
 LARGEST_REFLECTED = 1000
 """A round takes a minute at this order, of which Gaussian problems need 5 to 17 s."""
 
@@ -56,7 +52,7 @@ def run_length(n: int) -> int:
 
 @frozen(eq=False)
 class Sets:
-    """The two sets, in units in which all rows and columns weigh the same.
+    """The two sets, in units in which w weighs as x.
 
     `onto`, shape (2 n, 2 n): Projects onto the differences of points with w = A x + q. `nearest`, shape (2 n, 1): The
     point of that set nearest to w = 0 and the x, between the bounds, nearest to zero; its mean entry is the unit of
@@ -73,19 +69,17 @@ class Sets:
     def of(cls, problem: MixedLCP) -> Sets | None:
         """Those of a problem; None where w = A x + q lies so that there is no unit of length."""
         A, n = problem.A.toarray() if problem.sparse else problem.A, problem.n
-        rows, columns = _balanced(A)
-        scaled = rows[:, None] * A * columns
         # A large factor of rank one, as games have for all costs to be positive, moves neither the median nor this.
-        diagonal = np.abs(sl.qr(scaled, mode="r", check_finite=False)[0].diagonal())
+        diagonal = np.abs(sl.qr(A, mode="r", check_finite=False)[0].diagonal())
         unit = float(np.median(diagonal)) or largest(diagonal) or 1.0
-        basis = sl.qr(np.vstack([np.eye(n), scaled / unit]), mode="economic", overwrite_a=True, check_finite=False)[0]
+        basis = sl.qr(np.vstack([np.eye(n), A / unit]), mode="economic", overwrite_a=True, check_finite=False)[0]
         onto, origin = basis @ basis.T, problem.near_zero
-        nearest = np.append(np.zeros(n), rows / unit * problem.w(origin))
+        nearest = np.append(np.zeros(n), problem.w(origin) / unit)
         nearest -= onto @ nearest
         length = float(np.abs(nearest).mean())
         if not 0.0 < length < math.inf:
             return None
-        lower, upper = (_single((end - origin) / (columns * length)) for end in (problem.lower, problem.upper))
+        lower, upper = (_single((end - origin) / length) for end in (problem.lower, problem.upper))
         return cls(onto.astype(np.float32), _single(nearest / length), lower, upper, problem.standard)
 
     def rounds(self, random: np.random.Generator) -> Iterator[tuple[int, list[State]]]:
@@ -129,7 +123,7 @@ class Sets:
 
 def reflectable(search: Search) -> bool:
     """Where projections are no burden, and pivots do not end at a solution or a proof, as for a semidefinite A."""
-    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.semidefinite()
+    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
 
 
 @define(eq=False)
@@ -157,14 +151,3 @@ class Reflections:
 
 def _single(values: Array) -> Single:
     return values.astype(np.float32)[:, None]
-
-
-def _balanced(A: Array) -> tuple[Array, Array]:
-    """Factors of rows and columns after which all have the length one, nearly."""
-    rows, columns = np.ones((2, len(A)))
-    square = A * A
-    for _ in range(BALANCINGS):
-        for own, other, lines in ((rows, columns, square), (columns, rows, square.T)):
-            length = np.sqrt(lines @ other**2)
-            own[:] = 1.0 / np.where(length > 0.0, length, 1.0)
-    return rows, columns

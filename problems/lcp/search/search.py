@@ -16,7 +16,7 @@ from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.path import Path
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.active_set.iteration import Policy
+from problems.lcp.active_set.iteration import AT_END, Policy
 from problems.lcp.data.matrix_facts import MatrixFacts
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.data.scaling import Scaled
@@ -25,10 +25,7 @@ from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.proof.verdict import NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
-from problems.lcp.search.work import share_of_default
-
-AT_END = Policy(steps=2)
-"""Corrections of an active set that is right but for rounding: a method's last one."""
+from problems.lcp.search.work import default_budget
 
 
 @frozen(eq=False)
@@ -127,16 +124,12 @@ class Search:
     @cached_property
     def share(self) -> float:
         """The budget over the default one, at most 1: of what a method may do by default it does so much."""
-        return share_of_default(self.problem, self.budget)
+        return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
     def facts(self) -> MatrixFacts:
         """What is known of the matrix."""
         return MatrixFacts(self.structure)
-
-    def semidefinite(self) -> bool:
-        """Whether A is known to be positive semidefinite: costs a factorisation."""
-        return self.facts.semidefinite
 
     @property
     def solved(self) -> bool:

@@ -17,7 +17,7 @@ from typing import Protocol
 from attrs import frozen
 
 from problems.lcp.search.active_sets import ActiveSets
-from problems.lcp.search.exclusion import Exclusion, Leaves, few_faces
+from problems.lcp.search.exclusion import LARGEST_TREE, Exclusion, Leaves, few_faces
 from problems.lcp.search.paths import Paths
 from problems.lcp.search.pivots import Pivots, game, pivotable
 from problems.lcp.search.reflections import Reflections, reflectable
@@ -50,9 +50,8 @@ def always(search: Search) -> bool:
 AUTOMATIC = (
     Row("active sets", ActiveSets, lambda s: not game(s), 30, "corrections of each guess"),
     Row("all faces", Leaves, few_faces, 8, "faces in doubt"),
-    Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 1e6 over it, at least 3 times"),
-    Row("root", Exclusion, lambda s: 20 < s.problem.n <= 40, 1, "linear programs"),
-    Row("few groups of faces", Exclusion, lambda s: s.problem.n <= 20, 1000, "linear programs"),
+    Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 9e6 over it"),
+    Row("few groups of faces", Exclusion, lambda s: s.problem.n <= LARGEST_TREE, 100, "linear programs"),
     Row("reflections", Reflections, reflectable, 4, "rounds, of 4e8 iterations times n^2 at most"),
     Row("groups of faces", Exclusion, always, 10_000, "linear programs, of n <= 40, else one"),
     Row("paths", Paths, always, 1, "path of each homotopy"),

@@ -13,9 +13,6 @@ FACTORIZATIONS = 170_000
 LEAST_WORK = 100
 """About two paths."""
 
-SECONDS = 60.0
-"""Of the processor: about what the default budget takes."""
-
 
 def default_budget(problem: MixedLCP) -> Budget:
     """As many factorisations, and steps, as a search takes in about a minute; at least a hundred.
@@ -32,8 +29,3 @@ def default_budget(problem: MixedLCP) -> Budget:
 @lru_cache(maxsize=32)
 def _budget(limit: int) -> Budget:
     return Budget(steps=limit, factorizations=limit)
-
-
-def share_of_default(problem: MixedLCP, budget: Budget) -> float:
-    """A budget over the default one, at most 1, where it limits factorisations or seconds."""
-    return min(1.0, budget.factorizations / default_budget(problem).factorizations, budget.seconds / SECONDS)

@@ -71,14 +71,14 @@ def test_a_step_goes_to_the_minimum_on_its_line():
     m, n = saddle.multiplier.size, saddle.c.size
     low, high = np.append(saddle.low, np.zeros(n)), np.append(saddle.high, np.ones(n))
     for _ in range(30):
-        one = Penalised(saddle, low, high, 10.0 ** rng.uniform(-1, 2, m + n), 3.0)
+        one = Penalised(saddle, low, high, 10.0 ** rng.uniform(-1, 2), 3.0)
         x, y, d = rng.standard_normal(n), rng.standard_normal(m + n), rng.standard_normal(n)
 
         def value(s, one=one, x=x, y=y, d=d):
             z = x + s * d
             t = one.values(z) + y / one.sigma
             away = t - np.clip(t, low, high)
-            return 0.5 * z @ saddle.P @ z + saddle.c @ z + s * s * d @ d / 6.0 + 0.5 * one.sigma @ away**2
+            return 0.5 * z @ saddle.P @ z + saddle.c @ z + s * s * d @ d / 6.0 + 0.5 * one.sigma * away @ away
 
         slope = (value(1e-6) - value(-1e-6)) / 2e-6
         if slope > 0.0:

@@ -80,7 +80,7 @@ def test_pivots_that_wait_are_the_same_ones(monkeypatch):
             problem = LCP(np.abs(r.standard_normal((60, 60))), -r.random(60))
         ends = []
         for largest in (10**9, 0):
-            monkeypatch.setattr(dictionary, "LARGEST_AT_ONCE", largest)
+            monkeypatch.setattr(dictionary, "LARGE", largest)
             path = covering(problem, np.ones(problem.n))
             ended = path.run(1000)
             ends.append((ended, path.pivots, tuple(path.active)))

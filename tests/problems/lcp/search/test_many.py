@@ -94,7 +94,6 @@ def test_one_matrix_and_many_q():
 def test_an_executor_and_other_parts_change_nothing(monkeypatch):
     A, q = KINDS["indefinite"](30, 9, np.random.default_rng(4))
     alone = lcp.solve_many(A, q)
-    monkeypatch.setattr(many, "AT_A_TIME", 7)
     monkeypatch.setattr(many, "TABLE_ENTRIES", 300)
     with ThreadPoolExecutor(2) as executor:
         spread = lcp.solve_many(A, q, executor=executor)

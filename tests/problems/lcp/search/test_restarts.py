@@ -80,7 +80,7 @@ def test_one_row_in_other_units_hardly_moves_the_starts():
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.paths.SETTLED_PRODUCT", 1e-2)
+    monkeypatch.setattr("problems.lcp.search.paths.RESTART_STEPS", 5 - PLANTED)
     problem = planted(3)
     paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
     given_up = [k for k, path in enumerate(paths) if "Given up: " in path.message]
@@ -113,8 +113,7 @@ def test_an_executor_finds_what_one_process_finds():
     assert all(len(path) <= 2 for path in solution.paths[1:])
 
 
-def test_over_an_executor_restarts_are_the_same(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.paths.IN_FLIGHT", 1)
+def test_over_an_executor_restarts_are_the_same():
     problem = planted(17)
     alone = lcp.solve(problem, "kkt", restarts=300, seed=2)
     with ThreadPoolExecutor(2) as executor:
