@@ -12,7 +12,7 @@ from ...util import every_preset
 class Trunk:
     """(E - f(lam)) z + z^3 = 0 along z = y / D - c sin(w lam) = 0: H' loses as many ranks as E has eigenvalues f(lam).
 
-    `bent`: Whether c and the nonlinear part of f are there. `spread`: Decades of the units of each unknown and equation.
+    `bent`: Whether c and the nonlinear part of f are there. `spread`: Decades of the units of unknowns and equations.
     """
 
     def __init__(self, seed, bent=False, spread=0.0):
