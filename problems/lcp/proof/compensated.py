@@ -115,7 +115,12 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int
     if problem.sparse:
         A = sp.csr_array(A)
         total, lost, sizes, count = _sparse_sums(A, q, x)
-    elif 4 * A.size <= _BLOCK:
+        return total + lost, sizes, count + 1
+    support = x.nonzero()[0]
+    if 2 * support.size <= x.size:
+        # Columns that do not count cost less than to leave them out, where they are few.
+        A, x = A[:, support], x[support]
+    if 4 * A.size <= _BLOCK:
         total, lost, sizes = summed(A.T, x[:, None], q)
     else:
         rows = max(_BLOCK // x.size, 1)
