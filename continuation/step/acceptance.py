@@ -1,7 +1,7 @@
-"""What makes an arc count: orientation, connectedness; then where the path ends on it, and the events on it.
+"""Decide whether an arc counts, where the path ends on it, and which events lie on it.
 
-A further check of a user's own is a `Guard`. One of the library belongs into `Examiner.examine`, between the crossing
-of branches and the end, and answers with a `Rejection`.
+A user adds checks as a `Guard`. A check of the library belongs in `Examiner.examine`, between the search for crossings
+and the end of the arc, and returns a `Rejection`.
 """
 
 from __future__ import annotations
@@ -31,16 +31,17 @@ from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
-"""What is said of a point where several branches cross at once."""
+"""Kind and name of a point where several branches cross."""
 
 LEAST_STEP_SHARE = 2.0**-8
-"""Of the step that the controller asked for: down to that an arc is made shorter on which a census of eigenvalues finds
-more than the events do. What then crosses has another reason, as a pole of H_y, or a symmetry."""
+"""Shrink the arc to this part of the controller's step at most, while the eigenvalue count disagrees with the events. A
+crossing that is still unexplained has another cause: a pole of H_y or a symmetry.
+"""
 
 
 @frozen(eq=False)
 class Accepted:
-    """An accepted arc after examination: how it ends, the events on it, and what is part of the state after it."""
+    """An accepted arc: how it ends, its events, and the parts of the state after it."""
 
     ending: ArcEnd
     attempt: Arrival
@@ -53,7 +54,7 @@ class Accepted:
 
 @frozen(eq=False)
 class Examiner:
-    """What an examination needs."""
+    """Examines the arcs of one path."""
 
     solver: PathSolver
     settings: Settings
@@ -68,18 +69,18 @@ class Examiner:
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
     ) -> Accepted | Rejected:
-        """The arc from `point` to where the attempt arrived, or why it does not count.
+        """Return the arc from `point` to the arrival, or the reason why it does not count.
 
         Parameters
         ----------
         point : Linearization
         state : State
-            At `point`.
+            State at `point`.
         attempt : Arrival
         prediction : Prediction
-            That of the attempt: where it is good enough it is the path between the two points.
+            Prediction of the attempt; if accurate enough, it is the path between the two points.
         landed : bool
-            Whether the attempt was one to land on the target, so that the path ends with it.
+            Whether the attempt aimed at the target, so that the path ends there.
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
@@ -88,7 +89,7 @@ class Examiner:
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
             if self.pieces is not None:
-                # What lies behind a kink is no path: the arc ends there before anything else is looked at.
+                # The path ends in a kink, so the arc is cut there before any other check.
                 kink = first_zero(self.solver, self.pieces, state.signs, arc)
             if kink is not None:
                 arrival, landed = kink[0], False
@@ -100,10 +101,11 @@ class Examiner:
             ending = self.target.ending_of_arc(arc, state, landed)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:
-                # A singular end by itself makes H' lose its rank there.
+                # A singular end alone makes H' lose rank there.
                 flipped = False
             elif index is not None:
-                # Where the path ends on the arc, that end is looked at: it may lie on another branch than the arc does.
+                # If the path ends on the arc, only that part is examined: its end may lie on another branch than the
+                # arc's.
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
@@ -153,7 +155,7 @@ class Examiner:
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
-        """That of an arc which was cut at a kink: the target, if that is the same point, else the kink."""
+        """The ending of an arc cut at a kink: the target if it is the same point, else the kink."""
         if ending.at is not EndsAt.NOTHING:
             return ending
         target = self.settings.target
@@ -165,7 +167,6 @@ class Examiner:
     def _located(
         self, i: int, at: Linearization, begin: Linearization, state: State, end: Linearization
     ) -> LocatedEvent:
-        """The i-th event, found at a point of the arc from `begin` to `end`."""
         event = self.settings.events[i]
         return LocatedEvent(
             name=event.name,
@@ -183,12 +184,14 @@ class Examiner:
 
 
 def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
-    """Whether a point lies on an arc no farther than its end, which may be before the arc's own."""
+    """Whether a point lies on the arc, no farther than `end`, which may lie before the arc's own end."""
     return position(arc, at.u) <= position(arc, end.u)
 
 
 def _across(point: Linearization, attempt: Arrival, prediction: Prediction) -> float:
-    """How far the prediction of a landing was off, across the path: at a fixed parameter it is corrected along, too."""
+    """Error of a landing's prediction across the path; a correction at fixed parameter has a part
+    along the path too.
+    """
     off = attempt.point.u - prediction(attempt.h)
     return norm(point.weights, off - point.tangent * dot(point.border, off))
 

@@ -1,12 +1,12 @@
-"""What lies on an arc before it counts: the eigenvalues of H' along it, and the branch point where one changes sign.
+"""Eigenvalues of H' along an arc, and the branch point where one of them changes sign.
 
-Let M_a be the bordered matrix factored at the beginning of an arc, M(t) that at its point t, and z(t) the eigenvalues
-of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if no real z falls to less than 1/SPAN
-from one look to the next, none grows by more than SPAN, and of three looks in a row z at the first and the last add up
-to at most SPAN times that between them, where of a parabola that touches zero it is four times: no branch crosses it,
-and both its ends lie on one branch. An arc *crosses* a branch if one real z(t) goes through zero at a simple branch
-point s about as 1 - t / s does, or at a degenerate one as a power of that (`degenerate_point`), and no other comes to
-zero. Any other arc is too long, or no part of the path.
+Let M_a be the bordered matrix factored at the beginning of an arc, M(t) the matrix at t, and z(t) an eigenvalue of
+M_a^-1 M(t); z = 0 where M(t) is singular. An arc is *regular* if each real z, from one sample to the next, neither
+falls below 1/SPAN nor grows by more than SPAN, and if, in three samples in a row, the outer two add up to at most SPAN
+times the middle one (a parabola that touches zero has factor four or more). Then no branch crosses the arc and both its
+ends lie on one branch. An arc *crosses* a branch if one real z goes through zero like 1 - t / s at a simple branch
+point s, or like a power of it at a degenerate one (`degenerate_point`), and no other z approaches zero. Any other arc
+is too long or leaves the path.
 """
 
 from __future__ import annotations
@@ -33,50 +33,56 @@ from continuation.step.degenerate import Z_ROUND_OFF, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""How far a real eigenvalue of M_a^-1 M(t) may change from one look to the next on an arc that counts as regular. Two
-crossings that are passed at once leave no sign; but of a parabola that touches zero between three looks the values at
-the first and the last add up to four times the one between them, or more."""
+"""Largest change factor of a real eigenvalue of M_a^-1 M(t) between two samples of a regular arc. Two crossings passed
+at once leave no sign change, but of a parabola that touches zero the outer two of three samples add up to at least four
+times the middle one.
+"""
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
-"""The same for eigenvalues of I - M_a^-1 M(t)."""
+"""The limits of SPAN for eigenvalues of I - M_a^-1 M(t)."""
 
 TOLD = 0.25
-"""The least change that is told."""
+"""Smallest reported change of an eigenvalue."""
 
 ONWARD = 0.1
-"""A look so far behind the end of an arc, in its lengths, along which H' comes nearer to singular. If it becomes more
-regular there by more than that part, it was singular on the arc, as the branch sees it on which the arc ends."""
+"""Distance, in arc lengths, of an extra sample beyond the end of an arc along which H' approaches a singular matrix. If
+H' is more regular there by more than this part, H' was singular on the arc, seen from the branch on which the arc ends.
+"""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
-"""Where on an arc the eigenvalues are told: on a cubic, and on a series, whose steps reach over more."""
+"""Sample parameters on a cubic arc, and on a series, whose steps are longer."""
 
 NEAR_ARC = 2e-2
-"""How far from the arc a branch point on it may lie, in its lengths: five times what an arc may be off the path."""
+"""Largest distance of a branch point from its arc, in arc lengths: five times the allowed error of an arc."""
 
 ON_PATH = 8 * float(np.finfo(float).eps)
-"""Of the rows of H' over the arc: so little of H is round-off, also where all that H is made of vanishes at the point.
-At true crossings at most 3e-16 was seen; with 1e-13 curves 2e-6 apart were said to cross."""
+"""Largest residual that is round-off, relative to the rows of H' over the arc, which do not vanish with the terms of
+H'. At true crossings at most 3e-16 was measured; 1e-13 reported curves 2e-6 apart as crossing.
+"""
 
 AHEAD = 3.0
-"""So far ahead, in arcs, a branch point that is found is believed: the next arc has it on its first two thirds."""
+"""Branch points farther ahead, in arc lengths, are ignored; the next arc has this one on its first two thirds."""
 
 NEAR_CROSSING = 0.1
-"""An arc does not end so near to a crossing, in its lengths: the factors there have a part ten times too small, and the
-next arc would begin with that."""
+"""Least distance of an arc's end from a crossing, in arc lengths: nearer, the next arc begins with factors that have a
+part ten times too small.
+"""
 
 STEP_BACK = 0.7
-"""The factor of a step that arrived so near to a crossing, and the largest of one that is to end behind it."""
+"""Factor of a step that ended too near a crossing; largest factor of a step that is to end behind one."""
 
 BEST = 4.0 / 3.0
-"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart:
-here the first is least beside the second."""
+"""Best length of a step over a crossing at s, in units of s. A step to x s has the cubic's error, like x^4, and ends x
+- 1 from the other branch; the ratio is least here.
+"""
 
 SMALLEST = 2.0**-6
-"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row; and
-the least factor of a step, since a place next to the beginning may be round-off, and would end the path at once."""
+"""Pairs of crossings before this part of an arc are not searched for. It is also the least factor of a step: a crossing
+nearer to the beginning may be round-off and would end the path.
+"""
 
 AT_END = 1e-6
-"""Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
+"""A crossing this near to the arc's end, in arc lengths, lies at the end: only half of its digits are known."""
 
 @frozen(eq=False)
 class Crossed:
@@ -85,10 +91,10 @@ class Crossed:
     Attributes
     ----------
     point : Linearization
-        Of the path; the factorisation is that of the arc's beginning.
+        Branch point, with the factorisation of the arc's beginning.
     rays : ndarray, shape (4, N + 1), or None
-        The directions of the branches that meet there, of unit length in the metric, each pointing away from it: back,
-        onward, and both of the other branch. None where H' loses several ranks at once: they are not known then.
+        Directions of the branches at the point, of unit length in the metric, pointing away from it: back, onward, and
+        both of the other branch. None where H' loses several ranks: then the directions are unknown.
     """
 
     point: Linearization
@@ -99,7 +105,7 @@ class Crossed:
 class _BranchPoint:
     """A branch point on an arc or ahead of it.
 
-    `simple`: None for a degenerate one. `order`: Of the zero of z. `odd`: Whether the determinant's sign changes there.
+    `simple`: None if degenerate. `order`: Order of the zero of z. `odd`: Whether the determinant changes sign.
     """
 
     u: Array
@@ -108,7 +114,7 @@ class _BranchPoint:
     odd: bool = True
 
     def expected(self, t: float, s: float) -> float:
-        """What is told at t of an eigenvalue that vanishes at s."""
+        """The change 1 - z at t of an eigenvalue that vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -116,29 +122,29 @@ class _BranchPoint:
 def on_arc(
     solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
 ) -> Crossed | Rejected | None:
-    """The branch point on an arc; None where none is; or why the arc does not count, and which step to try.
+    """Return the branch point on an arc, None without one, or a rejection with the next step to try.
 
     Parameters
     ----------
     solver : PathSolver
     arc : Arc
     attempt : Arrival
-        Where the arc, or the one of which it is a part, ends.
+        The end of the arc, or of the longer arc that contains it.
     prediction : Prediction
-        Of the arc.
+        Prediction of the arc.
     flipped : bool
-        Whether the determinant's sign changes from its beginning to its end.
+        Whether the determinant's sign differs between the ends of the arc.
     ends : bool
-        Whether the path ends where the arc does: what lies beyond does not count.
+        Whether the path ends with the arc, so that crossings beyond do not count.
     index : int
-        Of the step: each looks at H' with another first vector.
+        Index of the step: it selects the start vector of the Krylov spaces.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()
     if isinstance(seen, Rejected) and not flipped and looks.blurred():
         return None
     if seen is None and flipped and _differential(solver, arc.b.u) is None:
-        # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
+        # Without products H' v only the sign is known: it changes at a branch point, or the arc leaves the path.
         seen = looks.simple(arc.segment.at(0.5))
         looks.told.clear()
     if isinstance(seen, _BranchPoint):
@@ -147,7 +153,7 @@ def on_arc(
 
 
 def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
-    """Whether H' has an eigenvalue of another sign at u than at a point."""
+    """Whether H' has an eigenvalue of another sign at u than at `point`."""
     apply, start = _differential(solver, u), generic_vector(u.size)
     if apply is None:
         return False
@@ -156,7 +162,7 @@ def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
 
 
 def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | None:
-    """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
+    """The map v -> H' v at u; None where it does not exist, as outside the domain."""
     try:
         return solver.evaluator.differential(u)
     except EvaluationError:
@@ -165,10 +171,11 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 
 @define(eq=False)
 class _Looks:
-    """Looks at H' along one arc.
+    """Samples of the eigenvalues of H' along one arc.
 
-    `told`: By place, the real 1 - z that are not as on a regular arc, in order. `along`: The sum of the eigenvectors of
-    the last look that told any: the next one begins with these, and cannot overlook where their eigenvalues have gone.
+    `told`: For each parameter t the sorted real changes 1 - z that exceed a regular arc's. `along`: Sum of the
+    eigenvectors of the last sample with changes; the next start vector contains it, so that no known eigenvalue is
+    lost.
     """
 
     solver: PathSolver
@@ -186,12 +193,12 @@ class _Looks:
         return np.zeros(self.arc.a.u.size)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """What is told at a point, which lies about at t; nothing where H' is not to be had."""
+        """The changes 1 - z at u, near parameter t; empty where H' is not available."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []
         whole, first = generic_vector(size), (self.index + len(self.told)) % size
-        # Each look with another first vector: one in a thousand has next to no part along an eigenvector.
+        # A fixed start vector fails: one in a thousand has almost no part along an eigenvector.
         start = np.concatenate((whole[first:], whole[:first]))
         start = start / math.sqrt(dot(start, start)) + self.along
         values, vectors = changes(self.arc.a, apply, self._border(t), TOLD, LOWEST, start, accuracy)
@@ -200,7 +207,6 @@ class _Looks:
         return values
 
     def _border(self, t: float) -> Array:
-        """The arc's tangent at t, in the dual metric."""
         tangent, weights = self.arc.segment.derivative(t), self.arc.a.weights
         border: Array = weights * tangent / norm(weights, tangent)
         return border
@@ -209,18 +215,18 @@ class _Looks:
         return self.prediction(t * self.arc.length)
 
     def first(self) -> _BranchPoint | Rejected | None:
-        """The first branch point that the eigenvalues along the arc lead to; None on a regular arc."""
+        """The first branch point indicated by the eigenvalues along the arc; None on a regular arc."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
         for t in HALF if cubic else EIGHTHS:
             told[t] = there = self.look(self._point(t) if t < 1.0 else arc.b.u, t)
             left.append(1.0 - max([0.0, *there]))
-            # Where the path ends with the arc, only what lies on it counts.
+            # Crossings beyond the end of the path do not count.
             least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
                 found = self._branch_point(t, t / there[-1])
-                # What comes near to singular at the end, and goes straight, may do so behind it.
+                # A z that approaches zero linearly at the arc's end may vanish beyond it.
                 if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
                     return self.rejected(Rejection.ORIENTATION, max(before, shorter))
@@ -231,7 +237,7 @@ class _Looks:
                 t = near[0]
                 return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
-                # What a series is made of is seen on it already.
+                # A series has shown its own coefficients by its samples.
                 onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return self.rejected(Rejection.ORIENTATION, 0.5)
@@ -241,10 +247,9 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Looks nearer to the beginning of an arc along which H' becomes more regular; their places.
+        """Add samples toward the beginning of an arc along which H' becomes more regular; return their parameters.
 
-        A pair of crossings there leaves the eigenvalue larger than SPAN farther on: each half of the arc is looked at
-        as a whole one would be, until it is not larger any more.
+        A pair of crossings there makes an eigenvalue grow beyond SPAN: the arc is halved until the growth is less.
         """
         t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
@@ -256,7 +261,7 @@ class _Looks:
         return places
 
     def over(self, seen: _BranchPoint) -> Crossed | Rejected | None:
-        """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
+        """The branch point found, if the arc crosses it on its own branch; None if the arc ends before it."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -264,12 +269,12 @@ class _Looks:
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
         if self.flipped != (s < 1.0 and seen.odd):
-            # Over a crossing the arc's end is on the other branch, or before it beyond another one.
+            # The arc's end lies on the other branch, or beyond another crossing before this one.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not all(_as_expected(there, seen.expected(t, s)) for t, there in told.items()):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
-            # Another eigenvalue may fall so far, and no farther, where the arc is to end behind this crossing.
+            # Another eigenvalue limits how far behind this crossing the arc may end.
             behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
             step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
             return self.rejected(Rejection.CROSSINGS, min(step, STEP_BACK))
@@ -281,22 +286,22 @@ class _Looks:
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
-        """An arc that does not count; the next attempt goes a factor of its length, which may be part of a step."""
+        """Reject the arc; `factor` is the next attempt's length in arc lengths (the arc may be part of a step)."""
         attempt = self.attempt
         factor = max(factor * self.arc.length / attempt.h, SMALLEST)
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether no z can be told: within the tolerance of the arc's beginning, where all are one, some are not.
+        """Whether z is useless: some z differ from one within the tolerance of the arc's beginning, where all are one.
 
-        So it is on the way to a pole, where components vanish beside the others.
+        This happens near poles, where components vanish beside others.
         """
         a = self.arc.a
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
     def _branch_point(self, t: float, place: float) -> _BranchPoint | None:
-        """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
+        """The branch point indicated by the sample at t: a simple one near parameter `place`, or a degenerate one."""
         solver, arc, u, lost = self.solver, self.arc, self._point(t), 1
         if (apply := _differential(solver, u)) is not None and (exactly := self.look(u, t, Z_ROUND_OFF)):
             lost = max(multiplicity(arc.a, apply, self._border(t), 1.0 / exactly[-1]), 1)
@@ -314,17 +319,17 @@ class _Looks:
         return found
 
     def _rows(self) -> Array:
-        """What the rows of H' are made of over the arc."""
+        """Row sizes of H' over the arc."""
         a, b = self.arc.a, self.arc.b
         return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
-        """Whether H at a point is no more than round-off."""
+        """Whether H(u) is round-off."""
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> _BranchPoint | None:
-        """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
+        """The simple branch point on or ahead of the arc to which Newton's method converges from a guess."""
         arc, a = self.arc, self.arc.a
         try:
             rows = self._rows()
@@ -340,7 +345,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float) -> bool:
-    """Whether the changes told at a place are that of one eigenvalue, as it is expected, and no other."""
+    """Whether the changes at a sample are those of the one expected eigenvalue."""
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
     others = [mu for mu in told if mu != nearest and mu >= 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

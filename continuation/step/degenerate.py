@@ -1,8 +1,8 @@
-"""Degenerate branch points: where branches touch, more than two cross, or H' loses several ranks at once.
+"""Degenerate branch points: branches touch, more than two branches cross, or H' loses several ranks.
 
-There z, the real eigenvalue of M_a^-1 M along an arc, goes like (1 - t / s)^m with m > 1, or several eigenvalues vanish
-together, of which a Krylov space shows one. z over its slope has a simple zero at s whatever m is, and the slope 1 / m
-there: the secant method finds both. The path goes straight on, as it does along a branch that symmetry keeps.
+There z, the real eigenvalue of M_a^-1 M along an arc, behaves like (1 - t / s)^m with m > 1, or several eigenvalues
+vanish together and a Krylov space shows one of them. z / z' has a simple zero at s with slope 1 / m for every m; the
+secant method finds both. The path goes straight on, like a branch that symmetry keeps.
 """
 
 from __future__ import annotations
@@ -22,44 +22,46 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
 SECANTS_OF_Z = 20
-"""Of the secant method; four or five are usual."""
+"""Limit of secant steps; four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""The step of the slope of z, of the way that is left; the order that is assumed first, so that a double zero is not
-met at once; and the order of a zero beyond which it is no simple one."""
+"""Difference step for the slope of z, relative to the remaining distance; the order assumed first, so that the
+iteration does not hit a double zero at once; and the largest order of a simple zero.
+"""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""What round-off in H may make of z where it is said to vanish: more, and nothing is known of it; and what round-off in
-the products that tell z does."""
+"""Largest effect of round-off in H on a vanishing z, beyond which z is useless; and the effect of round-off in the
+matrix products.
+"""
 
 FARTHEST = 3.0
-"""So far ahead, in arcs, it is looked for."""
+"""Search limit ahead, in arc lengths."""
 
 
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point to which a look at t leads; None where there is none, as at a simple branch point.
+    """Return the degenerate branch point indicated by a sample at t; None without one, as at a simple branch point.
 
     Parameters
     ----------
     solver : PathSolver
     arc : Arc
     prediction : Prediction
-        Of the arc.
+        Prediction of the arc.
     t : float
-        Where on the arc z has fallen.
+        Parameter on the arc where z has fallen.
     z_at : callable
-        From a place on the arc and a point there to z; NaN where it is not told.
+        Maps a parameter and a point there to z; NaN where z is unknown.
     lost : int
-        How many eigenvalues are like z at t.
+        Number of eigenvalues close to z at t.
 
     Returns
     -------
     u : ndarray, shape (N + 1,)
-        The point, as near as round-off in H allows.
+        The point, to round-off in H.
     order : float
-        Of the zero of z, about.
+        Approximate order of the zero of z.
     """
 
     def beside(place: float) -> float:
@@ -68,7 +70,7 @@ def degenerate_point(
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
         if lost > 1:
-            # The symmetry that makes eigenvalues vanish together keeps the prediction from what they would magnify.
+            # The symmetry that makes the eigenvalues vanish together keeps the prediction out of their eigenvectors.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return solver.project(arc.a, u, arc.a.border)[0]
@@ -77,16 +79,16 @@ def degenerate_point(
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
         if ahead <= 0.0 > z:
-            # Far behind the point: it lies about where a straight line from 1 at the arc's beginning is zero.
+            # Far behind the point: guess the zero of the line through z = 1 at the arc's beginning.
             ahead = 0.5 * (t + t / (1.0 - z))
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        # A smooth z has a zero of the first order at least.
+        # A smooth z has a zero of order one or more.
         order = max((ahead - t) / (beyond - left), 1.0)
         if not (order > SIMPLE_ORDER or lost > 1):
             return None
-        # From here on the path: beside a degenerate point a place on it may cost factorisations.
+        # Projections begin here: near a degenerate point each may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
@@ -94,7 +96,7 @@ def degenerate_point(
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                # Where M_a is itself nearly singular its round-off is what is left of z.
+                # If M_a is itself nearly singular, the remaining z is round-off.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
             if before:
                 order = max((t - before) / (left - last), 1.0)
@@ -104,13 +106,13 @@ def degenerate_point(
             if not 0.0 < t < FARTHEST:
                 return None
     except ArithmeticError:
-        # No value there, or two looks of the secant method that are one.
+        # z is NaN, or two secant points coincide.
         pass
     return None
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """The pair of z at a place and z over its slope there, by a difference towards the beginning; 0 if that is none."""
+    """Return z and z / z' at t, by a difference towards the beginning; 0 without a slope."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
@@ -118,9 +120,10 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """What round-off in H makes of z: its change as far beside the path as H stays round-off; 0 if that is too much.
+    """The effect of round-off in H on z: the change of z as far across the path as H stays round-off; 0 if that is too
+    large.
 
-    Near a degenerate point that is far, since H' has nearly lost its rank.
+    That distance is long near a degenerate point, where H' is nearly singular.
     """
     residual = solver.evaluator.residual
     r = residual(u)

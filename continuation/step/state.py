@@ -1,4 +1,4 @@
-"""Everything a trace carries from one step to the next, as arrays and numbers that an archive can hold."""
+"""The state that a trace carries from step to step: arrays and numbers, so that an archive can store it."""
 
 from __future__ import annotations
 
@@ -11,42 +11,42 @@ from continuation.predictors import Knot
 
 @frozen(eq=False)
 class State:
-    """The stepper's state at an accepted point; with the settings it determines the rest of the path, bit for bit.
+    """The state at an accepted point; with the settings it determines the rest of the path, bit for bit.
 
     Attributes
     ----------
     history : tuple of Knot
-        The current point last, with as many before it as the predictor remembers.
+        The current point last, after as many points as the predictor remembers.
     weights : ndarray, shape (N + 1,)
-        The metric at the point.
+        Metric at the point.
     anchor : tuple of two ndarrays, shape (N + 1,)
-        Where the factorisation at hand was made, and with which border.
+        Point and border of the current factorisation.
     orientation : int
-        The determinant sign that the tangent is to have.
+        Determinant sign that the tangent must have.
     h : float
-        The step length to try next.
+        Step length to try next.
     controller : tuple of float
-        The controller's state.
+        State of the controller.
     monitors : tuple of float
-        Values of the events' monitors at the point; 0 where an event was found on it.
+        Monitor values of the events at the point; 0 if an event was found there.
     occurrences : tuple of int
-        How often each event has been located.
+        Number of locations of each event so far.
     origin : Knot
-        The start, and `origin_weights` the metric there: for recognising a closed curve.
+        The start, and `origin_weights` its metric: to recognise a closed curve.
     divergence_monitor : tuple of float
-        For recognising divergence: see `continuation.ends.divergence`.
+        See `continuation.ends.divergence`.
     last_failed_landing : float
-        The parameter value at which landing was last tried in vain; inf if never.
+        Parameter value of the last failed landing; inf if none.
     last_failed_endgame : float
-        The parameter value at which the endgame was last tried in vain; inf if never.
+        Parameter value of the last failed endgame; inf if none.
     index : int
-        Of the step that led here.
+        Index of the step that led here.
     signs : tuple of int
-        The piece on which the path goes on, where the homotopy has pieces.
+        The piece on which the path continues, if the homotopy has pieces.
     noise : ndarray, shape (N,), or (0,) where there is none
-        What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
+        Measured noise of each equation, if larger than round-off of the point.
     tolerance : float
-        The relative tolerance that noise allows; 0 where it was not raised.
+        Relative tolerance raised for noise; 0 if not raised.
     """
 
     history: tuple[Knot, ...]

@@ -1,7 +1,6 @@
-"""Why a path ends: every status of a trace is given here, with its sentence and what is particular to the path.
+"""Why a path ends: each function returns a `Verdict` with status and sentence, or None if the path continues.
 
-The functions stand in the order in which a trace asks: at the start, before a step, at a failed attempt, after a step.
-Each gives a `Verdict`, or None where the path goes on.
+The functions are in the order of their calls: at the start, before a step, after a failed attempt, after a step.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars`: What is said of this path beyond the status' sentence. `limit`: Where the end is singular.
-    `rejected`: The failed attempts at the last point. `error`: A bound of what the end is off, where it is regular.
+    `particulars`: Text after the status' sentence. `limit`: The singular end. `rejected`: Failed attempts at the last
+    point. `error`: Error bound of a regular end.
     """
 
     status: Status
@@ -45,17 +44,17 @@ INTERRUPTED = Verdict(Status.INTERRUPTED)
 
 
 def abandoned(reason: str) -> Verdict:
-    """Whoever asks for the steps has asked for no more."""
+    """The caller stopped the loop."""
     return Verdict(Status.ABANDONED, f"Given up: {reason}." if reason else "")
 
 
 def raised(error: BaseException) -> Verdict:
-    """An exception of the plug-in's own, or of an observer."""
+    """A plug-in or an observer raised an exception."""
     return Verdict(Status.RAISED, f"It says: {sentence(error)}")
 
 
 def sentence(error: BaseException) -> str:
-    """An exception in one line, also one whose text cannot be had."""
+    """Return an exception in one line, even if its text raises."""
     try:
         text = str(error)
     except Exception as within:
@@ -75,9 +74,9 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
 
 
 def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts.
+    """The budget is exhausted; called before a step and between attempts.
 
-    What asymptote is in sight is said, but it has not been followed far enough to be an end.
+    `limit`: The limit reached. An asymptote in sight is mentioned but is no end.
     """
     limit = limit or ("" if state is None else beyond_horizon(state.here.u))
     if not limit:
@@ -88,7 +87,7 @@ def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...]
 
 
 def predictor_failed(error: EvaluationError) -> Verdict:
-    """The predictor has no curve to offer."""
+    """The predictor raised an error."""
     return Verdict(Status.PREDICTOR_FAILED, f"It says: {error}.")
 
 
@@ -101,13 +100,13 @@ def singular_end(limit: SingularLimit) -> Verdict:
 
 
 def finished(residual_norm: float) -> Verdict:
-    """The homotopy's own finish found the end; what H is there is said."""
+    """The homotopy's own finish found the end; the text gives the residual."""
     found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
     return Verdict(Status.REACHED_TARGET, found)
 
 
 def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
-    """The step length to try next is below its floor: the last attempt's reason decides which end that is."""
+    """The next step length is below the minimum: the last attempt's reason decides the status."""
     if h >= minimum:
         return None
     last = rejected[-1]
@@ -118,10 +117,9 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
 
 
 def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
-    """An accepted arc ends the path: by where it ends, else because the path runs off to infinity.
+    """An accepted arc ends the path, or the path diverges.
 
-    `infinity`: How the path runs off to infinity, in words; empty if it does not. `event`: Name of the last event on
-    the arc, if there is one.
+    `infinity`: How the path diverges, in words; empty if it does not. `event`: Name of the last event on the arc.
     """
     if end.limit is not None:
         return singular_end(end.limit)
@@ -137,7 +135,7 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
 
 
 def behind_kink(kink: Crossing, solver: PathSolver, origin: Knot) -> Verdict | None:
-    """The path ends in a kink: it began there, no branch leaves it, or which one does could not be told."""
+    """The path ends in a kink: it began there, no branch leaves it, or the branch is unknown."""
     if kink.onward is not None:
         return Verdict(Status.CLOSED) if same_ray(solver, origin, kink.onward) else None
     where = f"Switches that vanish there: {', '.join(map(str, kink.switches))}."
