@@ -1,4 +1,4 @@
-"""A homotopy as the engine sees it: capabilities resolved once, evaluations counted, u = (y, lam) as one vector."""
+"""Counted evaluations of a homotopy; u = (y, lam) is one vector."""
 
 from __future__ import annotations
 
@@ -33,30 +33,32 @@ from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
-"""Units in the last place by which round-off moves a point, about."""
+"""Approximate round-off of a point, in ulps."""
 
 DERIVATIVES_KEPT = 4
-"""Derivatives that are kept where somebody looks again: at a step's end, and where crossings are looked for ahead."""
+"""Number of derivatives kept for a second use: at a step's end and in the search for crossings."""
 
 LOOK = 64.0
-"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places.
-The moves are of either sign, no two alike: what has one value in all neighbours may not change a difference of them."""
+"""Perturbation, in ulps, of the round-off estimate: the change of an equation then exceeds its own ulps. Signs and
+sizes vary, since common values of neighbours cancel in differences.
+"""
 
 NOT_OF_POINT = 3.0
-"""Noise of so many times what the last places of u make of an equation has another source, and goes with the path: what
-`Evaluator.look` sees of that source is POINT_ULPS / LOOK of it."""
+"""Noise above this multiple of the point's round-off has another source and stays along the path. `Evaluator.look` sees
+POINT_ULPS / LOOK of it.
+"""
 
 
 @frozen(eq=False, slots=False)
 class CountedSystem:
-    """A bordered factorisation whose solves are counted."""
+    """A bordered factorisation with counted solves."""
 
     system: BorderedSystem
     counts: Counts
     solve: Callable[[Array, float], Array] = field(init=False)
-    """The bordered solve; EvaluationError where the answer is not finite."""
+    """The bordered solve; raises EvaluationError if the answer is not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
-    """The same for an iteration that measures its own residual: not refined where the structure can do without."""
+    """An unrefined solve, for iterations that measure their own residual."""
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
@@ -69,12 +71,12 @@ class CountedSystem:
 
     @cached_property
     def sign(self) -> int:
-        """Sign of the determinant of the bordered matrix; 0 if unknown."""
+        """Sign of the bordered matrix's determinant; 0 if unknown."""
         return self.system.sign
 
     @property
     def approximates(self) -> bool:
-        """Whether `approximate` is another solve than `solve`."""
+        """Whether `approximate` differs from `solve`."""
         return self.approximate is not self.solve
 
 
@@ -96,11 +98,9 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    `counts`: Where evaluations are added up. `methods`: BibTeX of what served where the homotopy gave no derivative of
-    its own. `keeping`: Whether the last derivatives are kept, for `matrix`. `noise`: What each equation is uncertain by
-    beside the round-off of u, shape (N,), where that was measured. Raises `TypeError` if `start` or `residual`
-    is missing. Raises `ValueError` if the start is empty, not a vector, or not finite, or if the residual's shape
-    disagrees with it.
+    `counts`: Receives the counts. `methods`: BibTeX of the methods that replace missing derivatives. `keeping`: Whether
+    to keep derivatives for `matrix`. `noise`: Measured noise of each equation beyond round-off of u, shape (N,), or
+    None. Raises `TypeError` without `start` or `residual`, `ValueError` for a bad start or residual shape.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -116,9 +116,9 @@ class Evaluator:
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
-        """Evaluate this one from now on: the next piece of a piecewise smooth map.
+        """Evaluate this homotopy from now on: the next piece of a piecewise smooth map.
 
-        Raises `TypeError` if it lacks a method, or has something else in the place of one.
+        Raises `TypeError` if a method is missing or is no method.
         """
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
@@ -127,7 +127,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
-        self.followed = True  # by jets, as long as nobody finds otherwise
+        self.followed = True  # jets follow the residual, until proved otherwise
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
         self._products: dict[bytes, Callable[[Array], Array]] = {}
@@ -138,7 +138,7 @@ class Evaluator:
             self._derivative = homotopy.jacobian
 
     def _given(self) -> Array:
-        """The start as one vector (y0, lam0), of real numbers."""
+        """The start (y0, lam0) as one real vector."""
         answer = self.homotopy.start()
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
@@ -153,7 +153,7 @@ class Evaluator:
         return u
 
     def start(self) -> Array:
-        """The start as one vector (y0, lam0), checked, at which the residual is one."""
+        """Return the start (y0, lam0) as one vector, checked together with the residual."""
         u = self._given()
         y0 = u[:-1]
         self._sparsity(y0.size)
@@ -170,22 +170,22 @@ class Evaluator:
         return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
-        """The plug-in's residual, on numbers or on jets, counted.
+        """Return the plug-in's residual, on numbers or jets, counted.
 
-        `y`, `lam` of shape (N,).
+        `y` of shape (N,).
         """
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
-        """H(u), shape (N,); EvaluationError where it is not finite."""
+        """Return H(u), shape (N,); raise EvaluationError if it is not finite."""
         if not silent():
             with Silence():
                 return self.residual(u)
         self.counts.residuals += 1
-        # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
+        # Outside the domain numpy gives inf or nan, `math` raises ValueError.
         try:
-            # A copy: a plug-in may well return the same array every time.
+            # Copied: a plug-in may reuse its array.
             r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("residual", error) from error
@@ -194,25 +194,24 @@ class Evaluator:
         return r
 
     def residual_norm(self, u: Array) -> float:
-        """The largest component of H(u); nan where there is none."""
+        """Return the largest component of H(u); nan if undefined."""
         try:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
 
     def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
-        """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
+        """Return the effect of round-off in u on H, shape (N,).
 
-        Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
-        an equation may cancel in one of them. `residual` is H(u).
+        Two generic perturbations of u are used, since terms may cancel along one. `residual` is H(u).
         """
         terms: Array = np.maximum(self.look(u, residual, 1, least), self.look(u, residual, -1, least))
         return terms
 
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
-        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both.
+        """Return the round-off estimate from one perturbation; order -1 gives another.
 
-        `least`: What each component is known to at most, whatever its size.
+        `least`: Smallest perturbation of each component.
         """
         change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual
@@ -221,9 +220,9 @@ class Evaluator:
         return change if self.noise is None else np.maximum(change, self.noise)
 
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
-        """What the last place of u makes of each equation, or its noise if that is more, which is kept; shape (N,).
+        """Return the effect of one ulp of u on each equation, or its noise if larger, which is kept; shape (N,).
 
-        `w`, of shape (N + 1,): A way ahead on which H may change. `residual` is H(u).
+        `w`, shape (N + 1,): A direction along which H may change. `residual` is H(u).
         """
         self.noise = None
         terms = self.round_off(u, residual)
@@ -235,9 +234,9 @@ class Evaluator:
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:
-        """Take the equations for uncertain by so much, shape (N,); by round-off alone where that is nothing.
+        """Set the noise of each equation, shape (N,); zeros mean round-off alone.
 
-        Differences, where derivatives are made of these, are taken over steps that are the longer for it.
+        Difference steps grow with the noise.
         """
         self.noise = noise if noise.any() else None
         if noise.size and isinstance(self._derivative, Derivative):
@@ -245,7 +244,7 @@ class Evaluator:
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
-        """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
+        """Source of derivatives: the plug-in's `jacobian`, else the residual; chosen at first use."""
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
@@ -258,7 +257,7 @@ class Evaluator:
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
-        """The map v -> H'(u) v without a factorisation; None where only a structured factorisation is to be had."""
+        """Return the map v -> H'(u) v; None if only a structured factorisation exists."""
         if self._differential is not None:
             apply, y, lam = self._differential, u[:-1], float(u[-1])
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
@@ -266,18 +265,18 @@ class Evaluator:
             return None
         place = u.tobytes()
         if place not in self._products:
-            # Of two points: of an arc's end somebody looks at the inside before the end is asked for again.
+            # Two points are kept: an arc's inside is examined before its end is needed again.
             self._products = dict([*self._products.items()][-1:])
             self._products[place] = self._product(u)
         return self._products[place]
 
     def _product(self, u: Array) -> Callable[[Array], Array]:
-        """The same by the Jacobian, which is evaluated."""
+        """The map v -> H'(u) v by an evaluated Jacobian."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)
         if isinstance(H_y, np.ndarray):
-            # One product with all of it takes a third of the time of one with each part.
+            # One product with the whole matrix takes a third of the time of two.
             whole = np.empty((u.size - 1, u.size))
             whole[:, :-1] = H_y
             whole[:, -1] = column
@@ -285,7 +284,7 @@ class Evaluator:
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
+        """(H_y, H_lam) at u; EvaluationError if undefined."""
         if not silent():
             with Silence():
                 return self._evaluated(u)
@@ -294,18 +293,18 @@ class Evaluator:
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("derivative", error) from error
         if not self._checked:
-            # Once: whoever gets it right at the start does so later on.
+            # Checked once.
             check_derivative(answer, u.size - 1)
             self._checked = True
         if self.keeping:
             while len(self._kept) >= DERIVATIVES_KEPT:
                 del self._kept[next(iter(self._kept))]
-            # A dense one may be an array that the plug-in fills anew every time.
+            # Copied: a plug-in may reuse its array.
             self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
 
     def matrix(self, u: Array) -> Matrix:
-        """H_y at u: that of a step there, if it is `keeping` some, else evaluated and counted."""
+        """Return H_y at u: one that was kept, else evaluated and counted."""
         known = self._kept.get(u.tobytes())
         if known is None:
             self.counts.jacobians += 1
@@ -313,10 +312,10 @@ class Evaluator:
         return known
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
-        """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""
+        """Factor [[H_y, H_lam], [border']] at u; raise EvaluationError if impossible."""
         self.counts.jacobians += 1
         self.counts.factorizations += 1
-        # A factorisation may keep views of the point, and correctors move theirs in place.
+        # Copied: factorisations may keep views, and correctors move points in place.
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
@@ -333,7 +332,7 @@ class Evaluator:
         except EvaluationError:
             raise
         except ArithmeticError as error:
-            # A dense factorisation looks at all entries itself.
+            # A dense factorisation checks all entries itself.
             if dense and not (finite(column) and finite(H_y.ravel("K"))):
                 raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error

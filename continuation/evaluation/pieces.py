@@ -1,4 +1,4 @@
-"""A piecewise smooth map as the engine sees it: its switches, its pieces, and the map itself as one homotopy."""
+"""A piecewise smooth map: its switches, its pieces, and the whole map as one homotopy."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from continuation.arguments.checks import complain
 from continuation.arrays import Array
 
 Signs = tuple[int, ...]
-"""Of all switches, each -1 or +1: the name of a piece."""
+"""Signs of all switches, -1 or +1: they name a piece."""
 
 REMEMBERED = 64
-"""Pieces that are kept: a kink with several switches asks for the same few again."""
+"""Pieces kept: a kink with several switches needs the same few again."""
 
 DIFFERENCE_STEP = 6e-6
-"""Of a central difference, relative to the point: the cube root of round-off."""
+"""Step of central differences, relative to the point: the cube root of round-off."""
 
 DERIVATIVES_AGREE = 1e-4
-"""Jets are believed where they agree with a difference so well, relative to the largest."""
+"""Largest difference between valid jets and a difference, relative to the largest value."""
 
 BORDER_DISTANCE = 1e-9
-"""How near to a border, in lengths of the direction in which it leaves, a start is that was given on it."""
+"""A start this near to a border, relative to its direction, lies on it."""
 
 SWITCH_STILL = 1e-9
-"""The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
+"""A switch derivative along the path below this part of the largest is round-off."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
-"""Capabilities of pieces that the map has where they have them."""
+"""Capabilities that the map takes from its pieces."""
 
 
 class SwitchError(ArithmeticError):
-    """The switches have no finite value at a point."""
+    """A switch has no finite value."""
 
 
 @frozen(eq=False)
@@ -45,10 +45,9 @@ class Pieces:
     _jets: list[bool] = field(factory=list, init=False)
 
     def values(self, u: Array) -> Array:
-        """The switches at u, shape (m,).
+        """Return the switches at u, shape (m,).
 
-        Raises `SwitchError` where they are not finite, or cannot be evaluated. Raises `ValueError` if they are no
-        vector of real numbers.
+        Raises `SwitchError` if they are not finite, `ValueError` unless they are a real vector.
         """
         try:
             with np.errstate(all="ignore"):
@@ -62,11 +61,11 @@ class Pieces:
         return np.array(found, dtype=float)
 
     def signs(self, u: Array) -> Signs:
-        """The piece of a point; where a switch vanishes, that in which it is positive."""
+        """Return the piece of a point; a zero switch counts as positive."""
         return tuple(np.where(self.values(u) >= 0.0, 1, -1).tolist())
 
     def piece(self, signs: Signs) -> Any:
-        """The smooth homotopy of these signs."""
+        """Return the smooth homotopy of these signs."""
         if signs not in self._made:
             if len(self._made) >= REMEMBERED:
                 self._made.clear()
@@ -74,7 +73,7 @@ class Pieces:
         return self._made[signs]
 
     def exists(self, signs: Signs) -> bool:
-        """Whether there is a piece of these signs."""
+        """Return whether these signs have a piece."""
         try:
             self.piece(signs)
         except ValueError:
@@ -82,9 +81,9 @@ class Pieces:
         return True
 
     def along(self, u: Array, v: Array) -> Array:
-        """Derivatives of the switches at u along v, shape (m,): by jets, or by differences where jets will not do.
+        """Return derivatives of the switches at u along v, shape (m,): by jets, else by differences.
 
-        Which of them is decided at the first call.
+        The first call decides which.
         """
         if not self._jets:
             try:
@@ -99,10 +98,10 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """How far borders are from u along v, to first order: half of the switches are no nearer.
+        """Return a typical distance to the borders ahead along v, to first order: the lower median.
 
-        Where no border is ahead it is the size of the direction in which a path was told to leave, else of the point,
-        or 1 at zero: there is no other length then. Borders beside the point, by the same measure, are not ahead.
+        Without a border ahead: the size of the given direction, else of the point, else 1. Borders through the point
+        are not ahead.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))
@@ -127,11 +126,9 @@ class Pieces:
 
 
 class WholeMap:
-    """All pieces together, each where it belongs: a homotopy with the capabilities that the piece of the start has.
+    """All pieces as one homotopy, with the capabilities of the first piece.
 
-    What looks at single points of a path, and does not follow it, needs no more.
-
-    `u`, of shape (N + 1,): Its start.
+    It serves evaluations at single points. `u`, shape (N + 1,): Start.
     """
 
     def __init__(self, homotopy: Any, u: Array) -> None:
