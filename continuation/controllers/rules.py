@@ -12,11 +12,12 @@ from continuation.citation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINB
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
-"""A rejected step becomes shorter by this factor at least: else asymptotics that do not hold yet repeat it."""
+"""Least shrink factor of a rejected step: asymptotics that do not hold yet would repeat it."""
 
 STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
-"""What keeps PITCON's formula from dividing by zero: the next step's turn in radians and its curvature, relative to
-the last one's, are taken for this at least; a corrector that contracts better tells nothing more."""
+"""Lower bounds that keep PITCON's formula from division by zero: the next step's turn in radians, its curvature
+relative to the last, the contraction.
+"""
 
 
 def _of_fixed(bounds: Any) -> Bounds:
@@ -35,17 +36,17 @@ def _of_series(bounds: Any) -> Bounds:
 
 @frozen
 class Fixed:
-    """The same step always, `bounds.initial` (0.1); halved within a step that fails, and restored after it."""
+    """A constant step, `bounds.initial` (0.1); a failing step is halved, then restored."""
 
     bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
     max_angle: float = field(default=0.8, validator=POSITIVE)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept whatever converged within the angle."""
+        """Accept if converged within the angle."""
         if attempt.converged and attempt.angle <= self.max_angle:
             return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h / 2.0, state)
@@ -53,21 +54,21 @@ class Fixed:
 
 @frozen
 class Geometric:
-    """The backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, and l starts at 0 at every point.
+    """Backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, with l = 0 first at every point.
 
-    `bounds.initial` is the longest step (1, as in the paper). It accepts whatever the corrector does, however far the
-    tangent turned, so it can jump between paths: here to be compared with, not to be used.
+    `bounds.initial` is the longest step (1, as in the paper). Any angle is accepted, so it may jump between paths: for
+    comparison only.
     """
 
     ratio: float = field(default=0.5, validator=FRACTION)
     bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6), converter=_of_geometric)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Back to the longest step after success, one power of the ratio down after failure."""
+        """Return to the longest step after success; multiply by the ratio after failure."""
         if attempt.converged:
             return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h * self.ratio, state)
@@ -75,7 +76,7 @@ class Geometric:
 
 @frozen
 class IterationCount:
-    """The step grows when the corrector needs fewer increments than `target`, and shrinks when it needs more."""
+    """The step grows if the corrector needs fewer increments than `target`, and shrinks if more."""
 
     target: int = field(default=3, validator=integer(1))
     grow: float = field(default=2.0, validator=FACTOR)
@@ -84,11 +85,11 @@ class IterationCount:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept what converged within the angle; scale by grow^((target - iterations) / target)."""
+        """Accept if converged within the angle; scale by grow^((target - iterations) / target)."""
         if not attempt.converged or attempt.angle > self.max_angle:
             return Decision(False, attempt.h * self.shrink, state)
         factor = self.grow ** ((self.target - attempt.iterations) / self.target)
@@ -99,16 +100,15 @@ class IterationCount:
 class AllgowerGeorg:
     """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
 
-    For a predictor of order p the contraction and the distance behave like h^(p + 1) and the angle like h, so each
-    measure over its goal says by which factor the step was too long; the worst decides. An attempt with a measure
-    beyond `deceleration` times its goal is rejected.
+    For a predictor of order p contraction and distance behave like h^(p + 1), the angle like h. Each measure over its
+    goal gives a factor; the worst divides the step. An attempt beyond `deceleration` times a goal is rejected.
 
     Parameters
     ----------
     contraction, distance, angle : float
-        The goals; distance is relative to the step length, the angle is in radians.
+        Goals; distance relative to the step, angle in radians.
     deceleration, acceleration : float
-        How far beyond a goal is still accepted; how fast the step may grow.
+        Accepted excess over a goal; largest growth of the step.
     bounds : Bounds
     """
 
@@ -121,7 +121,7 @@ class AllgowerGeorg:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -133,25 +133,22 @@ class AllgowerGeorg:
         distance = attempt.distance / (self.distance * attempt.h)
         angle = attempt.angle / self.angle
         factor = max(contraction**root, distance**root, angle)
-        # Judged by the measures themselves, not by their roots: for a predictor of high order a root forgives a
-        # correction half as long as the step, and that is how paths are jumped.
+        # Measures, not roots: at high order a root accepts corrections half as long as the step, and the path jumps.
         if max(contraction, distance, angle) > self.deceleration:
             return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
-        # Right after a rejection the step must not grow: the reason for it lies just ahead.
+        # The cause of a rejection lies just ahead.
         grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
         return Decision(True, self.bounds.cap(grown), state)
 
 
 @frozen
 class Curvature:
-    """Steps from the predicted curvature and the corrector's quality, as in PITCON (den Heijer and Rheinboldt 1981).
+    """Steps from predicted curvature and corrector quality, as in PITCON (den Heijer and Rheinboldt 1981).
 
-    The curvature over the last step is |2 sin(angle / 2)| / h; the next step's is extrapolated linearly, and the step
-    chosen so that Euler's predictor would err by the distance the corrector is known to like, h = sqrt(2 distance /
-    curvature). That distance is adapted by the corrector's contraction.
-
-    State: the curvature of the step before, its length, and the liked distance.
+    The last curvature |2 sin(angle / 2)| / h is extrapolated linearly. Then Euler's predictor errs by the ideal
+    distance: h = sqrt(2 distance / curvature). The corrector's contraction adapts the distance. State: last curvature,
+    last length, ideal distance.
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)
@@ -162,11 +159,11 @@ class Curvature:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def _step(self, liked: float, curvature: float) -> float:
-        # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
+        # PITCON's limit: never turn by more than the accepted angle.
         return min(math.sqrt(2.0 * liked / curvature), self.max_angle / curvature)
 
     def init(self) -> State:
-        """No curvature known."""
+        """Return a state without curvature."""
         return (-1.0, 0.0, self.initial_distance)
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -190,10 +187,9 @@ class Curvature:
 
 @frozen
 class SeriesRange:
-    """The whole range of a series predictor at every step; a failed attempt halves it for that step alone.
+    """The whole range of a series predictor at every step; a failed attempt halves it once.
 
-    The range carries its own error bound, so what is watched is the corrector: a correction longer than `distance`
-    times the step means that the series and the path have parted.
+    The range has its own error bound, so only a correction longer than `distance` times the step is refused.
     """
 
     distance: float = field(default=1e-3, validator=POSITIVE)
@@ -201,11 +197,11 @@ class SeriesRange:
     bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept small corrections; ask for the whole range again."""
+        """Accept small corrections; ask for the whole range."""
         near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
         if attempt.converged and near:
             return Decision(True, self.bounds.cap(math.inf), state)
