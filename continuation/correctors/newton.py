@@ -32,9 +32,9 @@ class BorderedNewton:
 
     References
     ----------
-    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977. Reuse: simplified Newton with
-    Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1) and Broyden's good update (C. T.
-    Kelley, Iterative Methods for Linear and Nonlinear Equations, Section 7.3).
+    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977. Reuse: simplified Newton
+    with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1) and Broyden's good update
+    (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, Section 7.3).
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)

@@ -1,7 +1,6 @@
-"""Decide whether an arc counts, where the path ends on it, and which events lie on it.
+"""Decide whether an arc counts, where the path ends on it, and which events it has.
 
-A user adds checks as a `Guard`. A check of the library belongs in `Examiner.examine`, between the search for crossings
-and the end of the arc, and returns a `Rejection`.
+A new check of the library belongs in `Examiner.examine`, before the end of the arc is fixed.
 """
 
 from __future__ import annotations
@@ -31,17 +30,17 @@ from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
-"""Kind and name of a point where several branches cross."""
+"""Marks a point where several branches cross."""
 
 LEAST_STEP_SHARE = 2.0**-8
-"""Shrink the arc to this part of the controller's step at most, while the eigenvalue count disagrees with the events. A
-crossing that is still unexplained has another cause: a pole of H_y or a symmetry.
+"""Least part of the controller's step to which an arc shrinks while eigenvalue count and events disagree. A later
+crossing has another cause: a pole of H_y or a symmetry.
 """
 
 
 @frozen(eq=False)
 class Accepted:
-    """An accepted arc: how it ends, its events, and the parts of the state after it."""
+    """An accepted arc: its end, its events, parts of the next state."""
 
     ending: ArcEnd
     attempt: Arrival
@@ -69,18 +68,18 @@ class Examiner:
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
     ) -> Accepted | Rejected:
-        """Return the arc from `point` to the arrival, or the reason why it does not count.
+        """Return the arc to the arrival, or why it does not count.
 
         Parameters
         ----------
         point : Linearization
         state : State
-            State at `point`.
+            At `point`.
         attempt : Arrival
         prediction : Prediction
-            Prediction of the attempt; if accurate enough, it is the path between the two points.
+            Used as the path between the points if accurate.
         landed : bool
-            Whether the attempt aimed at the target, so that the path ends there.
+            Whether the attempt aimed at the target.
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
@@ -89,7 +88,7 @@ class Examiner:
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
             if self.pieces is not None:
-                # The path ends in a kink, so the arc is cut there before any other check.
+                # Beyond a kink there is no path.
                 kink = first_zero(self.solver, self.pieces, state.signs, arc)
             if kink is not None:
                 arrival, landed = kink[0], False
@@ -101,11 +100,10 @@ class Examiner:
             ending = self.target.ending_of_arc(arc, state, landed)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:
-                # A singular end alone makes H' lose rank there.
+                # A singular end loses rank by itself.
                 flipped = False
             elif index is not None:
-                # If the path ends on the arc, only that part is examined: its end may lie on another branch than the
-                # arc's.
+                # The end of the path may lie on another branch than the arc's end.
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
@@ -155,7 +153,7 @@ class Examiner:
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
-        """The ending of an arc cut at a kink: the target if it is the same point, else the kink."""
+        """The target if it is the kink, else the kink."""
         if ending.at is not EndsAt.NOTHING:
             return ending
         target = self.settings.target
@@ -184,14 +182,12 @@ class Examiner:
 
 
 def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
-    """Whether a point lies on the arc, no farther than `end`, which may lie before the arc's own end."""
+    """Whether a point of the arc lies not beyond `end`."""
     return position(arc, at.u) <= position(arc, end.u)
 
 
 def _across(point: Linearization, attempt: Arrival, prediction: Prediction) -> float:
-    """Error of a landing's prediction across the path; a correction at fixed parameter has a part
-    along the path too.
-    """
+    """Error of a landing's prediction across the path."""
     off = attempt.point.u - prediction(attempt.h)
     return norm(point.weights, off - point.tangent * dot(point.border, off))
 

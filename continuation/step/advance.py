@@ -1,4 +1,4 @@
-"""One step: from a point of the path to the next accepted point, or the reason why there is none."""
+"""One step: from a point to the next accepted point."""
 
 from __future__ import annotations
 
@@ -45,23 +45,20 @@ from continuation.step.verdict import (
 )
 
 SINGULAR_STRETCH = 1.19
-"""After a singular factorisation the next step is this factor longer than the controller asks: halving would only creep
-up to the branch point. On 720 traces over branch points at round values: without it 648 rejections and 9 stuck traces;
-with 1.1 to 1.5, 132 to 144 rejections and none stuck.
+"""Factor of the next step after a singular factorisation: halves would creep up to the branch point. Without it 720
+traces had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none.
 """
 
 NOISE_ASKED, NOISE_GROWN = (3, 12), 4.0
-"""After this many failed attempts at a step, measure the noise of H again. It must have grown by this factor, so that
-repetition ends: two measurements of one noise differ by less.
-"""
+"""Measure noise again after so many failures of a step; growth by less is the spread of two measurements."""
 
 TINY = 1e-300
-"""A nearly zero monitor value that still has a sign."""
+"""A monitor value of zero with a sign."""
 
 
 @frozen(eq=False)
 class Moved:
-    """An accepted step: point, record, state and events; `verdict` if the path ends there."""
+    """An accepted step; `verdict` if the path ends there."""
 
     point: Linearization
     step: Step
@@ -72,7 +69,7 @@ class Moved:
 
 @frozen(eq=False)
 class Stopped:
-    """No step: the verdict, and the limit of the path if found."""
+    """No step: the verdict, and the path's limit if found."""
 
     verdict: Verdict
     end: Array | None = None
@@ -88,9 +85,8 @@ class Advance:
     settings : Settings
     recorder : StepRecorder
     spent : callable
-        Returns the exhausted limit of the budget as text, else "".
+        Returns the exhausted limit of the budget, or "".
     pieces : Pieces or None
-        Pieces of a piecewise smooth homotopy.
     """
 
     solver: PathSolver
@@ -106,7 +102,7 @@ class Advance:
 
     @extent.default
     def _extent(self) -> SupportsExtent | None:
-        # Asked once: isinstance with a Protocol takes as long as a residual.
+        # Asked once, since isinstance is slow.
         return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
 
     @stepper.default
@@ -126,7 +122,7 @@ class Advance:
         return Examiner(self.solver, self.settings, self.target, self.pieces)
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:
-        """Return the next accepted point, or the reason why there is none."""
+        """Return the next accepted point, or why there is none."""
         settings, controller = self.settings, self.settings.controller
         try:
             prediction = settings.predictor.prepare(self.solver.evaluator, point, state.history)
@@ -140,13 +136,13 @@ class Advance:
         if self.extent is not None:
             h = min(h, self.extent.longest)
         if math.isinf(h):
-            # A controller for series with a predictor without a range: begin with the size of the point.
+            # Neither controller nor predictor has a range: begin with the point's size.
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(
             point, prediction, h, controller.bounds.maximum, state.last_failed_landing
         )
         if landing is not None:
-            # The controller judges landings too: a long correction means that the prediction was wrong.
+            # A long correction discredits a landing too.
             if (
                 isinstance(landing, Arrival)
                 and controller.update(memory, self._measures(landing, prediction, 0)).accept
@@ -154,7 +150,7 @@ class Advance:
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
-                # A longer step would contain the same obstacle and show it less.
+                # A longer step contains the same obstacle, less visibly.
                 h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
@@ -186,7 +182,7 @@ class Advance:
                 return Stopped(verdict)
 
     def _noisier(self, point: Linearization, state: State, u: Array) -> State | None:
-        """The state with the noise of H at u; None unless the noise has grown."""
+        """The state with the noise of H at u; None unless it has grown."""
         evaluator, known = self.solver.evaluator, state.noise if state.noise.size else np.zeros(u.size - 1)
         try:
             evaluator.measure_noise(u, point.tangent, evaluator.residual(u))
@@ -195,7 +191,7 @@ class Advance:
             least = min(max(CLEAR_OF_NOISE * point.blur(noise), state.tolerance), COARSEST)
         except EvaluationError:
             grown = False
-        # Evaluator and state must agree, so that a resumed trace has the same knowledge.
+        # Keep evaluator and state equal, for resumed traces.
         evaluator.noisy(noise if grown else known)
         if not grown:
             return None
@@ -205,15 +201,15 @@ class Advance:
     def _limit_ahead(
         self, point: Linearization, prediction: Prediction, state: State
     ) -> tuple[SingularLimit | None, State]:
-        """An end that no step can reach, if found, and a state that remembers a failed attempt."""
+        """An end that no step can reach; the state remembers failures."""
         limit = self.target.fold_at_target(point, prediction)
         if limit is None and self.target.endgame_is_due(point, state):
             limit, state = self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
-            # The limit belongs to this piece's extension beyond its border.
+            # The limit lies beyond the border of this piece.
             limit = None
         if limit is not None and point.orientation == 0 and between(self.solver, point, limit.u):
-            # No determinant exists to show that the limit lies on another branch.
+            # Without determinants: eigenvalues show that the limit is on another branch.
             limit = None
         return limit, state
 
@@ -240,7 +236,7 @@ class Advance:
         h: float,
         rejected: tuple[Rejected, ...],
     ) -> Moved:
-        """Make the arrival the current point: metric, history, divergence and record."""
+        """Make the arrival the current point."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
         monitor, infinity = divergence(
@@ -248,7 +244,6 @@ class Advance:
         )
         moved = arrival.with_weights(self._weights(arrival, state))
         if self.extent is not None:
-            # Keep the step in the new metric.
             h *= norm(moved.weights, arrival.tangent) / norm(arrival.weights, arrival.tangent)
         angle = attempt.angle if ending.whole else angle_between(point, arrival)
         step = self.recorder.record(
@@ -269,7 +264,7 @@ class Advance:
             weights=point.weights,
         )
         knot = Knot(step.arclength, moved.u, moved.tangent)
-        # `evolve` would take longer than the rest of this method.
+        # `evolve` is too slow here.
         state = State(
             history=(*state.history, knot)[-max(self.settings.predictor.memory, 1) :],
             weights=moved.weights,
@@ -300,7 +295,7 @@ class Advance:
     def _behind(
         self, pieces: Pieces, crossing: Crossing, onward: Linearization, kink: Linearization, state: State
     ) -> tuple[Linearization, State]:
-        """The same point on the next piece: tangent and factorisation, no history."""
+        """The point on the next piece, without history."""
         self.solver.evaluator.bind(pieces.piece(crossing.signs))
         point = onward.with_weights(kink.weights)
         state = evolve(
@@ -316,7 +311,7 @@ class Advance:
         return point, state
 
     def _monitor_behind(self, event: Event, point: Linearization, before: float) -> float:
-        """The event's monitor behind a kink; a component with zero tangent keeps its old sign."""
+        """The monitor behind a kink; a zero tangent component keeps its sign."""
         g = event.monitor(point.u, point.tangent)
         moves = isinstance(event, TurningPoint) and abs(g) * math.sqrt(point.weights[event.component]) > STILL
         return g if moves or not isinstance(event, TurningPoint) else math.copysign(min(abs(before), TINY), before)

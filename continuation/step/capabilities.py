@@ -1,4 +1,4 @@
-"""Checked calls of the homotopy's `max_step`, `observe` and `finish`."""
+"""Checked calls of a homotopy's `max_step`, `observe` and `finish`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ from continuation.step.stepper import LOW_ORDER_FRACTION
 
 
 def max_step_of(homotopy: Any) -> MaxStep | None:
-    """Return the homotopy's `max_step` with checks; None if its domain has no boundary.
+    """Return the homotopy's checked `max_step`, or None.
 
-    The returned function raises TypeError or ValueError unless `max_step` gives a number for a finite direction: NaN
-    fails every comparison, so the step would be shortened forever.
+    TypeError or ValueError unless it gives a number: NaN would shorten steps forever.
     """
     if not offers(homotopy, SupportsMaxStep):
         return None
@@ -37,7 +36,7 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
         if math.isnan(h):
             if finite(v):
                 raise complain(ValueError, "max_step", "a number, at least 0, or inf", found)
-            # An overflowing prediction is not the homotopy's fault; no part of it is inside.
+            # An overflowing prediction: no part of it is inside.
             return 0.0
         return h
 
@@ -45,10 +44,9 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
 
 
 def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] | None:
-    """Return the homotopy's `observe` with checks; None if it has none.
+    """Return the homotopy's checked `observe`, or None.
 
-    The returned function raises TypeError unless `observe` gives a mapping of names to real numbers, and ValueError if
-    the names change: they are columns of an archive.
+    TypeError unless it gives a mapping of names to numbers; ValueError if the names change: they are archive columns.
     """
     if not offers(homotopy, SupportsObserve):
         return None
@@ -73,10 +71,9 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 def finish_of(
     homotopy: Any, given: Callable[[Array, float], Array | None] | None
 ) -> Callable[[Array, float], Array | None] | None:
-    """Return the given finish, else the homotopy's own, with checks; None if neither exists.
+    """Return the given finish, else the homotopy's, checked; or None.
 
-    The returned function raises ValueError unless the finish gives None or one finite number for each unknown.
-    `checked_end` checks whether H vanishes there.
+    ValueError unless it gives None or N finite numbers. `checked_end` checks H there.
     """
     own = homotopy.finish if offers(homotopy, SupportsFinish) else None
     finish = own if given is None else given
@@ -96,16 +93,14 @@ def finish_of(
 
 
 FALSE_END = 1e-3
-"""Largest residual of an equation at the end found by a `finish`, relative to the equation's terms. A problem's
-certificate may allow large residuals; a false end has a residual about as large as the terms.
-"""
+"""Largest residual at a `finish`'s end, relative to the equation's terms; at a false end it is about 1."""
 
 
 def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | None) -> Array:
-    """Return the end (y, lam) that a `finish` found, at the target or at the current parameter, if H vanishes there.
+    """Return the end (y, lam) found by a `finish`, if H vanishes there.
 
-    An equation holds if it is small relative to its terms, or no larger than at the last point of the path moved to the
-    end's parameter: where the terms vanish too, as products x_i w_i do, the first test is useless.
+    An equation must be small relative to its terms, or no larger than at the last point moved to the end's parameter
+    (its terms may vanish, such as x_i w_i).
 
     Parameters
     ----------
@@ -135,6 +130,6 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
 
 
 def interior_fraction(predictor: Predictor) -> float:
-    """Largest part of the distance to the boundary that a prediction may use: the predictor's own value, else 0.9."""
+    """Part of the distance to the boundary that a prediction may use: the predictor's, else 0.9."""
     fraction = getattr(predictor, "interior_fraction", LOW_ORDER_FRACTION)
     return float(fraction)

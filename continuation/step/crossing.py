@@ -1,12 +1,10 @@
-"""Eigenvalues of H' along an arc, and the branch point where one of them changes sign.
+"""Eigenvalues of H' along an arc, and the branch point where one changes sign.
 
-Let M_a be the bordered matrix factored at the beginning of an arc, M(t) the matrix at t, and z(t) an eigenvalue of
-M_a^-1 M(t); z = 0 where M(t) is singular. An arc is *regular* if each real z, from one sample to the next, neither
-falls below 1/SPAN nor grows by more than SPAN, and if, in three samples in a row, the outer two add up to at most SPAN
-times the middle one (a parabola that touches zero has factor four or more). Then no branch crosses the arc and both its
-ends lie on one branch. An arc *crosses* a branch if one real z goes through zero like 1 - t / s at a simple branch
-point s, or like a power of it at a degenerate one (`degenerate_point`), and no other z approaches zero. Any other arc
-is too long or leaves the path.
+Let M_a be the bordered matrix at the beginning of an arc, M(t) that at t, and z(t) an eigenvalue of M_a^-1 M(t). An arc
+is *regular* if no real z, from sample to sample, shrinks or grows by more than SPAN, and the outer of three samples
+add up to at most SPAN times the middle one. Then no branch crosses it. An arc *crosses* a branch if one z vanishes like
+1 - t / s at a simple branch point s, or like a power of it at a degenerate one, and no other z comes near zero. Any
+other arc is too long or leaves the path.
 """
 
 from __future__ import annotations
@@ -33,56 +31,54 @@ from continuation.step.degenerate import Z_ROUND_OFF, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""Largest change factor of a real eigenvalue of M_a^-1 M(t) between two samples of a regular arc. Two crossings passed
-at once leave no sign change, but of a parabola that touches zero the outer two of three samples add up to at least four
-times the middle one.
+"""Largest ratio of a real eigenvalue at two samples of a regular arc. Two crossings between samples leave no sign, but
+for a parabola that touches zero the sum of the outer samples is four times the middle one or more.
 """
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
-"""The limits of SPAN for eigenvalues of I - M_a^-1 M(t)."""
+"""The same limits for I - M_a^-1 M(t)."""
 
 TOLD = 0.25
-"""Smallest reported change of an eigenvalue."""
+"""Least reported change of an eigenvalue."""
 
 ONWARD = 0.1
-"""Distance, in arc lengths, of an extra sample beyond the end of an arc along which H' approaches a singular matrix. If
-H' is more regular there by more than this part, H' was singular on the arc, seen from the branch on which the arc ends.
+"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths. If H' is more regular there by more,
+the singular point lies on the arc.
 """
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
-"""Sample parameters on a cubic arc, and on a series, whose steps are longer."""
+"""Sample parameters on a cubic, and on a series' longer arc."""
 
 NEAR_ARC = 2e-2
-"""Largest distance of a branch point from its arc, in arc lengths: five times the allowed error of an arc."""
+"""Largest distance of a branch point from its arc, in arc lengths: five times an arc's error."""
 
 ON_PATH = 8 * float(np.finfo(float).eps)
-"""Largest residual that is round-off, relative to the rows of H' over the arc, which do not vanish with the terms of
-H'. At true crossings at most 3e-16 was measured; 1e-13 reported curves 2e-6 apart as crossing.
+"""Largest round-off residual relative to the rows of H'. True crossings had at most 3e-16; 1e-13 joined curves 2e-6
+apart.
 """
 
 AHEAD = 3.0
-"""Branch points farther ahead, in arc lengths, are ignored; the next arc has this one on its first two thirds."""
+"""Branch points farther ahead, in arc lengths, are ignored; the next arc sees them."""
 
 NEAR_CROSSING = 0.1
-"""Least distance of an arc's end from a crossing, in arc lengths: nearer, the next arc begins with factors that have a
-part ten times too small.
-"""
+"""Least distance of an arc's end from a crossing, in arc lengths; nearer, the next factors are nearly singular."""
 
 STEP_BACK = 0.7
-"""Factor of a step that ended too near a crossing; largest factor of a step that is to end behind one."""
+"""Factor of a step that ended near a crossing; largest factor of one that is to end behind it."""
 
 BEST = 4.0 / 3.0
-"""Best length of a step over a crossing at s, in units of s. A step to x s has the cubic's error, like x^4, and ends x
-- 1 from the other branch; the ratio is least here.
+"""Best step over a crossing, relative to its distance: weighs the cubic's error x^4 against the distance x - 1 of the
+branches.
 """
 
 SMALLEST = 2.0**-6
-"""Pairs of crossings before this part of an arc are not searched for. It is also the least factor of a step: a crossing
-nearer to the beginning may be round-off and would end the path.
+"""Least part of an arc searched for pairs of crossings, and least factor of a step: round-off near the beginning must
+not end the path.
 """
 
 AT_END = 1e-6
-"""A crossing this near to the arc's end, in arc lengths, lies at the end: only half of its digits are known."""
+"""A crossing this near to the arc's end, in arc lengths, is at the end: half of its digits are known."""
+
 
 @frozen(eq=False)
 class Crossed:
@@ -91,10 +87,9 @@ class Crossed:
     Attributes
     ----------
     point : Linearization
-        Branch point, with the factorisation of the arc's beginning.
+        With the factorisation of the arc's beginning.
     rays : ndarray, shape (4, N + 1), or None
-        Directions of the branches at the point, of unit length in the metric, pointing away from it: back, onward, and
-        both of the other branch. None where H' loses several ranks: then the directions are unknown.
+        Unit directions away from the point: back, onward, both of the other branch. None if H' loses several ranks.
     """
 
     point: Linearization
@@ -103,9 +98,9 @@ class Crossed:
 
 @frozen(eq=False)
 class _BranchPoint:
-    """A branch point on an arc or ahead of it.
+    """A branch point on an arc or ahead.
 
-    `simple`: None if degenerate. `order`: Order of the zero of z. `odd`: Whether the determinant changes sign.
+    `simple`: None if degenerate. `order`: Of the zero of z. `odd`: The determinant changes sign.
     """
 
     u: Array
@@ -114,7 +109,7 @@ class _BranchPoint:
     odd: bool = True
 
     def expected(self, t: float, s: float) -> float:
-        """The change 1 - z at t of an eigenvalue that vanishes at s."""
+        """1 - z at t if z vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -122,29 +117,28 @@ class _BranchPoint:
 def on_arc(
     solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
 ) -> Crossed | Rejected | None:
-    """Return the branch point on an arc, None without one, or a rejection with the next step to try.
+    """Return the branch point on an arc, None, or a rejection.
 
     Parameters
     ----------
     solver : PathSolver
     arc : Arc
     attempt : Arrival
-        The end of the arc, or of the longer arc that contains it.
+        End of the arc, or of a longer one.
     prediction : Prediction
-        Prediction of the arc.
     flipped : bool
-        Whether the determinant's sign differs between the ends of the arc.
+        Whether the determinant's sign changes on the arc.
     ends : bool
-        Whether the path ends with the arc, so that crossings beyond do not count.
+        Whether the path ends with the arc.
     index : int
-        Index of the step: it selects the start vector of the Krylov spaces.
+        Of the step; varies the start vectors.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()
     if isinstance(seen, Rejected) and not flipped and looks.blurred():
         return None
     if seen is None and flipped and _differential(solver, arc.b.u) is None:
-        # Without products H' v only the sign is known: it changes at a branch point, or the arc leaves the path.
+        # The sign alone shows a branch point, or an arc off the path.
         seen = looks.simple(arc.segment.at(0.5))
         looks.told.clear()
     if isinstance(seen, _BranchPoint):
@@ -153,7 +147,7 @@ def on_arc(
 
 
 def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
-    """Whether H' has an eigenvalue of another sign at u than at `point`."""
+    """Whether H' at u has an eigenvalue of another sign."""
     apply, start = _differential(solver, u), generic_vector(u.size)
     if apply is None:
         return False
@@ -162,7 +156,7 @@ def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
 
 
 def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | None:
-    """The map v -> H' v at u; None where it does not exist, as outside the domain."""
+    """The map v -> H' v at u; None if unavailable."""
     try:
         return solver.evaluator.differential(u)
     except EvaluationError:
@@ -173,9 +167,7 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 class _Looks:
     """Samples of the eigenvalues of H' along one arc.
 
-    `told`: For each parameter t the sorted real changes 1 - z that exceed a regular arc's. `along`: Sum of the
-    eigenvectors of the last sample with changes; the next start vector contains it, so that no known eigenvalue is
-    lost.
+    `told`: Sorted large changes 1 - z by parameter. `along`: Their last eigenvectors' sum, which start vectors contain.
     """
 
     solver: PathSolver
@@ -193,12 +185,12 @@ class _Looks:
         return np.zeros(self.arc.a.u.size)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """The changes 1 - z at u, near parameter t; empty where H' is not available."""
+        """The large changes 1 - z at u, near parameter t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []
         whole, first = generic_vector(size), (self.index + len(self.told)) % size
-        # A fixed start vector fails: one in a thousand has almost no part along an eigenvector.
+        # A start vector may have no part along an eigenvector.
         start = np.concatenate((whole[first:], whole[:first]))
         start = start / math.sqrt(dot(start, start)) + self.along
         values, vectors = changes(self.arc.a, apply, self._border(t), TOLD, LOWEST, start, accuracy)
@@ -215,18 +207,17 @@ class _Looks:
         return self.prediction(t * self.arc.length)
 
     def first(self) -> _BranchPoint | Rejected | None:
-        """The first branch point indicated by the eigenvalues along the arc; None on a regular arc."""
+        """The first branch point on the arc; None if regular."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
         for t in HALF if cubic else EIGHTHS:
             told[t] = there = self.look(self._point(t) if t < 1.0 else arc.b.u, t)
             left.append(1.0 - max([0.0, *there]))
-            # Crossings beyond the end of the path do not count.
             least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
                 found = self._branch_point(t, t / there[-1])
-                # A z that approaches zero linearly at the arc's end may vanish beyond it.
+                # At the arc's end z may vanish farther on.
                 if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
                     return self.rejected(Rejection.ORIENTATION, max(before, shorter))
@@ -237,7 +228,7 @@ class _Looks:
                 t = near[0]
                 return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
-                # A series has shown its own coefficients by its samples.
+                # A series has enough samples.
                 onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return self.rejected(Rejection.ORIENTATION, 0.5)
@@ -247,9 +238,8 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Add samples toward the beginning of an arc along which H' becomes more regular; return their parameters.
-
-        A pair of crossings there makes an eigenvalue grow beyond SPAN: the arc is halved until the growth is less.
+        """Sample toward the beginning, where a pair of crossings makes an eigenvalue grow beyond SPAN; return the
+        parameters.
         """
         t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
@@ -261,7 +251,7 @@ class _Looks:
         return places
 
     def over(self, seen: _BranchPoint) -> Crossed | Rejected | None:
-        """The branch point found, if the arc crosses it on its own branch; None if the arc ends before it."""
+        """The branch point, if the arc crosses it on its own branch; None if the arc ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -269,12 +259,12 @@ class _Looks:
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
         if self.flipped != (s < 1.0 and seen.odd):
-            # The arc's end lies on the other branch, or beyond another crossing before this one.
+            # The arc ends on another branch.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not all(_as_expected(there, seen.expected(t, s)) for t, there in told.items()):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
-            # Another eigenvalue limits how far behind this crossing the arc may end.
+            # The arc must end before another eigenvalue vanishes.
             behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
             step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
             return self.rejected(Rejection.CROSSINGS, min(step, STEP_BACK))
@@ -286,22 +276,19 @@ class _Looks:
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
-        """Reject the arc; `factor` is the next attempt's length in arc lengths (the arc may be part of a step)."""
+        """Reject the arc; the next attempt has `factor` of its length."""
         attempt = self.attempt
         factor = max(factor * self.arc.length / attempt.h, SMALLEST)
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether z is useless: some z differ from one within the tolerance of the arc's beginning, where all are one.
-
-        This happens near poles, where components vanish beside others.
-        """
+        """Whether z is noise already at the arc's beginning, as near poles."""
         a = self.arc.a
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
     def _branch_point(self, t: float, place: float) -> _BranchPoint | None:
-        """The branch point indicated by the sample at t: a simple one near parameter `place`, or a degenerate one."""
+        """The branch point seen from t, simple near `place` or degenerate."""
         solver, arc, u, lost = self.solver, self.arc, self._point(t), 1
         if (apply := _differential(solver, u)) is not None and (exactly := self.look(u, t, Z_ROUND_OFF)):
             lost = max(multiplicity(arc.a, apply, self._border(t), 1.0 / exactly[-1]), 1)
@@ -319,7 +306,7 @@ class _Looks:
         return found
 
     def _rows(self) -> Array:
-        """Row sizes of H' over the arc."""
+        """Row sizes of H'."""
         a, b = self.arc.a, self.arc.b
         return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
@@ -329,7 +316,7 @@ class _Looks:
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> _BranchPoint | None:
-        """The simple branch point on or ahead of the arc to which Newton's method converges from a guess."""
+        """The simple branch point to which Newton converges from a guess."""
         arc, a = self.arc, self.arc.a
         try:
             rows = self._rows()
@@ -345,7 +332,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float) -> bool:
-    """Whether the changes at a sample are those of the one expected eigenvalue."""
+    """Whether a sample shows only the expected eigenvalue."""
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
     others = [mu for mu in told if mu != nearest and mu >= 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

@@ -1,9 +1,8 @@
-"""Extent: how far each component goes before the path turns; it gives the first scales and the first step.
+"""Extent: how far each component goes before the path turns; gives the first scales and step.
 
-The result depends neither on units nor on the origin. It measures the nonlinearity of H along the tangent v as in
-Deuflhard's affine covariant theory (Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). At u + h v it
-computes the simplified Newton corrections d and e. The median over the components of |d_i| / (h |v_i|) measures how far
-the path turned, |e| / |d| how far the equations changed. Both grow like h.
+It depends neither on units nor on the origin: the nonlinearity along the tangent v is measured by simplified Newton
+corrections d, e at u + h v (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). The median of
+|d_i| / (h |v_i|) measures the path's turn, |e| / |d| the change of the equations.
 """
 
 from __future__ import annotations
@@ -19,50 +18,47 @@ from continuation.evaluation.noise import ENDLESS, allowed_along
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
-"""Nonlinearity at the extent. Between 0.1 and 0.5 factorisations on twelve problems differ by a tenth."""
+"""Nonlinearity at the extent; 0.1 to 0.5 change factorisations on twelve problems by a tenth."""
 
 AROUND = 1.001
-"""Accuracy of the search for TURN, as a factor; a power law covers the rest, with an error of about the square. The
-result must not depend on the origin: with 1.05 shifts changed the extent by 1 % and factorisations on Bratu's problem
-by a factor of two.
+"""Accuracy of the search for TURN, as a factor. With 1.05 a shift of the origin doubled factorisations on Bratu's
+problem.
 """
 
 POWERS = 0.5, 4.0
-"""Bounds of that power: one is usual, two for a path symmetric about its start."""
+"""Bounds of the nonlinearity's power of length: usually one, two for symmetric paths."""
 
 FIRST_STEP = 0.3
-"""First step, in extents: it turns by a third of TURN; the controllers aim at 0.4 radians."""
+"""First step, in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
 
 SEARCH_START = 1e-3
-"""First length of the search, relative to the distance to the target: short enough not to jump over the first turn."""
+"""First length tried, relative to the target's distance: before the first turn."""
 
 LENGTHS_TRIED = 40
-"""Limit of lengths tried; five are usual."""
+"""Limit of lengths; five are usual."""
 
 GROWTH = 30.0
-"""Largest growth of the length in one try: the nonlinearity of a straight beginning predicts nothing."""
+"""Largest growth of the length in one try, since a straight beginning predicts nothing."""
 
 STRAIGHT_LENGTH = 1e30
-"""A path without target that is straight to this length, relative to its start, has no scale."""
+"""A path straight to this length, relative to its start, has no scale."""
 
 STANDSTILL = 1e-60
-"""A component with less than this part of the largest motion, whatever the units, stands still."""
+"""A component stands still below this part of the largest motion, in any units."""
 
 STILL_PIECEWISE = 1e-13
-"""The value of STANDSTILL on a piece of a piecewise smooth map, where components stand still but for round-off of
-others; units thirteen orders apart look like that too.
-"""
+"""STANDSTILL on pieces, where components stand still to round-off of others."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""Tangent components below the first value, relative to the largest, may be round-off; those that refinement changes by
-more than the second are.
+"""A tangent component is round-off if below the first, relatively, and changed by more than the second
+in refinement.
 """
 
 UNCERTAIN = 100.0
-"""Corrections below this multiple of their round-off, sampled with two sign patterns, are ignored."""
+"""Smaller corrections, in units of their sampled round-off, are ignored."""
 
 OTHER_UNITS = 1e4
-"""A size with larger nonlinearity has other units; six symmetric trunks in units of 1 had 0.2 to 1,100."""
+"""Larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -74,7 +70,7 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Return how far each component goes until the path turns by about TURN or reaches the target; and its noise.
+    """Return how far each component goes until the path turns or reaches the target; and its noise.
 
     Parameters
     ----------
@@ -83,22 +79,20 @@ def initial_extent(
         The start, in any metric.
     target : float or None
     residual : ndarray, shape (N,)
-        H at the point: a start need not lie on the path to the last digit.
+        H at the point.
     farthest : float
-        Fallback length along the tangent without a target. Finite only for paths of straight pieces, which have no
-        other scale.
+        Length of a path of straight pieces without target; else inf.
     room : float
-        Distance along the tangent to a requested end value, if the path is straight.
+        Distance to an end value, if straight.
     sizes : ndarray, shape (N + 1,), optional
-        Approximate sizes of the components; one that moves by less than its round-off stands still.
+        Of the components, to recognise round-off.
 
     Returns
     -------
     extent : ndarray, shape (N + 1,)
-        Positive. A component without motion beyond round-off gets the median of the others, in units of `sizes` if
-        given.
+        Positive; the median, in `sizes` if given, for a component that stands still.
     blur : ndarray, shape (N + 1,)
-        Uncertainty of each component: |H'^-1| times the noise in H and in the last digits of u.
+        |H'^-1| times the noise in H and u.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -114,11 +108,10 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    # The length that changes one component by its own size; if nothing is known of the path, shorter is safer.
+    # The shortest length that changes a component by its size is safest.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # Terms that vanish at the origin, as for a structure at rest, show no noise there: measure it where the search
-    # begins.
+    # At zero terms show no noise: measure it ahead.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -126,7 +119,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Across the path: hold the moving component with the least relative noise.
+    # Across the path: hold the component with least relative noise.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
@@ -139,7 +132,7 @@ def initial_extent(
         try:
             d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)))
         except Exception:
-            # H is probed beyond its domain: ignore exceptions; a step that needs the point will show them.
+            # H is probed beyond its domain.
             d, turned = off, np.inf
         # From a fold the parameter moves by the correction alone.
         turned = max(turned, TURN * abs((h * v[-1] + d[-1]) / gap))
@@ -157,7 +150,7 @@ def initial_extent(
             low = found = h
             off = d
             if h > STRAIGHT_LENGTH:
-                # Only the start's own size is left as a scale.
+                # Only the start's size is left as a scale.
                 found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
                 break
         h *= min(max(rest, 0.1), GROWTH)
@@ -179,10 +172,9 @@ def initial_extent(
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """Factor for the sizes of components that stand still, so that H is about linear at that distance from the path.
+    """Factor for the sizes of components that stand still, until H is about linear at that distance.
 
-    The sizes of other components have other units. From a symmetric trunk, branches leave in these components: if their
-    size is far too large, a whole branch is as short as round-off of the others.
+    Other components' units may be far too large: a symmetric trunk's branches would be as short as round-off.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -190,21 +182,20 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
             d = point.solve(residual - evaluator.residual(point.u + h * z))
             turned = float((np.abs(d + h * z)[moved] / (h * z[moved])).max())
         except Exception:
-            # As in `initial_extent`.
+            # As above.
             turned = np.inf
         if turned <= OTHER_UNITS:
             break
-        # The leading terms have order two or three; the square root suits three.
+        # Leading terms have order two or three; the root suits three.
         h *= max(np.sqrt(TURN / turned), TURN / GROWTH)
     return h
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
-    """The tangent, with zeros for components that are round-off.
+    """The tangent, with zeros for round-off.
 
-    A component of 1e-17 may be round-off or have another unit. One step of refinement decides, with H' at a point that
-    H cannot distinguish from this one: a few ulps away, and as far along the path as H stays round-off. Refinement
-    replaces round-off (also that of H', and small components next to a fold) and keeps all else.
+    A tiny component may have another unit. One refinement decides, with H' at an indistinguishable point: it replaces
+    round-off only.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -217,7 +208,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     try:
         apply = evaluator.differential(beside)
     except EvaluationError:
-        # The point lies outside the domain.
+        # Outside the domain.
         apply = evaluator.differential(point.u)
     if apply is None:
         return v
@@ -226,7 +217,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
 
 
 def _across(v: Array, z: Array) -> Array:
-    """The correction minus its part along v, the median over the moving components."""
+    """The correction minus its median part along v."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * v
     return across
@@ -240,7 +231,7 @@ def _largest(samples: list[Array]) -> Array:
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
 ) -> tuple[Array, float]:
-    """The correction at u + h v minus its part along v, and the nonlinearity."""
+    """The correction at u + h v across v, and the nonlinearity."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -253,7 +244,7 @@ def _nonlinearity(
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
-        # Unknowns that all move alike turn only relative to the parameter.
+        # Unknowns that move alike turn against the parameter only.
         turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0

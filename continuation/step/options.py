@@ -1,8 +1,4 @@
-"""The options of a path: names, types, meanings and defaults.
-
-`PartOptions` say how to trace; `Options` add where to go and how far. `trace`, `Tracer`, `resume`, `trace_many`, charts
-and the LCP solver take their `**options` from here.
-"""
+"""The options of a path: names, types, meanings and defaults, for every function with `**options`."""
 
 from __future__ import annotations
 
@@ -33,28 +29,27 @@ Finish = Callable[[Array, float], Array | None]
 
 
 class PartOptions(TypedDict, total=False):
-    """How to trace a path: its parts and the events to watch.
+    """How to trace a path.
 
     Parameters
     ----------
     preset : Preset, default DEFAULT
-        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: a predictor, a corrector and a controller.
+        Predictor, corrector and controller: `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another.
     predictor : Predictor, default None
         Replaces the preset's, like the next two.
     corrector : Corrector, default None
     controller : Controller, default None
     metric : Metric, default None
-        Measures arclength. Default: the homotopy's own, else `Automatic`.
+        For arclength. Default: the homotopy's own, else `Automatic`.
     events : sequence of Event, default ()
-        Added to the homotopy's own. Turning points and branch points are always watched.
+        Watched besides the homotopy's own, turning points and branch points.
     guards : sequence of Guard, default ()
-        Your own checks: functions of an arc that return why it does not count, or None. A refused step is repeated with
-        a shorter length. Archives do not store guards.
+        Functions of an arc that return why it does not count, or None. A refused step is shortened. Not archived.
     check_jacobian : bool, default False
-        Compare the Jacobian with the residual at the start; a wrong entry raises a ValueError that names it.
+        Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True
-        Watch turning points and branch points. False follows the path at two thirds of the cost and refuses steps over
-        branch points; use it to search for ends of paths.
+        Watch turning points and branch points. False costs two thirds and refuses steps over branch points: for
+        searches that need only the ends.
     """
 
     preset: Preset
@@ -74,25 +69,24 @@ class Options(PartOptions, total=False):
     Parameters
     ----------
     tolerance : float or Tolerance, default 1e-8
-        Size of an acceptable correction; a number is both the absolute and the relative part.
+        Largest correction; a number is its relative part.
     budget : Budget, default Budget()
-        Limits of steps, factorisations and seconds; the default is 10,000 steps.
+        Limits of steps, factorisations and seconds; default 10,000 steps.
     target : float or None, default "homotopy"
-        Final parameter value; None for a curve without one. Default: the homotopy's own target, else 0.
+        Final parameter value; None for none. Default: the homotopy's, else 0.
     direction : int, default 0
-        Sign of the parameter's first movement; 0 means towards the target.
+        Sign of the parameter's first movement; 0: towards the target.
     start : tuple of (u, v) or (y, lam), or Path, default None
-        Replaces the homotopy's start. (u, v): the point ``(y, lam)`` as one vector and the direction to leave in. (y,
-        lam): a guess of y at a parameter value, which the tracer corrects. Path: continue from its last point.
+        Replaces the homotopy's start: a point ``(y, lam)`` as one vector and a direction; or a guess of y at a
+        parameter value; or a path, continued from its last point.
     finish : callable, default None
-        Maps ``(y, lam)`` to the end y or None; called after each step instead of the homotopy's own. Archives do not
-        store it.
+        Maps ``(y, lam)`` to the end y or None, after each step, in place of the homotopy's own. Not archived.
     max_step : float, default None
-        Largest step, in arclength: for pictures with many points, or as the resolution of the path. Bends narrower than
-        half of it may lie between two samples (docs/guarantee.md).
+        Largest step in arclength: the resolution of pictures and of the path. Bends narrower than half of it may be
+        missed (docs/guarantee.md).
     box : mapping or None, default "homotopy"
-        The path ends where it leaves the box. Maps ``"lam"``, the number or name of an unknown, or ``"y"`` for all
-        unknowns, to (low, high); None means open. Default: the homotopy's own box, if any; None for no box.
+        The path ends where it leaves the box. Maps ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to
+        (low, high); None means open. Default: the homotopy's, if any.
     """
 
     tolerance: float | Tolerance
@@ -124,15 +118,15 @@ DEFAULTS: Options = {
     "max_step": None,
     "box": "homotopy",
 }
-"""Value of each option that is not given."""
+"""Defaults."""
 
 OPTIONS = tuple(Options.__annotations__)
 PART_OPTIONS = tuple(PartOptions.__annotations__)
-"""Names of the options, and of the part options."""
+"""Names of the options."""
 
 
 class Part(NamedTuple):
-    """Attributes that an argument must have."""
+    """Attributes required of an argument."""
 
     attributes: tuple[str, ...]
     kind: str
@@ -151,10 +145,9 @@ EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap
 
 
 def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: Mapping[str, str] | None = None) -> None:
-    """Refuse unknown options, and options that the caller may not set.
+    """Refuse unknown options, and `owned` ones with the reason.
 
-    `names`: Given options. `known`: Existing options. `owned`: Maps options that may not be set here to the reason.
-    Raises `TypeError` with the option and the nearest known one.
+    `TypeError` gives the nearest of the `known` options.
     """
     for name in names:
         if owned and name in owned:
@@ -166,9 +159,9 @@ def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: M
 
 
 def checked(options: Mapping[str, Any]) -> Options:
-    """Return the options, completed with defaults.
+    """Return the options with defaults.
 
-    Raises `TypeError, ValueError` with the option, the expected value and the value found.
+    `TypeError, ValueError` give the option, the expected and the found value.
     """
     check_names(options)
     # `check_names` has checked the names.
@@ -200,19 +193,19 @@ def checked(options: Mapping[str, Any]) -> Options:
 
 
 def check_run(observers: Any, state: Any) -> None:
-    """Raise TypeError unless these are observers, and a state or None."""
+    """Raise TypeError for bad observers or state."""
     each("observers", observers, OBSERVER)
     if state is not None and not isinstance(state, State):
         raise complain(TypeError, "state", "the state of a tracer, or None", state)
 
 
 def names_homotopy(target: Any) -> bool:
-    """Whether the given target or box is "homotopy"."""
+    """Return whether a target or box is "homotopy"."""
     return isinstance(target, str) and target == "homotopy"
 
 
 def checked_target(target: Any) -> float | None:
-    """Return a target as a float or None; raise TypeError or ValueError for anything else."""
+    """Return a target as float or None; TypeError or ValueError otherwise."""
     if target is None:
         return None
     if not is_number(target) or not math.isfinite(target):
@@ -233,7 +226,7 @@ Documented = TypeVar("Documented", bound=Callable[..., Any])
 
 
 def documented(function: Documented) -> Documented:
-    """Replace ``{options}`` in the docstring by all options, ``{parts}`` by the `PartOptions`."""
+    """Replace ``{options}`` in the docstring, and ``{parts}`` by the `PartOptions`."""
     text = inspect.getdoc(function)
     if text is not None:
         parts, others = (_parameters(options) for options in (PartOptions, Options))
@@ -242,5 +235,5 @@ def documented(function: Documented) -> Documented:
 
 
 def _parameters(options: Any) -> str:
-    """Parameter entries of a TypedDict's docstring."""
+    """Parameter list of a TypedDict."""
     return (inspect.getdoc(options) or "").partition("----------\n")[2] + "\n"

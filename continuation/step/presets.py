@@ -11,7 +11,7 @@ from continuation.predictors import Hermite, Predictor, Taylor
 
 @frozen
 class Preset:
-    """A predictor, a corrector and a controller that suit each other; `trade` says at what cost."""
+    """Predictor, corrector and controller that suit each other."""
 
     name: str
     trade: str

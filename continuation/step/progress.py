@@ -1,4 +1,4 @@
-"""Progress on stderr: a live line on a terminal (by tqdm if installed), else occasional lines."""
+"""Progress on stderr: a live line on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from continuation.path import LocatedEvent, Step
 from continuation.step.tracer import Tracer
 
 LIVE_SECONDS = 0.1
-"""Seconds between updates of a live line."""
+"""Between updates of a live line."""
 
 PLAIN_SECONDS = 10.0
-"""Seconds between lines without a terminal; keeps logs short."""
+"""Between lines without a terminal."""
 
 
 class Progress:
-    """An observer that shows steps, parameter, step length and the path's ending.
+    """Shows steps, parameter, step length and ending.
 
     `stream`: stderr by default. `label`: Begins every line.
     """
@@ -31,7 +31,7 @@ class Progress:
         self._width = 0
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """Show the step, unless one was shown a moment ago."""
+        """Show the step, at intervals."""
         now = time.monotonic()
         if now - self._shown < (LIVE_SECONDS if self._live else PLAIN_SECONDS):
             return
@@ -43,10 +43,10 @@ class Progress:
         self._show(step.index, text)
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Do nothing: the next step shows the number of turning points."""
+        """Do nothing: steps show the turning points."""
 
     def end(self, tracer: Tracer) -> None:
-        """Show the last point and the status, and end the line."""
+        """Show the last point and the status."""
         path = tracer.path
         steps, lam = (path.endpoint.index, f"lam = {path.endpoint.lam:.4g}") if path.steps else (0, "no point")
         self._show(steps, f"{lam}, {path.status.name} in {path.seconds:.2f} s", last=True)
@@ -65,7 +65,7 @@ class Progress:
         if not self._live:
             self.stream.write(f"{line}\n")
         else:
-            # Blanks erase the rest of a longer line.
+            # Blanks erase a longer line.
             self.stream.write(f"\r{line:<{self._width}}" + ("\n" if last else ""))
             self._width = len(line)
         self.stream.flush()
@@ -94,7 +94,7 @@ class SweepProgress:
         self._live, self._begun, self._shown = self.stream.isatty(), time.monotonic(), -PLAIN_SECONDS
 
     def __call__(self, done: int, total: int) -> None:
-        """Show the count, unless one was shown a moment ago.
+        """Show the count, at intervals.
 
         Parameters
         ----------

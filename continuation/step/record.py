@@ -1,4 +1,4 @@
-"""The record of a step, `continuation.path.Step`; a trace makes records only here."""
+"""Records of steps, made only here during a trace."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Observe = Callable[[Array, float], Mapping[str, float]]
 
 
 def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
-    """Return the function that gives the scalars stored with each point: the homotopy's and the events' own.
+    """Return the function that gives a point's stored scalars: the homotopy's and the events'.
 
-    The function raises `ValueError` if two scalars have one name.
+    It raises `ValueError` if two have one name.
     """
     own = observe_of(homotopy)
     others = [event.observe for event in events if hasattr(event, "observe")]
@@ -46,10 +46,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
 
 @frozen(eq=False)
 class StepRecorder:
-    """Makes the records of a path.
-
-    `observe`: Returns the extra scalars at a point.
-    """
+    """Makes records; `observe` gives extra scalars."""
 
     evaluator: Evaluator
     observe: Observe | None
@@ -66,8 +63,7 @@ class StepRecorder:
     ) -> Step:
         """Return the record of a point.
 
-        `kind`: A `Kind`. `residual_norm`: Computed here if NaN. `tangent`: Default: the point's. `**how`: Other fields
-        of `Step`.
+        `residual_norm`: Computed if NaN. `tangent`: Default: the point's. `**how`: Other fields of `Step`.
         """
         return Step(
             index=index,
@@ -83,13 +79,13 @@ class StepRecorder:
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:
-        """Return the located events with the extra scalars."""
+        """Return events with extra scalars."""
         if self.observe is None:
             return events
         return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]
 
     def end(self, point: Linearization, state: State, u: Array) -> Step:
-        """Return the record of an end that no step reached, after the last point on the path."""
+        """Return the record of an end that no step reached."""
         chord = u - point.u
         length = norm(point.weights, chord)
         end = evolve(point, u=u, tangent=chord / length if length > 0.0 else point.tangent)

@@ -29,16 +29,14 @@ from continuation.tolerance import Tolerance, as_tolerance
 
 @frozen(eq=False)
 class Settings:
-    """Everything that decides how a path is traced, except the homotopy and the start.
+    """Everything that decides a path, except homotopy and start.
 
     Attributes
     ----------
     predictor, corrector, controller, metric
-        The parts.
     events : tuple of Event
-        The homotopy's and the caller's events, with turning points of the parameter and branch points added.
+        The homotopy's, the caller's, turning points and branch points.
     guards : tuple of Guard
-        The caller's checks of arcs.
     tolerance : Tolerance
     budget : Budget
     target : float or None
@@ -61,22 +59,22 @@ class Settings:
 
     @property
     def branch_index(self) -> int | None:
-        """Index of the branch point event; None without one."""
+        """Index of the branch point event, or None."""
         return self._index_of(BranchPoint)
 
     @property
     def kink_index(self) -> int | None:
-        """Index of the kink event; None for smooth homotopies."""
+        """Index of the kink event, or None."""
         return self._index_of(KinkPoint)
 
     @property
     def stops(self) -> list[tuple[int, float]]:
-        """Components and values at which the path ends: the target, faces of a box, other such events."""
+        """Components and values that end the path."""
         ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal > 0]
         return [*([] if self.target is None else [(-1, self.target)]), *((e.component, e.value) for e in ends)]
 
     def room(self, u: Array, v: Array) -> float:
-        """Distance along v to the nearest value that ends a path without target; inf without one.
+        """Distance along v to the nearest value that ends a path without target, or inf.
 
         Parameters
         ----------
@@ -89,14 +87,11 @@ class Settings:
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
-        """Return settings whose events know the homotopy, if they have a method `bound`.
-
-        Archives keep the unbound settings; a trace uses the bound ones.
+        """Bind events with a method `bound` to the homotopy; archives keep unbound ones.
 
         Parameters
         ----------
         evaluator : Evaluator
-            Evaluator of the homotopy.
         """
         known = (event.bound(evaluator) if hasattr(event, "bound") else event for event in self.events)
         return evolve(self, events=tuple(known))
@@ -110,8 +105,8 @@ def complete_settings(
 ) -> Settings:
     """Complete checked options from the homotopy.
 
-    `start`: Returns the first point (y, lam); called only for blocks or a box. `observers`: Their `events` are watched
-    too. Raises `TypeError, ValueError` for a bad metric, events or target of the homotopy.
+    `start`: Returns (y, lam), for blocks or a box. `observers`: Their `events` are watched. `TypeError, ValueError` for
+    a homotopy's bad metric, events or target.
     """
     preset, target = asked["preset"], asked["target"]
     own = homotopy.metric if offers(homotopy, SupportsMetric) else None
@@ -133,7 +128,7 @@ def complete_settings(
 
 
 def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
-    """The homotopy's blocks, checked; None without blocks."""
+    """The homotopy's checked blocks, or None."""
     if not offers(homotopy, SupportsBlocks):
         return None
     blocks = np.asarray(homotopy.blocks)
@@ -143,7 +138,7 @@ def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
 
 
 def _capped(controller: Any, longest: float | None) -> Any:
-    """The controller with its largest step capped by `max_step`."""
+    """The controller with steps up to `longest`."""
     if longest is None or longest >= controller.bounds.maximum:
         return controller
     bounds: Bounds = controller.bounds
@@ -157,7 +152,7 @@ def _capped(controller: Any, longest: float | None) -> Any:
 def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:
     box: Any = asked["box"]
     if names_homotopy(box):
-        # The homotopy's own box applies only if the caller gives neither target nor events.
+        # A caller's target or events replace the homotopy's own box.
         said = asked["events"] or not names_homotopy(asked["target"])
         box = None if said else getattr(homotopy, "box", None)
     return () if box is None else faces(box, Labels.of(homotopy), start())

@@ -1,4 +1,4 @@
-"""The first point: correct it onto the path, check that it is regular, choose its direction."""
+"""The first point: corrected, checked, oriented."""
 
 from __future__ import annotations
 
@@ -23,47 +23,47 @@ from continuation.step.extent import FIRST_STEP, initial_extent
 
 
 class StartError(ArithmeticError):
-    """The trace cannot begin: the start is not a point of a path."""
+    """The start is no point of a path."""
 
 
 class SingularStartError(StartError):
-    """The path has no direction at the start: the Jacobian has no full rank there."""
+    """The Jacobian has no full rank at the start, so the path has no direction."""
 
 
 CORRECTING = BorderedNewton(max_iterations=20)
-"""The start is corrected only once, so many iterations are cheap."""
+"""One correction a path: many iterations are cheap."""
 
 STEEP = 1e-8
-"""Least parameter component of a tangent for which the border e_{N+1} suffices: half of the digits."""
+"""Least parameter component of a tangent with border e_{N+1}: half of the digits."""
 
 CLEAR_OF_NOISE = 4.0
-"""Tolerance in units of the noise of a correction: two standard deviations of a difference. With half of it
-CONSERVATIVE fails in single precision.
+"""Tolerance in units of a correction's noise: two standard deviations of a difference. With half CONSERVATIVE fails in
+single precision.
 """
 
 COARSEST = 0.1
-"""Tolerance where noise leaves no digit; later checks refute a start that is less accurate."""
+"""Tolerance if noise leaves no digit; later checks refute a worse start."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
-"""From a guess Newton's increments may grow first; a start that converges nevertheless is valid."""
+"""From a guess increments may first grow."""
 
 NEARBY = 1.0
-"""Largest correction, in extents, of a start to a point at another parameter; a more distant point is unrelated."""
+"""Largest correction, in extents, of a start off its parameter."""
 
 SAME_KERNEL = 1e-6
-"""Largest relative difference of the components of one kernel found with two borders: six correct digits."""
+"""Largest relative difference of one kernel by two borders: six digits."""
 
 ALIGNED = 1.0 - 1e-6
-"""Least cosine between equal kernels found with two borders: an angle of 1e-3, far below that of two random kernels."""
+"""Least cosine of one kernel by two borders: an angle of 1e-3."""
 
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
 ) -> tuple[Linearization, float]:
-    """Return the start on the path, with the tangent towards the target, and a first step length.
+    """Return the start on the path, with tangent, and a first step length.
 
-    `direction`: Wanted sign of the tangent's parameter component; 0: towards the target, or +1 without a target. Raises
-    `StartError` for a wrong point, SingularStartError for a wrong problem.
+    `direction`: Sign of the tangent's parameter component; 0: towards the target, else +1. `StartError` for a wrong
+    point, SingularStartError for a wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.zeros_like(u)
@@ -86,9 +86,9 @@ def first_point(
 
 
 def at_parameter(solver: PathSolver, u: Array) -> Array:
-    """Return the point of the path at the parameter value of a guess.
+    """Return the point of the path at a guess's parameter value.
 
-    Raises `StartError` if Newton's method does not converge to one.
+    `StartError` if Newton's method fails.
     """
     evaluator = solver.evaluator
     unit = np.zeros_like(u)
@@ -109,10 +109,10 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """Return the start in the metric of the trace, and the extent of each component.
+    """Return the start in the trace's metric, and its extent.
 
-    If H has noise beyond round-off, the solver's tolerance is raised to the median relative noise of the components. A
-    component with more noise gets an extent at which its noise meets that tolerance.
+    Noise of H beyond round-off raises the tolerance to the median component's noise, and the extent of noisier
+    components.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
@@ -129,7 +129,7 @@ def measured(
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
-    """Correct the start at its parameter value, else along the shortest way."""
+    """Correct the start at its parameter, else along the shortest way."""
     for border in (unit, point.border):
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
         if correction.converged and (border is unit or correction.distance <= NEARBY):
@@ -141,18 +141,17 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
 
 
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
-    """Linearize at u; raise SingularStartError unless [H_y, H_lam] has full rank to working precision.
+    """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank.
 
-    With the border e_{N+1} the matrix is also singular at a turning point, so a failure is checked with two random
-    borders. If the kernel depends on the border, its dimension exceeds one.
+    At a turning point border e_{N+1} fails too, so random borders decide: a kernel that depends on them has more than
+    one dimension.
     """
     ones = np.ones_like(u)
     try:
         point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
-        # Units alone may make the parameter component small. A border with equal parts in all components has no units;
-        # if it gives the same kernel, the first border was good.
+        # Units may make the parameter component small. A border without units that gives the same kernel confirms it.
         v = point.tangent
         border = np.divide(1.0, v, out=np.zeros_like(v), where=v != 0.0)
         again = linearize(evaluator, u, ones, border / norm(ones, border))
@@ -175,7 +174,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
 
 
 def _well_conditioned(point: Linearization) -> bool:
-    """Whether a solve with a generic right-hand side stays moderate and the parameter component is not tiny."""
+    """Whether a generic solve is moderate and the tangent not steep."""
     r = generic_vector(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)
@@ -183,12 +182,12 @@ def _well_conditioned(point: Linearization) -> bool:
 
 
 def is_guess(start: Any) -> bool:
-    """Whether a start is a guess of y at a parameter value, not a point with a direction."""
+    """Return whether a start is (y, lam)."""
     return isinstance(start, tuple | list) and len(start) == 2 and np.ndim(start[1]) == 0 and np.ndim(start[0]) == 1
 
 
 def guessed(start: Any) -> Array:
-    """Return a start (y, lam) as one vector; raise ValueError for anything else."""
+    """Return a start (y, lam) as one vector; ValueError otherwise."""
     y, lam = (real_vector("start", part) for part in start)
     u: Array = np.append(y, lam)
     if not np.isfinite(u).all():
@@ -197,9 +196,9 @@ def guessed(start: Any) -> Array:
 
 
 def arriving(path: Path) -> tuple[Array, Array]:
-    """Return the last point of a path and its tangent; without a tangent, the chord from the previous point.
+    """Return a path's last point and tangent, or the chord from the point before.
 
-    Raises `ValueError` if the path has no point to go on from.
+    `ValueError` without such a point.
     """
     before, last = [None, *path.steps[-2:]][-2:] if len(path.steps) else (None, None)
     if last is None:
@@ -211,7 +210,7 @@ def arriving(path: Path) -> tuple[Array, Array]:
 
 
 def point_and_direction(start: Any) -> tuple[Array, Array]:
-    """Return copies of the two vectors of a start; raise ValueError unless they are a finite point and a direction."""
+    """Return copies of a start's finite point and direction; ValueError otherwise."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
         raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}; a guess is (y, lam)")
@@ -226,9 +225,9 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
 def point_from_tangent(
     solver: PathSolver, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
 ) -> tuple[Linearization, float]:
-    """Begin at a given point in a given direction; the determinant's sign there becomes the orientation.
+    """Begin at a point in a direction; its determinant sign is the orientation.
 
-    Raises `ValueError` unless `start` is a pair (u, v) of vectors of the right size with nonzero v.
+    `ValueError` unless `start` is a pair (u, v) of the right size, v nonzero.
     """
     evaluator, (u, v) = solver.evaluator, point_and_direction(start)
     if u.size != size:

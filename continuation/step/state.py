@@ -1,4 +1,4 @@
-"""The state that a trace carries from step to step: arrays and numbers, so that an archive can store it."""
+"""The state of a trace between steps, for archives."""
 
 from __future__ import annotations
 
@@ -11,42 +11,42 @@ from continuation.predictors import Knot
 
 @frozen(eq=False)
 class State:
-    """The state at an accepted point; with the settings it determines the rest of the path, bit for bit.
+    """State at an accepted point; with the settings it determines the rest of the path, bit for bit.
 
     Attributes
     ----------
     history : tuple of Knot
-        The current point last, after as many points as the predictor remembers.
+        The predictor's knots, the current point last.
     weights : ndarray, shape (N + 1,)
-        Metric at the point.
+        Metric.
     anchor : tuple of two ndarrays, shape (N + 1,)
-        Point and border of the current factorisation.
+        Point and border of the factorisation.
     orientation : int
-        Determinant sign that the tangent must have.
+        Determinant sign of the tangent.
     h : float
-        Step length to try next.
+        Next step length.
     controller : tuple of float
-        State of the controller.
+        Controller state.
     monitors : tuple of float
-        Monitor values of the events at the point; 0 if an event was found there.
+        Monitors of the events; 0 for an event found at the point.
     occurrences : tuple of int
-        Number of locations of each event so far.
+        Of each event.
     origin : Knot
-        The start, and `origin_weights` its metric: to recognise a closed curve.
+        The start, with its metric `origin_weights`: to recognise a closed curve.
     divergence_monitor : tuple of float
         See `continuation.ends.divergence`.
     last_failed_landing : float
-        Parameter value of the last failed landing; inf if none.
+        Parameter value, or inf.
     last_failed_endgame : float
-        Parameter value of the last failed endgame; inf if none.
+        Parameter value, or inf.
     index : int
-        Index of the step that led here.
+        Of the last step.
     signs : tuple of int
-        The piece on which the path continues, if the homotopy has pieces.
+        The piece ahead, if any.
     noise : ndarray, shape (N,), or (0,) where there is none
-        Measured noise of each equation, if larger than round-off of the point.
+        Of each equation, if above round-off.
     tolerance : float
-        Relative tolerance raised for noise; 0 if not raised.
+        Raised for noise, else 0.
     """
 
     history: tuple[Knot, ...]

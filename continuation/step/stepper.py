@@ -1,4 +1,4 @@
-"""One attempt at a step: predict, correct, linearize, measure the turn."""
+"""One attempt at a step."""
 
 from __future__ import annotations
 
@@ -17,25 +17,22 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 
 LOW_ORDER_FRACTION = 0.9
-"""Largest part of the distance to the boundary that a prediction may use: the usual fraction of interior methods
-(Wright, Primal-Dual Interior-Point Methods, 1997). The error of a prediction may be as large as that distance.
+"""Part of the distance to the boundary that a prediction may use: usual in interior methods (Wright, Primal-Dual
+Interior-Point Methods, 1997), as its error may equal that distance.
 """
 
 SHORTENINGS, SHORTEST = 60, 0.1
-"""Limit of cuts of a curved prediction on its way to the boundary, and the least factor of a cut: sixty such cuts go
-below any least step.
-"""
+"""Limit of cuts at a boundary, and least factor: sixty go below any least step."""
 
 TANGENT = 1e-6
-"""Accuracy of a step's tangent, in relative tolerances; more refinement is useless."""
+"""Accuracy of the tangent, in tolerances; more is useless."""
 
 
 @frozen(eq=False)
 class Arrival:
-    """An attempt that arrived on the path.
+    """An attempt that arrived.
 
-    `h`: Step length. `point`: The arrival; its tangent is oriented by angle for now. `angle`: Between the tangents, in
-    radians.
+    `point`: Its tangent is oriented by angle for now. `angle`: Between the tangents, radians.
     """
 
     h: float
@@ -56,7 +53,7 @@ class Stepper:
     fraction: float
 
     def shortened(self, point: Linearization, prediction: Prediction, h: float) -> float:
-        """Return the step, cut until the prediction is well inside the domain of an interior homotopy."""
+        """Return the step, cut until the prediction is well inside the domain."""
         max_step = self.solver.max_step
         if max_step is None:
             return h
@@ -64,7 +61,7 @@ class Stepper:
             room = self.fraction * max_step(point.u, prediction(h) - point.u)
             if room >= 1.0:
                 return h
-            # One cut is exact for a straight prediction; a curved one may need more.
+            # Curved predictions may need more cuts.
             h *= max(room, SHORTEST)
         return h
 
@@ -84,7 +81,7 @@ class Stepper:
         reason = None
         if dot(border, correction.u - point.u) <= 0.0:
             reason = Rejection.BACKWARDS
-        # Independent of the controller: a correction longer than the step has left the predicted path.
+        # For any controller: such a correction left the predicted path.
         elif correction.distance > h:
             reason = Rejection.TOO_FAR
         elif solver.max_step is not None and not solver.max_step(point.u, correction.u - point.u) > 1.0:
@@ -94,7 +91,7 @@ class Stepper:
         return self.arrive(point, border, h, correction)
 
     def arrive(self, point: Linearization, border: Array, h: float, correction: Correction) -> Attempt:
-        """Linearize at the corrected point and measure the angle."""
+        """Linearize at the corrected point."""
         evaluator, weights, anchor = self.solver.evaluator, point.weights, correction.anchor
         try:
             if anchor is not None:

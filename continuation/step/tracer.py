@@ -1,4 +1,4 @@
-"""The loop: an iterator of accepted steps, driven by `continuation.trace`."""
+"""The loop: an iterator of accepted steps."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ from continuation.step.verdict import (
 
 
 class Observer(Protocol):
-    """Watches a trace without changing it: an archive, a progress bar, a plot."""
+    """Watches a trace, without influence: an archive, a progress bar, a plot."""
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """Receive an accepted step; `tracer.state` is the state after it.
+        """An accepted step; `tracer.state` follows it.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class Observer(Protocol):
         ...
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Receive a located event, before the step that contains it.
+        """A located event, before its step.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Observer(Protocol):
         ...
 
     def end(self, tracer: Tracer) -> None:
-        """Receive the end; `tracer.path` is complete.
+        """The end; `tracer.path` is complete.
 
         Parameters
         ----------
@@ -83,34 +83,34 @@ class Observer(Protocol):
 
 @documented
 class Tracer:
-    """One path as an iterable of steps: ``for step in Tracer(homotopy)`` traces it; you may leave the loop at any step.
+    """One path as an iterable of steps: ``for step in Tracer(homotopy)``; the loop may be left.
 
-    A second loop continues after the last step handed out, with the same clock and budget; a finished path yields
-    nothing. Leaving a loop tells the observers the end, so archives close.
+    A second loop continues after the last step, with clock and budget; an ended path yields nothing. Each time a loop
+    is left, observers see the end, so archives close.
 
     Parameters
     ----------
     homotopy : Homotopy
-        Needs `start` and `residual`; other capabilities are optional methods.
+        Has `start`, `residual` and optional capabilities.
     observers : sequence of Observer, default ()
-        Watch the trace: an archive, a progress bar, a plot.
+        Watch the trace.
     state : State, default None
-        Resume from here: the steps equal those of an uninterrupted trace bit for bit.
+        Resume from here, bit for bit.
     {options}
 
     Attributes
     ----------
     settings : Settings
-        The completed and checked options.
+        The completed options.
     path : Path
-        Everything found so far.
+        Found so far.
     state : State or None
-        Needed by the next step.
+        For the next step.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, with the argument; for an unknown option, with the nearest known one.
+        For bad input, with the argument; for an unknown option, with the nearest one.
     """
 
     def __init__(
@@ -148,22 +148,22 @@ class Tracer:
 
     @property
     def seconds(self) -> float:
-        """Wall-clock seconds spent in loops over the steps."""
+        """Wall-clock seconds inside loops."""
         return self.path.seconds if self._clock is None else time.perf_counter() - self._clock
 
     @property
     def references(self) -> tuple[str, ...]:
-        """BibTeX of the homotopy, the parts, and the methods used so far for missing capabilities."""
+        """BibTeX of homotopy, parts and substitute methods used so far."""
         parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
     def __iter__(self) -> Iterator[Step]:
-        """Yield each accepted step, the start first, until the path has a status.
+        """Yield accepted steps, the start first.
 
         Raises
         ------
         RuntimeError
-            If another loop over this tracer has not ended.
+            Inside another loop over this tracer.
         Interrupted
             After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
@@ -180,30 +180,30 @@ class Tracer:
                 self._end(INTERRUPTED)
             raise Interrupted(self.path) from interrupt
         except BaseException as error:
-            # The path stays consistent when the caller stops or a plug-in raises.
+            # Leave a consistent path.
             if self.path.status is Status.TRACING:
                 self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
             raise
 
     @one_thread
     def run(self) -> Path:
-        """Trace to the end of the path.
+        """Trace to the end.
 
         Raises
         ------
         Interrupted
             After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
-        deque(self, maxlen=0)  # loops in C, so that Ctrl-C arrives inside the tracer
+        deque(self, maxlen=0)  # in C, so that Ctrl-C arrives inside the tracer
         return self.path
 
     def give_up(self, reason: str) -> None:
-        """State why you leave the loop now; the path's message and archives contain the reason.
+        """Give the reason for leaving the loop, for message and archives.
 
         Parameters
         ----------
         reason : str
-            A sentence without its full stop.
+            A sentence without full stop.
         """
         self._reason = reason
 
@@ -236,7 +236,7 @@ class Tracer:
         return self.settings.budget.spent(self.counts, self.seconds, arclength)
 
     def _beginning(self) -> Array:
-        """The first point, exact or approximate."""
+        """The approximate start."""
         if self._start is not None:
             return point_and_direction(self._start)[0]
         if self.state is not None:
@@ -280,14 +280,14 @@ class Tracer:
             noise=np.zeros(0) if self._evaluator.noise is None else self._evaluator.noise,
             tolerance=self._solver.tolerance.relative,
         )
-        # The state is set last: a trace interrupted before begins again when resumed.
+        # State last: interrupted before, a resumed trace begins again.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
         if self._start is None and (verdict := start_on_target(point.lam, settings.target)) is not None:
             self._end(verdict)
         return point
 
     def _restored(self, state: State) -> Linearization:
-        """The point of a stored state: refactored from the same numbers, with the stored tangent."""
+        """The point of a stored state, factored again, with the stored tangent."""
         at, border = state.anchor
         self._evaluator.noisy(state.noise)
         self._solver.noisy(state.tolerance)
@@ -305,28 +305,28 @@ class Tracer:
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
         path.seconds, self._clock, path.references = self.seconds, None, self.references
-        # Every observer is told, even if another raises: archives must close.
+        # All observers: archives must close.
         with ExitStack() as telling:
             for observer in reversed(self.observers):
                 telling.callback(observer.end, self)
 
     def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
-        """Add a step and the events before it to path, state and observers."""
+        """Add a step and its events to path, state and observers."""
         self.path.events.extend(events)
         self.path.steps.append(step)
         self.state = state
         for observer in self.observers:
             for event in events:
-                # The step itself shows an event on which the path ends.
+                # The step shows its own event.
                 if not event.ends_step:
                     observer.event(self, event)
             observer.step(self, step)
 
     def _next(self, point: Linearization) -> Linearization | None:
-        """The point after one step, or None at the end of the path."""
+        """The next point, or None at the end."""
         state = self.state
         assert state is not None
-        # Overflow shows as a step that is not finite.
+        # Steps that are not finite show overflow.
         with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict

@@ -1,7 +1,4 @@
-"""Why a path ends: each function returns a `Verdict` with status and sentence, or None if the path continues.
-
-The functions are in the order of their calls: at the start, before a step, after a failed attempt, after a step.
-"""
+"""Why a path ends: functions in the order of their calls return a `Verdict`, or None to continue."""
 
 from __future__ import annotations
 
@@ -25,8 +22,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars`: Text after the status' sentence. `limit`: The singular end. `rejected`: Failed attempts at the last
-    point. `error`: Error bound of a regular end.
+    `particulars`: After the status' sentence. `limit`: A singular end. `rejected`: Last failures. `error`: Bound for a
+    regular end.
     """
 
     status: Status
@@ -44,17 +41,17 @@ INTERRUPTED = Verdict(Status.INTERRUPTED)
 
 
 def abandoned(reason: str) -> Verdict:
-    """The caller stopped the loop."""
+    """The caller left the loop."""
     return Verdict(Status.ABANDONED, f"Given up: {reason}." if reason else "")
 
 
 def raised(error: BaseException) -> Verdict:
-    """A plug-in or an observer raised an exception."""
+    """A plug-in or observer raised."""
     return Verdict(Status.RAISED, f"It says: {sentence(error)}")
 
 
 def sentence(error: BaseException) -> str:
-    """Return an exception in one line, even if its text raises."""
+    """Return an exception in one line."""
     try:
         text = str(error)
     except Exception as within:
@@ -74,10 +71,7 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
 
 
 def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """The budget is exhausted; called before a step and between attempts.
-
-    `limit`: The limit reached. An asymptote in sight is mentioned but is no end.
-    """
+    """The budget is exhausted at `limit`; an asymptote in sight is mentioned."""
     limit = limit or ("" if state is None else beyond_horizon(state.here.u))
     if not limit:
         return None
@@ -87,12 +81,12 @@ def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...]
 
 
 def predictor_failed(error: EvaluationError) -> Verdict:
-    """The predictor raised an error."""
+    """The predictor failed."""
     return Verdict(Status.PREDICTOR_FAILED, f"It says: {error}.")
 
 
 def singular_end(limit: SingularLimit) -> Verdict:
-    """A limit that no step can reach was found on the target."""
+    """A limit on the target, out of reach of steps."""
     w = limit.winding_number
     power = f"|lam - target|^(1/{w})" if w > 1 else "lam - target"
     found = f"There it is a power series in {power}; error of the limit about {limit.error:.1g}."
@@ -100,13 +94,13 @@ def singular_end(limit: SingularLimit) -> Verdict:
 
 
 def finished(residual_norm: float) -> Verdict:
-    """The homotopy's own finish found the end; the text gives the residual."""
+    """The homotopy's finish found the end."""
     found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
     return Verdict(Status.REACHED_TARGET, found)
 
 
 def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
-    """The next step length is below the minimum: the last attempt's reason decides the status."""
+    """The step is below its minimum; the last rejection decides the status."""
     if h >= minimum:
         return None
     last = rejected[-1]
@@ -117,9 +111,9 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
 
 
 def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
-    """An accepted arc ends the path, or the path diverges.
+    """An accepted arc ends the path.
 
-    `infinity`: How the path diverges, in words; empty if it does not. `event`: Name of the last event on the arc.
+    `infinity`: How it diverges, or "". `event`: Name of the arc's last event.
     """
     if end.limit is not None:
         return singular_end(end.limit)
@@ -135,7 +129,7 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
 
 
 def behind_kink(kink: Crossing, solver: PathSolver, origin: Knot) -> Verdict | None:
-    """The path ends in a kink: it began there, no branch leaves it, or the branch is unknown."""
+    """The path ends in a kink: its start, a dead end, or unresolved."""
     if kink.onward is not None:
         return Verdict(Status.CLOSED) if same_ray(solver, origin, kink.onward) else None
     where = f"Switches that vanish there: {', '.join(map(str, kink.switches))}."
