@@ -1,8 +1,7 @@
 """Pseudo-arclength continuation with pluggable parts.
 
-``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target.
-
-Names are imported at first use, so ``import continuation`` is fast.
+``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target. Names are imported at
+first use.
 """
 
 from importlib import import_module
@@ -79,7 +78,7 @@ _HOMES = {
     "tolerance": "Tolerance",
     "tracing": "solve_at trace trace_both",
 }
-"""Module of each name, as in the imports above."""
+"""Module of each name."""
 
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -1,4 +1,4 @@
-"""Branch switching: directions of the branches at a branch point, and starts on them."""
+"""Branch switching: directions of crossing branches, and starts on them."""
 
 from __future__ import annotations
 
@@ -22,43 +22,40 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 SHORTER, TRIALS = 0.25, 16
-"""Factor and number of trial steps, down to a billionth: if an unknown stands still along the path, its size on the
-other branch is unknown.
+"""Factor and number of trial steps: an unknown that stands still along the path has no known size on
+the other branch.
 """
 
 SAME_LINE = 1.0 - 1e-5
-"""Cosine between the two rays of one smooth branch, extrapolated from its points."""
+"""Cosine between both extrapolated rays of one branch."""
 
 ROUND_OFF_SHARE = 1e-12
-"""A tangent component below this part of the largest may be round-off."""
+"""A smaller tangent component, relative to the largest, may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
-    """Return the directions of the branches that cross at a branch point.
+    """Return the directions of the branches at a branch point.
 
     At a simple one they solve the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the
-    kernel (Keller 1977; Allgower and Georg, Section 8.1). If H' loses two or three ranks, they are zeros of the reduced
-    equations on a small sphere.
+    kernel (Keller 1977; Allgower and Georg, Section 8.1), else the reduced equations on a small sphere.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The traced one.
     event : LocatedEvent
         Kind BRANCH_POINT or SINGULAR_POINT.
 
     Returns
     -------
     (known, other, ...) : ndarray, shape (N + 1,)
-        Unit Euclidean vectors; `known` is the path's. A simple branch point has one other.
+        Euclidean unit vectors; `known` is the path's.
 
     Raises
     ------
     TypeError, ValueError
         If the event is no branch point.
     ArithmeticError
-        If an event from a file, which stores no directions, is not resolved again, or several ranks are lost and
-        branches are not isolated.
+        If directions are not stored (events from files) and not found, or branches are not isolated.
     """
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         found: list[Array] = []
@@ -72,7 +69,7 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
 
 
 def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> list[Leaving]:
-    """Return all branches at a multiple branch point, the path's own first: back, then onward.
+    """Return all branches at a multiple branch point; the first are the path's, back and onward.
 
     Parameters
     ----------
@@ -80,7 +77,7 @@ def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> 
     event : LocatedEvent
         Kind SINGULAR_POINT.
     step : float, default 1e-2
-        Distance of the points found, in the metric.
+        Distance of the points found.
 
     Raises
     ------
@@ -91,7 +88,7 @@ def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> 
 
 
 def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
-    """Return the rays back, onward, and both of the other branch; for an event from a file, compute them again.
+    """Return the rays back, onward and both of the other branch, stored or recomputed.
 
     Parameters
     ----------
@@ -104,7 +101,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
     TypeError, ValueError
         If the event is no simple branch point.
     ArithmeticError
-        If the rays are not found again.
+        If no rays are found.
     """
     if not isinstance(event, LocatedEvent):
         raise complain(TypeError, "event", "a located event of a path", event)
@@ -122,7 +119,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
 
 
 def metric_at(event: LocatedEvent) -> Array:
-    """Return the metric at the event; for an event from a file, from its tangent."""
+    """Return the metric at the event, stored or from its tangent."""
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)
@@ -132,26 +129,25 @@ def metric_at(event: LocatedEvent) -> Array:
 def switch_branch(
     homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
 ) -> tuple[tuple[Array, Array], ...]:
-    """Return starts on the crossing branch, on both sides of the branch point; at a kink, starts on its other rays.
+    """Return starts on the other branches of a branch point or kink.
 
-    Each start is a pair (u, v): a corrected point at about `step` from the branch point (at a kink, the kink itself)
-    and the direction away from it. Pass it to ``trace(homotopy, start=...)``.
+    Each is a pair (u, v), a corrected point (the kink itself) and the direction away, for ``trace(homotopy,
+    start=...)``.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The traced one.
     event : LocatedEvent
-        A simple or multiple branch point, or a kink.
+        A branch point or kink.
     step : float, default 1e-2
-        Distance of the starts in the path's metric, a fraction of its extent; shorter if the corrector fails.
+        Distance of the starts in the path's metric; shorter if the corrector fails.
     ray : int, optional
-        At a kink: one of its `rays`. Default: all that the path did not use.
+        One of a kink's `rays`. Default: all that the path did not use.
 
     Returns
     -------
     two pairs (u, v) of ndarray, shape (N + 1,)
-        At a kink one pair for each ray, at a multiple branch point two for each other branch.
+        At a kink one for each ray, at a multiple branch point two for each other branch.
 
     Raises
     ------
@@ -176,7 +172,7 @@ def switch_branch(
 def _start(
     evaluator: Evaluator, u: Array, away: Array, onward: Array, weights: Array, step: float
 ) -> tuple[Array, Array]:
-    """A point of the other branch and its direction, at distance `step` or less."""
+    """A point of the other branch and its direction."""
     border, failed = weights * away, ""
     for h in step * SHORTER ** np.arange(TRIALS):
         guess = u + h * away

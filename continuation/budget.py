@@ -25,11 +25,9 @@ class Budget:
         Parameters
         ----------
         counts : Counts
-            Counts of the path so far.
         seconds : float
-            Elapsed time.
         arclength : float
-            Of the path so far, in the metric of the trace.
+            So far, in the trace's metric.
 
         Returns
         -------

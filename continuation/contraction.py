@@ -1,6 +1,6 @@
-"""Iterations that add increments until one is small, and the ratios at which they stop.
+"""Iterations that add increments until one is small.
 
-If increments shrink by a ratio q < 1, the error after increment d is at most q / (1 - q) |d| (Banach's theorem).
+After increment d the error is at most q / (1 - q) |d| if increments shrink by a ratio q < 1 (Banach's theorem).
 """
 
 from __future__ import annotations
@@ -13,28 +13,23 @@ from attrs import define, frozen
 from continuation.arrays import Array
 
 HALVING = 0.5
-"""At this ratio the last increment bounds the error. Iterative refinement stops there too (Higham, Accuracy and
-Stability of Numerical Algorithms, Section 12.1; LAPACK's xGERFS).
+"""The last increment then bounds the error; iterative refinement stops here too (Higham, Accuracy and Stability of
+Numerical Algorithms, Section 12.1; LAPACK's xGERFS).
 """
 
 RELIABLE = 0.3
-"""Ratio for important decisions: a determinant's sign from a nearby factorisation, series coefficients, the branch of a
-landing.
-"""
+"""For important decisions: determinant signs, series coefficients, branches of landings."""
 
 MONOTONE = 0.9
-"""Ratio of Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), where the limit is
-checked afterwards.
-"""
+"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), for limits checked afterwards."""
 
 
 @frozen
 class Contraction:
-    """When an iteration stops without success.
+    """When an iteration gives up.
 
-    `iterations`: Limit of increments. `ratio`: Largest ratio of successive increments. `first`: Largest first ratio, if
-    different, since first increments may belong to unlike errors. `noise`: Ratios of smaller increments are ignored as
-    round-off.
+    `iterations`: Limit. `ratio`: Largest ratio of increments. `first`: Largest first ratio, if different. `noise`:
+    Smaller increments are round-off, their ratios ignored.
     """
 
     iterations: int
@@ -45,7 +40,7 @@ class Contraction:
 
 @define(eq=False)
 class Iteration:
-    """State of an iteration, readable also after an exception.
+    """State of an iteration.
 
     `x`: Iterate. `size`: Last added increment. `ratio`, `worst`: Last and largest ratio. `count`: Increments computed.
     `stalled`: Stopped for its ratio.
@@ -60,7 +55,7 @@ class Iteration:
     stalled: bool = False
 
     def add(self, step: Array, size: float) -> bool:
-        """Add an increment; return False, without adding, if its ratio is too large."""
+        """Add an increment; False, without adding, if its ratio is too large."""
         rule, k, before = self.rule, self.count, self.size
         self.count = k + 1
         if k:
@@ -78,10 +73,9 @@ class Iteration:
     def run(
         self, increment: Callable[[], Array], measure: Callable[[Array], float], done: Callable[[float], bool]
     ) -> bool:
-        """Add increments; return whether done. Inner loops call `add` instead, for speed.
+        """Add increments; return whether done. Fast loops call `add` themselves.
 
-        `increment`: Returns the increment at `x`. `measure`: Its size. `done`: Whether an added increment of that size
-        is the last.
+        `increment`: Next increment at `x`. `measure`: Its size. `done`: Whether a size ends the iteration.
         """
         self.count = 0
         while self.count < self.rule.iterations:

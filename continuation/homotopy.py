@@ -1,4 +1,4 @@
-"""Protocols of plug-ins: two methods, and optional capabilities found by presence."""
+"""Protocols of plug-ins: two methods, and optional capabilities."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.metric import Metric
 
 
 class Homotopy(Protocol):
-    """A map H: R^N x R -> R^N whose zeros form the path; needs no base class."""
+    """A map H: R^N x R -> R^N whose zeros form the path; no base class."""
 
     def start(self) -> tuple[Array, float]:
         """Return a point (y0, lam0) on or near the path."""
@@ -38,7 +38,7 @@ class Homotopy(Protocol):
 
 @runtime_checkable
 class SupportsJacobian(Protocol):
-    """The derivative; default: products with `differential`, jets, complex step or differences."""
+    """The derivative; default: `differential`, jets, complex step or differences."""
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """Return (H_y, H_lam).
@@ -58,9 +58,9 @@ class SupportsJacobian(Protocol):
 
 @runtime_checkable
 class SupportsSparsity(Protocol):
-    """Sparsity of H_y for homotopies without `jacobian`; default: searched from 64 unknowns on.
+    """Sparsity of H_y without `jacobian`; default: searched from 64 unknowns on.
 
-    Dense or sparse, shape (N, N); nonzeros count. H_y is computed by groups of columns without common equations; one
+    Shape (N, N), dense or sparse; nonzeros count. Columns without common equations are differentiated together; one
     more product finds missing entries.
     """
 
@@ -69,7 +69,7 @@ class SupportsSparsity(Protocol):
 
 @runtime_checkable
 class SupportsTarget(Protocol):
-    """Final parameter value; default 0, None for no target."""
+    """Final parameter value, or None; default 0."""
 
     target: float | None
 
@@ -79,14 +79,14 @@ class SupportsBordered(Protocol):
     """An own factorisation of [[H_y, H_lam], [border]]."""
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix at (y, lam).
+        """Factor the bordered matrix.
 
         Parameters
         ----------
         y : ndarray, shape (N,)
         lam : float
         border : ndarray, shape (N + 1,)
-            The last row.
+            Last row.
 
         Returns
         -------
@@ -97,17 +97,16 @@ class SupportsBordered(Protocol):
 
 @runtime_checkable
 class SupportsDifferential(Protocol):
-    """H' times a vector: with `bordered`, no matrix is formed; alone, H' is built from products."""
+    """H' times a vector: replaces a matrix with `bordered`, builds one without."""
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """Return H_y v_y + H_lam v_lam, shape (N,).
+        """Return H_y v_y + H_lam v_lam.
 
         Parameters
         ----------
         y : ndarray, shape (N,)
         lam : float
         v : ndarray, shape (N + 1,)
-            Direction (v_y, v_lam).
 
         Returns
         -------
@@ -130,7 +129,7 @@ class TangentPoint(Protocol):
         ...
 
     def solve(self, r: Array, rho: float = 0.0) -> Array:
-        """Return z, shape (N + 1,), with ``H' z = r``, ``border . z = rho``; the border is dual to the tangent.
+        """Return z with ``H' z = r``, ``border . z = rho``; the border is dual to the tangent.
 
         Parameters
         ----------
@@ -149,12 +148,11 @@ class SupportsTaylor(Protocol):
     """Own path coefficients."""
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
-        """Return c, shape (order + 1, N + 1): u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
+        """Return c: u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
 
         Parameters
         ----------
         point : TangentPoint
-            Expansion point.
         order : int
             Of the last coefficient, at least 1.
 
@@ -177,7 +175,7 @@ class SupportsMaxStep(Protocol):
         u : ndarray, shape (N + 1,)
             A point inside.
         v : ndarray, shape (N + 1,)
-            A direction of any length.
+            Of any length.
 
         Returns
         -------
@@ -195,20 +193,17 @@ class SupportsMetric(Protocol):
 
 @runtime_checkable
 class SupportsExtents(Protocol):
-    """Approximate sizes of unknowns and parameter, positive, shape (N + 1,).
-
-    They give units to unknowns that stay zero; motion below their round-off is ignored.
-    """
+    """Approximate sizes of unknowns and parameter, positive, shape (N + 1,): units of those that stay zero."""
 
     extents: Array
 
 
 @runtime_checkable
 class SupportsBlocks(Protocol):
-    """Unknowns that sample one field; the default metric gives a block one scale."""
+    """Unknowns that sample one field share a scale of the default metric."""
 
     blocks: Sequence[int]
-    """Label 0, 1, ... of each unknown."""
+    """Labels 0, 1, ..."""
 
 
 @runtime_checkable
@@ -216,7 +211,7 @@ class SupportsFinish(Protocol):
     """The problem's own end, tried after accepted steps."""
 
     def finish(self, y: Array, lam: float) -> Array | None:
-        """Return the certified end at the target, or None to continue.
+        """Return the certified end, or None.
 
         Parameters
         ----------
@@ -235,7 +230,7 @@ class SupportsObserve(Protocol):
     """Extra scalars stored with each point."""
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Return named scalars, with the same names at every point.
+        """Return scalars, the same names at every point.
 
         Parameters
         ----------
@@ -251,13 +246,13 @@ class SupportsObserve(Protocol):
 
 @runtime_checkable
 class SupportsNames(Protocol):
-    """Names for axes, tables and archives; each is optional."""
+    """Names for axes, tables and archives; all optional."""
 
     parameter_name: str
     names: Sequence[str]
     """One for each unknown."""
     units: Mapping[str, str]
-    """Maps names of parameter, unknowns and observed scalars to units."""
+    """By name of parameter, unknown or observed scalar."""
 
 
 @runtime_checkable
@@ -269,14 +264,13 @@ class SupportsEvents(Protocol):
 
 @runtime_checkable
 class SupportsPieces(Protocol):
-    """A piecewise smooth map: smooth where no switching function changes sign, continuous elsewhere.
+    """A continuous map, smooth where no switch changes sign.
 
-    The map has `start`, `residual`, `target`, `max_step`, `metric`, `events`, `finish`, `observe`; its pieces have
-    `jacobian`, `bordered`, `differential`, `taylor`.
+    Its pieces have `jacobian`, `bordered`, `differential`, `taylor`; the map has everything else.
     """
 
     def switches(self, y: Array, lam: float) -> Array:
-        """Return smooth switching functions, shape (m,); none vanishes along a path.
+        """Return smooth switches, shape (m,), that do not vanish along a path.
 
         Parameters
         ----------
@@ -286,7 +280,7 @@ class SupportsPieces(Protocol):
         ...
 
     def piece(self, signs: Array) -> Homotopy:
-        """Return the smooth homotopy for these signs, defined slightly beyond its borders.
+        """Return the smooth homotopy for these signs, defined slightly beyond.
 
         Parameters
         ----------
@@ -302,7 +296,7 @@ class SupportsPieces(Protocol):
 
 
 class SupportsBox(Protocol):
-    """Default box, for callers without target, events and box."""
+    """Box for callers without target, events and box."""
 
     box: Box
 
@@ -322,5 +316,5 @@ def _names(protocol: Any) -> tuple[str, ...]:
 
 
 def offers(part: Any, protocol: Any) -> bool:
-    """Return whether an object has the attributes of a Protocol; ten times as fast as `isinstance`."""
+    """Return whether an object has a Protocol's attributes: ten times as fast as `isinstance`."""
     return all(getattr(part, name, None) is not None for name in _names(protocol))

@@ -18,14 +18,14 @@ class Metric(Protocol):
     """Weights of the inner product at a point."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return positive weights, shape (N + 1,).
+        """Return positive weights.
 
         Parameters
         ----------
         u, v : ndarray, shape (N + 1,)
-            Point (y, lam) and a path direction of any length and sign.
+            Point (y, lam), and a path direction of any length and sign.
         current : ndarray or None
-            Last weights; None at the start. A constant metric returns them.
+            Last weights; None at the start.
         """
         ...
 
@@ -41,7 +41,7 @@ def norm(weights: Array, a: Array) -> float:
 
 
 def share(weights: Array, v: Array) -> float:
-    """The parameter's share of the squared length of v."""
+    """The parameter's part of the squared length of v."""
     return float(weights[-1] * v[-1] ** 2 / dot(weights * v, v))
 
 
@@ -56,16 +56,15 @@ class Euclidean:
 
 @frozen
 class Weighted:
-    """Given weights: for y (one number, or one a component) and for the parameter.
-
-    ``Weighted(1 / N, 1)`` is the root-mean-square metric.
+    """Given weights of y (one, or one a component) and of the parameter; ``Weighted(1 / N, 1)`` is the root-mean-square
+    metric.
     """
 
     y: float | Array = 1.0
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the given weights as one array."""
+        """Return the given weights."""
         if current is not None:
             return current
         weights = np.empty_like(u)
@@ -78,25 +77,22 @@ class Weighted:
 
 @frozen
 class RootMeanSquare:
-    """Weights 1/N on y, 1 on the parameter: the L2 norm of a discretised function."""
+    """The L2 norm of a discretised function: weights 1/N on y, 1 on the parameter."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return 1/N for y, 1 for the parameter."""
+        """Return the weights."""
         return Weighted(1.0 / (u.size - 1)).weights(u, v, current)
 
 
 @frozen
 class Relative:
-    """Weights 1/max(|u_i|, floor)^2, updated at each point, and a fixed one for the parameter.
-
-    For interior paths, whose components differ by orders of magnitude.
-    """
+    """Weights 1/max(|u_i|, floor)^2 at each point, and a fixed one for the parameter: for interior paths."""
 
     floor: float = field(default=1e-12, validator=POSITIVE_FINITE)
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return 1/max(|u_i|, floor)^2, and `lam` for the parameter."""
+        """Return the weights."""
         weights: Array = np.maximum(np.abs(u), self.floor) ** -2
         weights[-1] = self.lam
         return weights
@@ -106,18 +102,17 @@ class Relative:
 class Automatic:
     """Each component in units of how far the path has gone in it; independent of units and origin.
 
-    ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``. The extent S is, at the start, how far
-    each component goes until the path turns (`continuation.step.extent`), later at least its distance from the start.
-    Changes y -> D y + c, lam -> a lam + b, H -> E H keep lengths and angles, so the steps are the same; the mean makes
-    lengths independent of N.
+    ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``. The extent S is how far a component goes
+    until the path turns (`continuation.step.extent`), later at least its distance from the start. Changes y -> D y + c,
+    lam -> a lam + b, H -> E H keep the steps.
 
     Parameters
     ----------
     share : float
-        Weight of the parameter; it decides how sharp a turning point looks. Between 0.1 and 0.3 factorisations on
-        twelve problems differ by less than a tenth (examples/benchmarks/units).
+        Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth
+        (examples/benchmarks/units).
     blocks : ndarray of int, shape (N,), optional
-        Labels; unknowns of one label get one scale, that of the farthest.
+        Labels; unknowns of one label get the largest scale among them.
     """
 
     share: float = field(default=0.2, validator=FRACTION)
@@ -125,11 +120,11 @@ class Automatic:
 
     @property
     def longest(self) -> float:
-        """Longest step: it at most doubles the known extent."""
+        """Longest step: it doubles the known extent."""
         return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the current weights, else weights from the direction `v`."""
+        """Return the current weights, else those for `v`."""
         if current is not None:
             return current
         size = np.abs(v)
@@ -153,7 +148,7 @@ class Automatic:
         return weights
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """Return the weights at `u` on a path from `origin`.
+        """Return the weights at `u`.
 
         Parameters
         ----------
@@ -164,17 +159,17 @@ class Automatic:
 
 @frozen(eq=False)
 class Inherited:
-    """`Automatic` for a branch: each scale is at least a part of the scale where the branch leaves.
+    """`Automatic` for a branch, with scales bounded below by its trunk's.
 
-    Components that stand still there have no scale of their own; their median would shrink from branch to branch.
+    The scale of components that stand still would shrink from branch to branch.
 
     Parameters
     ----------
     before : ndarray, shape (N + 1,)
         Weights where it leaves.
     part : float
-        On four successive pitchforks 0.01 starts the third generation a thousandth as far away as the first; 0.1 is
-        good.
+        Of the old scale. On four successive pitchforks 0.01 starts the third generation a thousandth as far away as the
+        first; 0.1 is good.
     """
 
     before: Array
@@ -187,11 +182,11 @@ class Inherited:
         return self.automatic.longest
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the weights of `Automatic`, bounded."""
+        """As of `Automatic`, bounded."""
         return self._bounded(self.automatic.weights(u, v, current))
 
     def of_extent(self, extent: Array) -> Array:
-        """Return the weights of `Automatic`, bounded.
+        """As of `Automatic`, bounded.
 
         Parameters
         ----------
@@ -200,7 +195,7 @@ class Inherited:
         return self._bounded(self.automatic.of_extent(extent))
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """Return the weights of `Automatic`.
+        """As of `Automatic`.
 
         Parameters
         ----------
@@ -222,7 +217,7 @@ class SupportsExtent(Protocol):
 
     @property
     def longest(self) -> float:
-        """Longest step, in its own length."""
+        """Longest step."""
         ...
 
     def of_extent(self, extent: Array) -> Array:
@@ -231,7 +226,7 @@ class SupportsExtent(Protocol):
         Parameters
         ----------
         extent : ndarray, shape (N + 1,)
-            How far the path goes in each component; positive.
+            How far the path goes in each component.
 
         Returns
         -------
@@ -245,9 +240,8 @@ class SupportsExtent(Protocol):
         Parameters
         ----------
         current : ndarray, shape (N + 1,)
-            Last weights.
         origin, u : ndarray, shape (N + 1,)
-            Start of the path, and current point.
+            The path's start, and its point.
 
         Returns
         -------

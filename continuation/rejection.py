@@ -48,11 +48,10 @@ class Rejected:
         Step length.
     reason : Rejection
     detail : str
-        Details.
     contraction : float
-        Largest ratio of corrector increments; nan if unknown.
+        Largest ratio of corrector increments, or nan.
     factor : float
-        Suggested next step, relative to h.
+        Next step, relative to h.
     """
 
     h: float

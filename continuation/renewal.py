@@ -1,7 +1,4 @@
-"""`follow`: a path in unknowns renewed along it, such as adapted meshes.
-
-After some steps of a plain trace, the homotopy gives another one in better unknowns, and a new trace continues there.
-"""
+"""`follow`: a path in unknowns renewed along it, such as adapted meshes, by successive traces."""
 
 from __future__ import annotations
 
@@ -28,13 +25,13 @@ from continuation.tracing import trace
 
 @runtime_checkable
 class SupportsRenewal(Protocol):
-    """Unknowns that suit a part of a path; used by `follow`."""
+    """Unknowns that suit a part of a path, for `follow`."""
 
     renewed_at: Sequence[str]
-    """Names of own events that end a trace for renewal."""
+    """Own events that end a trace for renewal."""
 
     def renewed(self, u: Array, v: Array) -> tuple[Any, Array, Array]:
-        """Return another homotopy with the same number of unknowns, and point and direction in its unknowns.
+        """Return another homotopy of equal size, and point and direction in its unknowns.
 
         Parameters
         ----------
@@ -56,13 +53,13 @@ class Followed:
     ----------
     homotopies : tuple
     paths : tuple of Path
-        One for each; each begins where the last ends.
+        One for each.
     """
 
     homotopies: tuple[Any, ...]
     paths: tuple[Path, ...]
     path: Path = field(init=False, repr=False)
-    """All steps and events as one path, for pictures and tables of observed scalars."""
+    """All steps and events as one path: observed scalars keep their meaning."""
 
     @path.default
     def _path(self) -> Path:
@@ -81,7 +78,7 @@ class Followed:
         )
 
     def homotopy_of(self, event: Any) -> Any:
-        """Return the homotopy whose unknowns an event or step of `path` has.
+        """Return the homotopy of an event or step of `path`.
 
         Parameters
         ----------
@@ -90,7 +87,7 @@ class Followed:
         number = event.index if isinstance(event, Step) else event.step if isinstance(event, LocatedEvent) else -1
         if not 0 <= number < len(self.path):
             raise complain(ValueError, "event", "an event or a step of this path", event)
-        # A part's last point has the part's unknowns; the next part starts from it in its own.
+        # The last point of a part has the part's unknowns.
         ends = np.cumsum([len(path) - 1 for path in self.paths])
         return self.homotopies[int(np.searchsorted(ends, number))]
 
@@ -101,8 +98,8 @@ def follow(
 ) -> Followed:
     """Trace a path and renew the homotopy every few steps, for example its mesh.
 
-    Closed curves are not recognised across renewals, and each part counts event occurrences anew. Budgets other than
-    steps hold for one part.
+    Closed curves are not recognised across renewals; event occurrences, and budgets other than steps, count for one
+    part.
 
     Parameters
     ----------
@@ -111,7 +108,7 @@ def follow(
     every : int, default 5
         Steps between renewals.
     archive : path, default None
-        New HDF5 file with the parts as paths; `continuation.archive.resume` continues the last part.
+        New HDF5 file, one path a part; `continuation.archive.resume` continues the last part.
     {options}
 
     Returns
@@ -147,5 +144,5 @@ def follow(
             renewed, *asked["start"] = homotopies[-1].renewed(last.u, last.tangent)
             homotopies.append(renewed)
             controller: Any = asked.get("controller") or (asked.get("preset") or DEFAULT).controller
-            # Keep the step length: a new trace would begin with short steps.
+            # A new trace would begin with short steps.
             asked["controller"] = evolve(controller, bounds=evolve(controller.bounds, initial=last.step_length))

@@ -1,7 +1,7 @@
 """Stability along a path: eigenvalues, Hopf points, and an eigenvalue count.
 
-The flow is dy/dt = side H(y, lam). A point is stable if all eigenvalues of side H_y have negative real parts. Real
-eigenvalues cross zero at turning points and branch points, complex pairs cross the axis at Hopf points.
+A point is stable in dy/dt = side H(y, lam) if all eigenvalues of side H_y have negative real parts. Complex pairs cross
+the axis at Hopf points, real eigenvalues at turning points and branch points.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns, where eigenvalues are cheaper than a step, arcs are sampled inside: within one step a pair may
-cross, become real, and one of the two return through a turning point (MatCont's catalyst).
+"""Up to 30 unknowns, where eigenvalues cost less than a step, arcs are sampled inside: a pair may cross, become real,
+and one return through a turning point (MatCont's catalyst).
 """
 
 EVENT_MARGIN = 0.02
-"""An event this near, in arc lengths, may change the count on an interval."""
+"""Events this near, in arc lengths, may change an interval's count."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
-"""Largest number of eigenvalues that cross at an event."""
+"""Largest number of eigenvalues crossing at an event."""
 
 SPECTRA_KEPT = 12
-"""Spectra kept: those along an arc, and an event's."""
+"""Enough for an arc and an event."""
 
 ON_AXIS = 1e-6
-"""Largest real part of a Hopf pair, relative to its modulus; otherwise a pair appeared or vanished."""
+"""Largest relative real part of a Hopf pair; otherwise a pair appeared or vanished."""
 
 LOCATED_TO = 1e-12
 """Accuracy of a location, in arc lengths."""
@@ -51,7 +51,7 @@ ZERO_RESOLVED = 1e-14
 """Relative real part that is round-off."""
 
 SECANTS, ROUGH = 10, 1e-8
-"""Limit of secant steps for a followed pair; relative real part from which one more step reaches round-off."""
+"""Limit of secant steps; relative real part from which one more step reaches round-off."""
 
 
 @frozen
@@ -61,7 +61,7 @@ class HopfPoint:
     Parameters
     ----------
     side : {1, -1}, default 1
-        Sign in dy/dt = side H(y, lam); it changes stored counts, not Hopf points.
+        In dy/dt = side H(y, lam); affects stored counts only.
     k : int, optional
         Number of rightmost eigenvalues, by Arnoldi's method. Default: all up to 100 unknowns, else 6.
     terminal : int, default 0
@@ -78,7 +78,7 @@ class HopfPoint:
     name: str = field(default="Hopf point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """Return a constant: only the `bound` event sees H_y."""
+        """Return 1: only the `bound` event sees H_y."""
         return 1.0
 
     def bound(self, evaluator: Evaluator) -> BoundHopf:
@@ -87,7 +87,6 @@ class HopfPoint:
         Parameters
         ----------
         evaluator : Evaluator
-            Evaluator of the homotopy.
         """
         evaluator.keeping = True
         return BoundHopf(evaluator, *astuple(self))
@@ -97,10 +96,10 @@ class HopfPoint:
 class Stability:
     """An observer that stores the stability of each point and locates Hopf points.
 
-    Each point and event gets ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the largest
-    real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis, or nan; ``"covered"``, 1 if
-    no unstable eigenvalue can be missing. Pictures show stable parts solid, others dashed. A `Symmetric` H_y gives
-    ``"unstable"`` only.
+    Points and events get ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the largest
+    real part; ``"frequency"``, the imaginary part of the pair nearest to the axis, or nan; ``"covered"``, 1 if no
+    unstable eigenvalue can be missing. A `Symmetric` H_y gives ``"unstable"`` only. Pictures show unstable parts
+    dashed.
 
     Parameters
     ----------
@@ -114,7 +113,7 @@ class Stability:
 
     @property
     def events(self) -> tuple[HopfPoint, ...]:
-        """Watched events: ``trace_both(homotopy, events=Stability().events)`` does the same."""
+        """Watched events; ``trace_both(homotopy, events=Stability().events)`` does the same."""
         return (HopfPoint(self.side, self.k, self.terminal),)
 
     def step(self, tracer: Any, step: Step) -> None:
@@ -141,7 +140,7 @@ class BoundHopf:
     _known: dict[Any, Spectrum] = field(factory=dict, init=False)
 
     def at(self, u: Array) -> Spectrum:
-        """Return the eigenvalues at a point, on the current piece."""
+        """Return the eigenvalues at a point."""
         key = (id(self.evaluator.homotopy), u.tobytes())
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
@@ -166,7 +165,7 @@ class BoundHopf:
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
     def observe(self, u: Array) -> dict[str, float]:
-        """Return the stored scalars of a point."""
+        """Return a point's stored scalars."""
         found = self.at(u)
         if not found.values.size:
             return {"unstable": float(found.unstable)}
@@ -180,7 +179,7 @@ class BoundHopf:
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs
-            # Real eigenvalues that become a pair, or the reverse, change only the number of pairs.
+            # Pairs that become real, or the reverse, change only the number of pairs.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
             ranks, ends = range(min(p, q), max(p, q)), ((left, before), (right, after))
@@ -191,13 +190,13 @@ class BoundHopf:
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
-        """Spectra at the ends of an arc, and inside if cheap."""
+        """Spectra at an arc's ends, and inside if cheap."""
         inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
-        """Real part of the pair of a rank, rightmost first; smooth if that pair crosses alone."""
+        """Real part of the pair of a rank, rightmost first."""
         found = self.at(u)
         if rank >= found.pairs.size:
             return -found.size
@@ -213,9 +212,8 @@ class BoundHopf:
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
     def _searched(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> float | None:
-        """Zero of a pair's real part by Brent's method on spectra; None if it jumps.
-
-        A pair made of two real eigenvalues jumps.
+        """Zero of a pair's real part by Brent's method on spectra; None if it jumps, as for a pair of two real
+        eigenvalues.
         """
 
         def real_part(t: float) -> float:
@@ -224,16 +222,16 @@ class BoundHopf:
             return self._real_part(u, rank)
 
         if real_part(left) * real_part(right) > 0.0:
-            # The segment shows a crossing that the path lacks.
+            # The path lacks the segment's crossing.
             return None
         return float(brentq(real_part, left, right, xtol=LOCATED_TO, rtol=LOCATED_TO, disp=False))
 
     def _followed(
         self, solver: PathSolver, arc: Arc, ends: Sequence[tuple[float, Spectrum]], rank: int
     ) -> float | None:
-        """Zero of a pair's real part by following the pair with one factorisation; None if that fails.
+        """Zero of a pair's real part by following it; None if that fails.
 
-        A spectrum of 2000 unknowns costs five times as much as H_y and the solves for one pair.
+        With 2000 unknowns a spectrum costs five times as much as H_y and these solves.
         """
         (left, before), (right, after) = ends
         if arc.a.u.size - 1 == before.values.size or rank >= min(before.pairs.size, after.pairs.size):
@@ -259,7 +257,7 @@ class BoundHopf:
         return None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
-        """Return whether the events on an arc explain the change in the number of unstable eigenvalues."""
+        """Return whether an arc's events explain its change in unstable eigenvalues."""
         length = position(arc, arc.b.u)
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):

@@ -12,30 +12,28 @@ from continuation.arrays import Array
 from continuation.metric import norm
 
 LEAST_TOLERANCE = sys.float_info.epsilon**2
-"""Least tolerance, as a fraction of the path: an increment at round-off leaves an error of about its square."""
+"""As a fraction of the path: the error after an increment at round-off."""
 
 
 @frozen
 class Tolerance:
-    """An increment d is small if ``|d|_W <= relative``, in the metric of the path.
+    """An increment d is small if ``|d|_W <= relative``, in the metric of the path: a fraction of the path, by default.
 
-    In the default metric this is a fraction of the path. After Newton's last increment the error is about its square.
-    So a tolerance up to the root of round-off (the default) asks for residuals at round-off, a looser one for errors of
-    about its square.
+    Newton's error is about the last increment's square. So up to the root of round-off (the default) residuals must be
+    round-off; looser tolerances accept errors of about their square.
 
     Attributes
     ----------
     relative : float
-        Bound of the last increment.
     residual : float
-        Bound of the residual; default infinity: only increments and round-off count.
+        Largest residual; default infinity: increments and round-off decide.
     """
 
     relative: float = field(default=1e-8, validator=FRACTION)
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, weights: Array) -> float:
-        """Return the length of an increment in units of the tolerance.
+        """Return an increment's length in tolerances.
 
         Parameters
         ----------
@@ -49,7 +47,7 @@ class Tolerance:
 def as_tolerance(value: float | Tolerance) -> Tolerance:
     """Return a Tolerance, from a number as its relative part.
 
-    Raises `TypeError` for other types, `ValueError` unless the number is between round-off squared and 1.
+    `TypeError` for other types, `ValueError` unless round-off squared <= number < 1.
     """
     expected = "a positive finite number or a Tolerance"
     if not isinstance(value, Tolerance):

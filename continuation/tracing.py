@@ -47,12 +47,12 @@ def trace(
     archive : path or PathLog, default None
         New HDF5 file for the path.
     save_every : int, default 1
-        Write every n-th step; ends and events are always written.
+        Write every n-th step, and ends and events.
     progress : bool, default False
-        Show a progress bar (by tqdm if installed).
+        Show progress, by tqdm if installed.
     certified : bool, default False
-        Prove the path (`continuation.certify`) and shorten steps until that succeeds; `path.proof` and the message give
-        the result. The residual must accept interval arrays.
+        Prove the path (`continuation.certify`), with shorter steps if needed; see `path.proof`. The residual must
+        accept interval arrays.
     observers : sequence of Observer, default ()
         Watch the trace: a plot, a log.
     state : State, default None
@@ -62,14 +62,14 @@ def trace(
     Returns
     -------
     Path
-        `success`, `status`, `message`, points, events and counts; also for a failed path.
+        With `success`, `status`, `message`, points, events and counts, also after a failure.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input: missing methods, a start that is not finite, an unknown option.
+        For bad input.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with the path so far in ``interrupt.path`` and in the archive.
+        After Ctrl-C: a KeyboardInterrupt with ``interrupt.path``, which the archive has too.
     """
     check_run(observers, state)
     for name, flag in (("progress", progress), ("certified", certified)):
@@ -113,7 +113,7 @@ def trace_both(
     ----------
     homotopy : Homotopy
     archive : path, default None
-        New HDF5 file with two paths, one for each half.
+        New HDF5 file with the halves as two paths.
     progress : bool, default False
     {options}
 
@@ -146,7 +146,7 @@ def trace_both(
 
 
 def solve_at(homotopy: Any, lam: float, guess: Any = None, tolerance: float | Tolerance = 1e-8) -> Array:
-    """Solve H(y, lam) = 0 for y at a parameter value, by Newton's method.
+    """Solve H(y, lam) = 0 for y by Newton's method.
 
     Parameters
     ----------

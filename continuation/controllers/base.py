@@ -1,4 +1,4 @@
-"""The controller protocol: frozen settings, and a state of floats for archives."""
+"""The controller protocol; its state is floats, for archives."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ class StepMeasures:
     Attributes
     ----------
     h : float
-        Step length, in arclength.
+        Step length.
     rejection : Rejection or None
-        Reason of an early failure; the measures below are valid only for None.
+        Reason of an early failure; the other measures need None.
     iterations : int
         Corrector increments.
     contraction : float
-        Worst ratio of successive increments.
+        Worst ratio of increments.
     distance : float
         Length of the correction.
     angle : float
         Between the tangents, radians.
     order : int
-        The predictor's order p: distance is O(h^(p + 1)).
+        Predictor's order p: distance is O(h^(p + 1)).
     rejections : int
         Earlier attempts at this step.
     """
@@ -71,9 +71,8 @@ class Bounds:
     minimum : float, default 1e-10
         The path ends below it.
     maximum : float, default inf
-        Largest step.
     initial : float or None, default None
-        First step. None: from the problem (`continuation.step.extent`) or the controller.
+        None: from the problem (`continuation.step.extent`) or the controller.
     """
 
     minimum: float = field(default=1e-10, validator=POSITIVE_FINITE)
@@ -89,7 +88,7 @@ class Bounds:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
     def cap(self, h: float) -> float:
-        """Return the step, at most the maximum; the tracer checks the minimum.
+        """Return the step, at most the maximum.
 
         Parameters
         ----------
@@ -102,18 +101,18 @@ class Bounds:
         return min(h, self.maximum)
 
     def beginning_with(self, usual: float) -> Bounds:
-        """Return bounds with this first step, unless they have one.
+        """Return bounds with a first step.
 
         Parameters
         ----------
         usual : float
-            The controller's first step.
+            Used unless `initial` is given.
         """
         return self if self.initial is not None else evolve(self, initial=max(self.cap(usual), self.minimum))
 
     @property
     def longest(self) -> float:
-        """First step, for controllers that return to it after every step."""
+        """First step, for controllers that return to it."""
         return self.maximum if self.initial is None else self.cap(self.initial)
 
 
@@ -137,12 +136,11 @@ class Controller(Protocol):
         ...
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Judge an attempt; a pure function, so that resumed runs decide alike.
+        """Judge an attempt; pure, so that resumed runs decide alike.
 
         Parameters
         ----------
         state : tuple of float
-            From `init` or the last decision.
         attempt : StepMeasures
 
         Returns

@@ -12,12 +12,10 @@ from continuation.citation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINB
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
-"""Least shrink factor of a rejected step: asymptotics that do not hold yet would repeat it."""
+"""Least shrink factor of a rejected step, where asymptotics do not hold yet."""
 
 STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
-"""Lower bounds that keep PITCON's formula from division by zero: the next step's turn in radians, its curvature
-relative to the last, the contraction.
-"""
+"""Lower bounds in PITCON's formula against division by zero: turn in radians, relative curvature, contraction."""
 
 
 def _of_fixed(bounds: Any) -> Bounds:
@@ -36,7 +34,7 @@ def _of_series(bounds: Any) -> Bounds:
 
 @frozen
 class Fixed:
-    """A constant step, `bounds.initial` (0.1); a failing step is halved, then restored."""
+    """A constant step, `bounds.initial` (0.1); failures halve it once."""
 
     bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
     max_angle: float = field(default=0.8, validator=POSITIVE)
@@ -56,8 +54,7 @@ class Fixed:
 class Geometric:
     """Backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, with l = 0 first at every point.
 
-    `bounds.initial` is the longest step (1, as in the paper). Any angle is accepted, so it may jump between paths: for
-    comparison only.
+    `bounds.initial` is the longest step (1). It accepts any angle and may jump between paths: for comparison only.
     """
 
     ratio: float = field(default=0.5, validator=FRACTION)
@@ -68,7 +65,7 @@ class Geometric:
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Return to the longest step after success; multiply by the ratio after failure."""
+        """Longest step after success, else times the ratio."""
         if attempt.converged:
             return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h * self.ratio, state)
@@ -76,7 +73,7 @@ class Geometric:
 
 @frozen
 class IterationCount:
-    """The step grows if the corrector needs fewer increments than `target`, and shrinks if more."""
+    """Grows the step if the corrector needs fewer than `target` increments, else shrinks it."""
 
     target: int = field(default=3, validator=integer(1))
     grow: float = field(default=2.0, validator=FACTOR)
@@ -100,15 +97,15 @@ class IterationCount:
 class AllgowerGeorg:
     """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
 
-    For a predictor of order p contraction and distance behave like h^(p + 1), the angle like h. Each measure over its
-    goal gives a factor; the worst divides the step. An attempt beyond `deceleration` times a goal is rejected.
+    Contraction and distance behave like h^(p + 1) for predictor order p, the angle like h; the worst measure over its
+    goal scales the step.
 
     Parameters
     ----------
     contraction, distance, angle : float
         Goals; distance relative to the step, angle in radians.
     deceleration, acceleration : float
-        Accepted excess over a goal; largest growth of the step.
+        Accepted excess over a goal; largest growth.
     bounds : Bounds
     """
 
@@ -133,22 +130,21 @@ class AllgowerGeorg:
         distance = attempt.distance / (self.distance * attempt.h)
         angle = attempt.angle / self.angle
         factor = max(contraction**root, distance**root, angle)
-        # Measures, not roots: at high order a root accepts corrections half as long as the step, and the path jumps.
+        # Measures, not roots: at high order a root accepts corrections of half a step, and paths jump.
         if max(contraction, distance, angle) > self.deceleration:
             return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
-        # The cause of a rejection lies just ahead.
+        # The cause of a rejection is near.
         grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
         return Decision(True, self.bounds.cap(grown), state)
 
 
 @frozen
 class Curvature:
-    """Steps from predicted curvature and corrector quality, as in PITCON (den Heijer and Rheinboldt 1981).
+    """Steps from predicted curvature, as in PITCON (den Heijer and Rheinboldt 1981).
 
-    The last curvature |2 sin(angle / 2)| / h is extrapolated linearly. Then Euler's predictor errs by the ideal
-    distance: h = sqrt(2 distance / curvature). The corrector's contraction adapts the distance. State: last curvature,
-    last length, ideal distance.
+    The curvature |2 sin(angle / 2)| / h is extrapolated linearly; h = sqrt(2 distance / curvature) makes Euler's error
+    the ideal distance, which the contraction adapts. State: last curvature, last length, ideal distance.
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)
@@ -159,7 +155,7 @@ class Curvature:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def _step(self, liked: float, curvature: float) -> float:
-        # PITCON's limit: never turn by more than the accepted angle.
+        # PITCON's limit on the turn.
         return min(math.sqrt(2.0 * liked / curvature), self.max_angle / curvature)
 
     def init(self) -> State:
@@ -187,9 +183,9 @@ class Curvature:
 
 @frozen
 class SeriesRange:
-    """The whole range of a series predictor at every step; a failed attempt halves it once.
+    """The whole range of a series predictor; a failure halves it once.
 
-    The range has its own error bound, so only a correction longer than `distance` times the step is refused.
+    The range has its own error bound, so only long corrections are refused.
     """
 
     distance: float = field(default=1e-3, validator=POSITIVE)

@@ -1,4 +1,4 @@
-"""The corrector protocol, and the loop shared by all correctors."""
+"""The corrector protocol and the common loop."""
 
 from __future__ import annotations
 
@@ -26,21 +26,20 @@ class Correction:
     Attributes
     ----------
     u : ndarray, shape (N + 1,)
-        Corrected point, or the last iterate of a failure.
+        Corrected point or last iterate.
     iterations : int
-        Number of increments.
+        Increments.
     residual_norm : float
-        Largest component of H(u); nan if not evaluated.
+        Largest component of H(u), or nan.
     contraction : float
-        Largest ratio of successive increments; 0 for one increment.
+        Largest ratio of increments; 0 for one.
     distance : float
-        Distance from the predicted point in the metric.
+        From the prediction, in the metric.
     rejection : Rejection or None
         Reason of a failure.
     detail : str
-        Details of the failure.
     anchor : Anchor or None
-        Last factorisation made, reusable for the tangent.
+        Last factorisation, for the tangent.
     """
 
     u: Array
@@ -58,7 +57,7 @@ class Correction:
         return self.rejection is None
 
     def rejected(self, h: float) -> Rejected | None:
-        """Return the failure as that of a step of length h; None if converged.
+        """Return the failure of a step of length h, or None.
 
         Parameters
         ----------
@@ -83,7 +82,7 @@ class Corrector(Protocol):
         ----------
         evaluator : Evaluator
         point : Linearization
-            Last accepted point, with a factorisation.
+            Last accepted point.
         predicted : ndarray, shape (N + 1,)
         border : ndarray, shape (N + 1,)
             Keller's correctors keep border . (u - predicted) = 0.
@@ -93,44 +92,43 @@ class Corrector(Protocol):
 
 
 ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
-"""Below this tolerance the residual must be round-off: Newton's last error is about its increment squared."""
+"""Tolerances below demand residuals at round-off: Newton's error is the increment squared."""
 
 TINY = 1e-300
-"""Replaces zero round-off: no residual beside such terms is round-off."""
+"""Replaces zero round-off."""
 
 POLISHING = Contraction(iterations=12)
-"""Enough chord steps from the tolerance to round-off, if each halves the increment."""
+"""Enough halving chord steps from the tolerance to round-off."""
 
 RESIDUAL_NOISE = 32.0
-"""Largest round-off residual, in units of `Evaluator.round_off`, which samples once while H sums many terms."""
+"""Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
 
 
 FAR_FROM_ROUND_OFF = 30.0 * RESIDUAL_NOISE
-"""A residual this large after polishing deserves a new factorisation."""
+"""Such a residual after polishing deserves a factorisation."""
 
 POLISHING_ROUNDS = 10
-"""Limit of rounds, while they help: near a pole Newton's method is slow at first."""
+"""Limit of helpful rounds: near a pole Newton begins slowly."""
 
 
 def level(r: Array, terms: Array) -> float:
-    """Return the largest residual component relative to its round-off."""
+    """Return the largest residual relative to its round-off."""
     return largest(r / np.maximum(terms, TINY))
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
-    """Return whether a residual component at u is far above its round-off."""
+    """Return whether a residual at u is far above round-off."""
     r = evaluator.residual(u)
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
 INCREMENT_LEAVES = 0.5
-"""Largest part of a residual that a valid increment leaves in the linear equations."""
+"""Largest part of a residual left by a valid increment."""
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
-    """Return whether a point with a small Newton increment is a zero of H.
-
-    Either the residual is round-off or, if it has other noise, the increment solves the linear equations.
+    """Return whether H vanishes where Newton's increment is small: its residual is round-off, or noise with a valid
+    increment.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -143,7 +141,7 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
 
 
 SAME_TERMS = 0.1
-"""A component changed by less than this part keeps about the same round-off."""
+"""A component that changes less keeps its round-off."""
 
 
 def _alike(u: Array, v: Array) -> bool:
@@ -152,7 +150,7 @@ def _alike(u: Array, v: Array) -> bool:
 
 @define(eq=False)
 class _Terms:
-    """Noise level of H at a point: sampled once, twice if it matters."""
+    """Noise level of H, sampled twice if it matters."""
 
     evaluator: Evaluator
     u: Array
@@ -162,7 +160,7 @@ class _Terms:
     least: Array
 
     def level(self, r: Array, most: float = np.inf) -> float:
-        """Return the residual relative to the noise; one above `most` needs no second sample."""
+        """Residual relative to noise; above `most` no second sample."""
         found = largest(r / self.terms)
         if not self.twice and RESIDUAL_NOISE < found <= most:
             self.twice = True
@@ -192,9 +190,8 @@ def iterate(
 ) -> Correction:
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
-    An increment that exceeds `max_contraction` times the last ends the iteration: a wandering corrector finds another
-    branch, and a shorter step is cheaper. Near the tolerance, where round-off spoils ratios, only the iteration limit
-    counts. `direction` may add factorisations to `anchors`; the result has the last one.
+    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
+    where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, _rule(max_iterations, max_contraction)), point.weights
     r, found, done = predicted, False, False
@@ -211,15 +208,14 @@ def iterate(
             done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
-            # Polish by the residual: an increment may be small for the path and large for a small component. A residual
-            # that no longer falls is round-off of constant terms. Later rounds refactor: the small component may have
-            # changed since the last factorisation.
+            # Polish by the residual: an increment may be large for a small component. A residual that stays is
+            # round-off of constant terms. Later rounds refactor, as the component may have changed.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING_ROUNDS):
                 u = iteration.x
                 terms = evaluator.round_off(u, r, least) if fresh else evaluator.look(u, r, 1, least)
                 beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0, least=least)
-                # Residuals far above round-off are polished; those at round-off need no second sample.
+                # Residuals far from round-off need no second sample.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:
                     break

@@ -1,4 +1,4 @@
-"""Newton-type correctors: bordered, chord, Moore-Penrose, fixed parameter."""
+"""Newton-type correctors."""
 
 from __future__ import annotations
 
@@ -24,17 +24,16 @@ class BorderedNewton:
     Parameters
     ----------
     reuse : float
-        Reuse a factorisation while increments shrink by this factor or better; 0 is Newton's method.
+        Largest ratio of increments at which a factorisation is reused; 0 is Newton's method.
     max_iterations : int
     max_contraction : float
-        A larger ratio of increments ends the attempt: outside the ball of Newton's theorem, where increments shrink by
-        less than half, a shorter step is cheaper.
+        Largest ratio of increments: above a half Newton's theorem fails, and a shorter step is cheaper.
 
     References
     ----------
-    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977. Reuse: simplified Newton
-    with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1) and Broyden's good update
-    (C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, Section 7.3).
+    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; Deuflhard's monotonicity
+    test (Newton Methods for Nonlinear Problems, Section 2.1); Broyden's good update (C. T. Kelley, Iterative Methods
+    for Linear and Nonlinear Equations, Section 7.3).
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)
@@ -69,8 +68,7 @@ class BorderedNewton:
 class Chord:
     """Bordered iteration with the last point's factorisation.
 
-    It converges linearly, at a ratio proportional to the step: steps are shorter and cost one factorisation each, for
-    the tangent.
+    Linear, at a ratio proportional to the step: short steps, one factorisation each.
     """
 
     max_iterations: int = field(default=12, validator=integer(1))
@@ -91,7 +89,7 @@ class Chord:
 class MoorePenrose:
     """Normal-flow Newton: increments -H'(u)^+ H(u), orthogonal to the kernel in the default metric.
 
-    It needs no hyperplane and ends near the foot of the perpendicular (Allgower and Georg, Chapter 3).
+    It ends near the foot of the perpendicular (Allgower and Georg, Chapter 3).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Derivatives from a residual alone: dense, or by column groups of a sparse H_y."""
+"""Derivatives from a residual alone: dense, or by column groups."""
 
 from __future__ import annotations
 
@@ -29,19 +29,17 @@ ULPS = 8.0
 """Rounding error of a difference, in ulps."""
 
 AGREEMENT = 1e-3
-"""Largest difference between correct derivatives and differences, relative to the sum of terms; wrong
-ones differ more.
-"""
+"""Largest difference between correct derivatives and differences, relative to their terms."""
 
 SPARSE_FROM = 64
-"""Number of unknowns from which a sparse factorisation beats a dense one."""
+"""Number of unknowns from which sparse factorisations win."""
 
 LOOKS_AT_ONCE = 64
-"""Directions multiplied at once; more only cost memory."""
+"""Directions at once; more cost only memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
-    """Raise unless a homotopy's answer is a pair (H_y, H_lam) of real arrays with the right shapes."""
+    """Raise unless `answer` is a pair (H_y, H_lam) of real arrays of the right shapes."""
     wanted = f"a pair (H_y, H_lam) of real numbers, shapes ({n}, {n}) and ({n},)"
     if not isinstance(answer, (tuple, list)) or len(answer) != 2:
         raise TypeError(f"jacobian: expected {wanted}, found {type(answer).__name__}")
@@ -56,7 +54,7 @@ def check_derivative(answer: Any, n: int) -> None:
 
 
 def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
-    """Rounding error of a difference along w, from rounding u + h w."""
+    """Effect of rounding u + h w on a difference."""
     with np.errstate(all="ignore"):
         here, ahead, behind = (np.array(residual(at[:-1], float(at[-1]))) for at in (u, u + h * w, u - h * w))
     return np.asarray(ULPS * np.finfo(float).eps * (np.abs(ahead - here) + np.abs(behind - here)) / h**2, dtype=float)
@@ -66,8 +64,7 @@ def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
 class Derivative:
     """(H_y, H_lam) of a residual, by products.
 
-    Each sparse derivative is checked by one more product. If the pattern lacks an entry, the check fails and the
-    pattern grows.
+    One more product checks each sparse derivative; if it fails, the pattern lacks an entry and grows.
     """
 
     residual: Residual
@@ -77,7 +74,7 @@ class Derivative:
     plain: Products = field(init=False)
     """The products without noise."""
     agreement: float = field(init=False)
-    """Tolerance of the check: the products', or AGREEMENT if round-off inside the residual demands it."""
+    """Tolerance of the check; AGREEMENT if the residual has round-off inside."""
 
     @plain.default
     def _without_noise(self) -> Products:
@@ -88,12 +85,12 @@ class Derivative:
         return self.products.agreement
 
     def know(self, noise: Array) -> None:
-        """Adapt difference steps to this noise of each equation, shape (N,)."""
+        """Adapt difference steps to noise, shape (N,)."""
         if isinstance(self.plain, ByDifferences):
             self.products = self.plain.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Return (H_y, H_lam) at a point, dense or sparse."""
+        """Return (H_y, H_lam), dense or sparse."""
         u = np.append(y, lam)
         if self.pattern is not None:
             answer = self._by_groups(u, self.pattern)
@@ -106,14 +103,14 @@ class Derivative:
                 answer = None if self.pattern is None else self._by_groups(u, self.pattern)
                 if answer is not None:
                     return answer
-            # The residual's round-off makes groups useless.
+            # Products that do not add up give no derivative by groups.
             self.pattern = None
             self.notes.add("a sparsity pattern that could not be found")
         full = self.products.whole(self.residual, u)
         return full[:, :-1], full[:, -1]
 
     def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
-        """The sparse derivative; None if the pattern lacks an entry."""
+        """The sparse derivative, or None if the pattern lacks an entry."""
         scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
         if scale is not None:
             directions = directions.copy()
@@ -124,7 +121,7 @@ class Derivative:
         terms, more = entries * weights, column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
-        # Values outside the domain are not finite; the pattern is innocent.
+        # Not finite: outside the domain, no fault of the pattern.
         allowed = self.agreement * size
         if (gap > allowed).any() and (gap > np.maximum(allowed, self.agreement * float(allowed.max()))).any():
             return None
@@ -133,7 +130,7 @@ class Derivative:
         return pattern.matrix(entries), np.ascontiguousarray(column)
 
     def _grown(self, u: Array, known: Pattern) -> Pattern | None:
-        """The pattern, joined with the one found at u."""
+        """The pattern with the entries at u."""
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
@@ -149,12 +146,12 @@ class Derivative:
 
 
 def _worth(pattern: Pattern | None) -> Pattern | None:
-    """The pattern if it saves most products: sparse factorisations cost more per entry."""
+    """The pattern if it saves most products."""
     return pattern if pattern is not None and 4 * pattern.count <= pattern.n else None
 
 
 def _looked_for(residual: Residual, u: Array) -> Pattern | None:
-    """The pattern at a point near u, where no entry vanishes."""
+    """The pattern near u, where no entry vanishes."""
     size = sizes(u)
 
     def at(v: Array) -> Array:
@@ -186,7 +183,7 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
 
 
 def given_pattern(sparsity: Any, n: int) -> Pattern:
-    """Return the pattern of a homotopy's `sparsity`: its nonzero entries."""
+    """Return the pattern of a homotopy's `sparsity`."""
     try:
         places = sp.coo_array(sparsity)
     except (TypeError, ValueError):
@@ -204,13 +201,12 @@ def from_residual(
     notes: set[str] | None = None,
     products: Products | None = None,
 ) -> Derivative:
-    """Return the best derivative that a residual allows: jets, else complex step, else central differences.
+    """Return the best derivative: jets, else complex step, else central differences.
 
-    Jets and the complex step must agree with a difference at the start: a residual may accept complex numbers and still
-    be wrong on them (``abs``, ``np.real``).
+    The first two must agree with a difference: ``abs`` or ``np.real`` run on complex numbers but are wrong.
 
-    `start` of shape (N,). `pattern`: That of H_y; None: searched if there are many unknowns. `notes`: Receives the
-    method. `products`: The homotopy's own, not checked.
+    `start` of shape (N,). `pattern`: Searched if None and N is large. `notes`: Receives the method. `products`: The
+    homotopy's own, unchecked.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

@@ -10,35 +10,35 @@ from continuation.rejection import Rejection
 
 
 class EvaluationError(ArithmeticError):
-    """The homotopy has no finite value, or no factorisation, at a point."""
+    """The homotopy has no finite value or factorisation at a point."""
 
     rejection: ClassVar[Rejection] = Rejection.UNSOLVABLE
 
 
 class NotFiniteError(EvaluationError):
-    """No finite value: the edge of the domain, or an overflow."""
+    """The edge of the domain, or an overflow."""
 
     rejection = Rejection.NO_VALUE
 
 
 class RaisedError(EvaluationError):
-    """The homotopy raises ValueError: the edge of its domain, or a mistake."""
+    """The homotopy raises ValueError: its domain ends, or a mistake."""
 
     rejection = Rejection.RAISED
 
 
 class SingularPointError(EvaluationError):
-    """The bordered matrix is singular at a point, as at a branch point."""
+    """The bordered matrix is singular, as at a branch point."""
 
     rejection = Rejection.SINGULAR
 
 
 MATHS_OWN = ("math domain error", "expected a")
-"""Beginnings of the domain errors of `math`: up to Python 3.13, and from 3.14."""
+"""Beginnings of `math`'s domain errors: up to Python 3.13, from 3.14."""
 
 
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """Return the error for an exception: a domain error from `math`, numpy and scipy, else the author's own."""
+    """Return a domain error for exceptions of `math`, numpy and scipy, else the author's."""
     if isinstance(error, EvaluationError):
         # Raised by a homotopy inside this one.
         return error

@@ -1,4 +1,4 @@
-"""Counted evaluations of a homotopy; u = (y, lam) is one vector."""
+"""Counted evaluations of a homotopy at u = (y, lam)."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
-"""Approximate round-off of a point, in ulps."""
+"""Round-off of a point, in ulps."""
 
 DERIVATIVES_KEPT = 4
-"""Number of derivatives kept for a second use: at a step's end and in the search for crossings."""
+"""Derivatives kept for step ends and the search for crossings."""
 
 LOOK = 64.0
-"""Perturbation, in ulps, of the round-off estimate: the change of an equation then exceeds its own ulps. Signs and
-sizes vary, since common values of neighbours cancel in differences.
+"""Perturbation of the round-off estimate, in ulps, to exceed an equation's own; signs and sizes vary, as common values
+cancel in differences.
 """
 
 NOT_OF_POINT = 3.0
-"""Noise above this multiple of the point's round-off has another source and stays along the path. `Evaluator.look` sees
+"""Noise above this multiple of the point's round-off has another source; `Evaluator.look` sees
 POINT_ULPS / LOOK of it.
 """
 
@@ -56,9 +56,9 @@ class CountedSystem:
     system: BorderedSystem
     counts: Counts
     solve: Callable[[Array, float], Array] = field(init=False)
-    """The bordered solve; raises EvaluationError if the answer is not finite."""
+    """Bordered solve; EvaluationError if not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
-    """An unrefined solve, for iterations that measure their own residual."""
+    """Unrefined solve, for iterations that measure their residual."""
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
@@ -71,7 +71,7 @@ class CountedSystem:
 
     @cached_property
     def sign(self) -> int:
-        """Sign of the bordered matrix's determinant; 0 if unknown."""
+        """Determinant's sign; 0 if unknown."""
         return self.system.sign
 
     @property
@@ -98,9 +98,9 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    `counts`: Receives the counts. `methods`: BibTeX of the methods that replace missing derivatives. `keeping`: Whether
-    to keep derivatives for `matrix`. `noise`: Measured noise of each equation beyond round-off of u, shape (N,), or
-    None. Raises `TypeError` without `start` or `residual`, `ValueError` for a bad start or residual shape.
+    `counts`: Receives the counts. `methods`: BibTeX of substitutes for derivatives. `keeping`: Keep derivatives for
+    `matrix`. `noise`: Beyond round-off of u, shape (N,), or None. `TypeError` without `start` or `residual`,
+    `ValueError` for bad answers.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -116,9 +116,9 @@ class Evaluator:
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
-        """Evaluate this homotopy from now on: the next piece of a piecewise smooth map.
+        """Evaluate this homotopy from now on, such as the next piece.
 
-        Raises `TypeError` if a method is missing or is no method.
+        `TypeError` if a method is missing.
         """
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
@@ -127,7 +127,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
-        self.followed = True  # jets follow the residual, until proved otherwise
+        self.followed = True  # by jets
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
         self._products: dict[bytes, Callable[[Array], Array]] = {}
@@ -153,7 +153,7 @@ class Evaluator:
         return u
 
     def start(self) -> Array:
-        """Return the start (y0, lam0) as one vector, checked together with the residual."""
+        """Return the checked start (y0, lam0) as one vector."""
         u = self._given()
         y0 = u[:-1]
         self._sparsity(y0.size)
@@ -170,7 +170,7 @@ class Evaluator:
         return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
-        """Return the plug-in's residual, on numbers or jets, counted.
+        """Return the plug-in's residual, counted, also for jets.
 
         `y` of shape (N,).
         """
@@ -178,14 +178,13 @@ class Evaluator:
         return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
-        """Return H(u), shape (N,); raise EvaluationError if it is not finite."""
+        """Return H(u), shape (N,); EvaluationError if not finite."""
         if not silent():
             with Silence():
                 return self.residual(u)
         self.counts.residuals += 1
-        # Outside the domain numpy gives inf or nan, `math` raises ValueError.
         try:
-            # Copied: a plug-in may reuse its array.
+            # A plug-in may reuse its array.
             r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("residual", error) from error
@@ -194,24 +193,24 @@ class Evaluator:
         return r
 
     def residual_norm(self, u: Array) -> float:
-        """Return the largest component of H(u); nan if undefined."""
+        """Return the largest component of H(u), or nan."""
         try:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
 
     def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
-        """Return the effect of round-off in u on H, shape (N,).
+        """Return the effect of round-off in u on H, shape (N,), by two perturbations: terms may cancel in one.
 
-        Two generic perturbations of u are used, since terms may cancel along one. `residual` is H(u).
+        `residual` is H(u).
         """
         terms: Array = np.maximum(self.look(u, residual, 1, least), self.look(u, residual, -1, least))
         return terms
 
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
-        """Return the round-off estimate from one perturbation; order -1 gives another.
+        """Return the estimate from one perturbation; order -1 gives another.
 
-        `least`: Smallest perturbation of each component.
+        `least`: Smallest perturbation.
         """
         change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual
@@ -220,9 +219,9 @@ class Evaluator:
         return change if self.noise is None else np.maximum(change, self.noise)
 
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
-        """Return the effect of one ulp of u on each equation, or its noise if larger, which is kept; shape (N,).
+        """Measure and keep the noise; return it, or the effect of one ulp of u if larger, shape (N,).
 
-        `w`, shape (N + 1,): A direction along which H may change. `residual` is H(u).
+        `w`, shape (N + 1,): A direction of change. `residual` is H(u).
         """
         self.noise = None
         terms = self.round_off(u, residual)
@@ -234,17 +233,14 @@ class Evaluator:
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:
-        """Set the noise of each equation, shape (N,); zeros mean round-off alone.
-
-        Difference steps grow with the noise.
-        """
+        """Set the noise, shape (N,), for residuals and difference steps; zeros mean round-off alone."""
         self.noise = noise if noise.any() else None
         if noise.size and isinstance(self._derivative, Derivative):
             self._derivative.know(noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
-        """Source of derivatives: the plug-in's `jacobian`, else the residual; chosen at first use."""
+        """The plug-in's `jacobian`, else from the residual; chosen at first use."""
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
@@ -257,7 +253,7 @@ class Evaluator:
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
-        """Return the map v -> H'(u) v; None if only a structured factorisation exists."""
+        """Return v -> H'(u) v, or None if only a structured factorisation exists."""
         if self._differential is not None:
             apply, y, lam = self._differential, u[:-1], float(u[-1])
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
@@ -265,18 +261,18 @@ class Evaluator:
             return None
         place = u.tobytes()
         if place not in self._products:
-            # Two points are kept: an arc's inside is examined before its end is needed again.
+            # Two are kept: an arc's end is needed again after its inside.
             self._products = dict([*self._products.items()][-1:])
             self._products[place] = self._product(u)
         return self._products[place]
 
     def _product(self, u: Array) -> Callable[[Array], Array]:
-        """The map v -> H'(u) v by an evaluated Jacobian."""
+        """The map v -> H'(u) v by the Jacobian."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)
         if isinstance(H_y, np.ndarray):
-            # One product with the whole matrix takes a third of the time of two.
+            # One product takes a third of the time of two.
             whole = np.empty((u.size - 1, u.size))
             whole[:, :-1] = H_y
             whole[:, -1] = column
@@ -293,18 +289,17 @@ class Evaluator:
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("derivative", error) from error
         if not self._checked:
-            # Checked once.
             check_derivative(answer, u.size - 1)
             self._checked = True
         if self.keeping:
             while len(self._kept) >= DERIVATIVES_KEPT:
                 del self._kept[next(iter(self._kept))]
-            # Copied: a plug-in may reuse its array.
+            # A plug-in may reuse its array.
             self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
 
     def matrix(self, u: Array) -> Matrix:
-        """Return H_y at u: one that was kept, else evaluated and counted."""
+        """Return H_y at u, kept or evaluated."""
         known = self._kept.get(u.tobytes())
         if known is None:
             self.counts.jacobians += 1
@@ -312,10 +307,10 @@ class Evaluator:
         return known
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
-        """Factor [[H_y, H_lam], [border']] at u; raise EvaluationError if impossible."""
+        """Factor [[H_y, H_lam], [border']] at u; EvaluationError if impossible."""
         self.counts.jacobians += 1
         self.counts.factorizations += 1
-        # Copied: factorisations may keep views, and correctors move points in place.
+        # Factorisations may keep views; correctors move points in place.
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
@@ -332,7 +327,6 @@ class Evaluator:
         except EvaluationError:
             raise
         except ArithmeticError as error:
-            # A dense factorisation checks all entries itself.
             if dense and not (finite(column) and finite(H_y.ravel("K"))):
                 raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error

@@ -80,9 +80,9 @@ def from_functions(
     start : tuple
         ``(y0, lam0)``, on or near the path.
     target : float or None
-        Final parameter value; None for a curve without one.
+        Final parameter value, if any.
     sparsity : array or sparse array, shape (N, N), optional
-        Nonzero where H_y may have entries, for large problems without `jacobian`. Default: searched.
+        Nonzero where H_y may be, for large problems without `jacobian`. Default: searched.
 
     Raises
     ------

@@ -23,7 +23,7 @@ Product = Callable[[Array], Array]
 
 _PROBES = 3
 _RELATIVE = 1e-6
-"""Largest error of a correct entry, relative to its row; differences have about ten digits."""
+"""Largest error relative to the row; differences have about ten digits."""
 
 
 @frozen
@@ -33,7 +33,6 @@ class JacobianReport:
     Attributes
     ----------
     correct : bool
-        Whether no wrong entry was found.
     sentence : str
         The result in words.
     source : str
@@ -41,7 +40,7 @@ class JacobianReport:
     row, column : int or None
         The wrong entry; column N is the parameter's.
     found, expected : float or None
-        Its given value, and the residual's.
+        Given value, and the residual's.
     """
 
     correct: bool
@@ -59,27 +58,27 @@ class JacobianReport:
 def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
     """Compare a homotopy's derivative with its residual and find a wrong entry.
 
-    The check compares products with random directions: a few residuals for any N. Bisection of the columns finds the
-    entry, with 2 log2(N) more.
+    Products with random directions take a few residuals for any N; bisection of columns finds the entry, with 2 log2(N)
+    more.
 
     Parameters
     ----------
     homotopy : Homotopy
         With `jacobian`, or with `bordered` and `differential`.
     u : ndarray, shape (N + 1,), optional
-        Point to check. Default: the start and a point near it, since zeros of a start can hide mistakes.
+        Default: the start and a point near it, as zeros of a start can hide mistakes.
 
     Returns
     -------
     JacobianReport
-        Report of the first point with a wrong entry.
+        For the first point with a wrong entry.
 
     Raises
     ------
     TypeError
-        If the homotopy has no derivative.
+        Without a derivative.
     ValueError
-        If `u` has the wrong shape, or the residual is not finite there.
+        If `u` has the wrong shape, or the residual is not finite.
     """
     evaluator = Evaluator(homotopy, Counts())
     if not any(callable(getattr(homotopy, name, None)) for name in ("jacobian", "differential")):
@@ -97,7 +96,7 @@ def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
     try:
         return _check(evaluator, beside)
     except ValueError:
-        # The start may lie on the edge of the domain.
+        # At the edge of the domain.
         return report
 
 
@@ -113,7 +112,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
     source, expected = _reference(evaluator, u, probes[0])
     pairs = [(given(w), expected(w)) for w in probes]
     size = np.max([np.fmax(np.abs(p), np.abs(q)) for p, q in pairs], axis=0)
-    # A zero row is compared with the round-off of the others.
+    # A zero row is measured by the others.
     allowed = _RELATIVE * size + 1e-10 * float(size.max())
     for w, (p, q) in zip(probes, pairs):
         excess = np.where(np.isfinite(p), np.abs(p - q), np.inf) / np.maximum(allowed, np.finfo(float).tiny)
@@ -124,7 +123,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
 
 
 def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Product]:
-    """The best directional derivative from the residual that agrees with differences."""
+    """The best product that agrees with differences."""
 
     def by_differences(w: Array) -> Array:
         return difference_along(evaluator.called, u, w)[0]
@@ -148,7 +147,7 @@ def _product(products: Products, residual: Residual, u: Array, w: Array) -> Arra
 
 
 def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:
-    """Bisect the columns of a wrong row; a row with NaN is reported whole."""
+    """Bisect the columns of a wrong row."""
 
     def error(columns: NDArray[np.intp]) -> float:
         part = np.zeros_like(w)

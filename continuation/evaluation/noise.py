@@ -1,4 +1,4 @@
-"""Noise of a residual: the part of its differences that stays however near the samples are."""
+"""Noise of a residual: differences that do not shrink with the samples' distance."""
 
 from __future__ import annotations
 
@@ -10,16 +10,14 @@ import numpy as np
 from continuation.arrays import Array
 
 DISTINCT_ULPS = 64.0
-"""Least distance of samples, in ulps, so that rounding their places hardly matters."""
+"""Least distance of samples, in ulps; rounding is then small."""
 
 NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
-"""Sample parameters. Rounding can keep a linear function linear on even places: of 150 rings that are zero by symmetry,
-17 then had no noise and no scale.
-"""
+"""Sample parameters. On even places rounding hid the noise of 17 of 150 rings that are zero by symmetry."""
 
 
 def _divided_differences(places: Array, order: int) -> Array:
-    """All divided differences of one order, as unit rows; smooth functions give little."""
+    """Divided differences of one order, as unit rows."""
     rows = np.zeros((places.size - order, places.size))
     for k, row in enumerate(rows):
         some = places[k : k + order + 1]
@@ -31,24 +29,24 @@ def _divided_differences(places: Array, order: int) -> Array:
 _FOURTH = _divided_differences(NOISE_PLACES, 4)
 
 NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 3
-"""First distance of the samples, in lengths in which a path may turn; its factor until differences stop shrinking (a
-smooth fourth difference shrinks by 1e12); limit of distances.
+"""First sample distance, in lengths of a turn; its factor (smooth fourth differences shrink by 1e12); limit of
+distances.
 """
 
 NOISE_STEADY = 30.0
-"""Noise at two distances agrees to this factor: each is the largest of five samples."""
+"""Agreement of noise at two distances, each the largest of five samples."""
 
 WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
 """Accuracy factor and limits of the length found by `allowed_along`."""
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
-    """Return the noise of each equation, shape (N,): the part of differences along w that does not shrink.
+    """Return the noise of each equation, shape (N,): differences along w that do not shrink.
 
-    It contains round-off of constant terms and errors of inner solvers or measurements (More and Wild, Estimating
-    computational noise, SIAM J. Sci. Comput. 33, 2011).
+    It contains errors of inner solvers and measurements (More and Wild, Estimating computational noise, SIAM J. Sci.
+    Comput. 33, 2011).
 
-    `u`, `w` of shape (N + 1,): the function may change along w. `here`, shape (N,): residual(u).
+    `u`, `w` of shape (N + 1,). `here`, shape (N,): residual(u).
     """
     least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
@@ -56,14 +54,14 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         h = max(NOISE_REACH * NOISE_FINER**k, DISTINCT_ULPS * near)
         samples = np.stack([here, *(residual(u + t * h * w) for t in NOISE_PLACES[1:])])
         found = np.abs(_FOURTH @ samples).max(axis=0)
-        # Zero means equal samples (single precision, or samples a few ulps apart).
+        # Equal samples are no evidence.
         found[found == 0.0] = np.inf
         now = (least <= NOISE_STEADY * found) & (least < np.inf)
         least = np.where(steady, least, np.minimum(least, found))
         steady |= now
         if steady.all():
             break
-    # Differences that still shrink are not noise.
+    # Still shrinking: no noise.
     return np.where(steady & (least < np.inf), least, 0.0)
 
 
@@ -72,8 +70,8 @@ def allowed_along(
 ) -> float:
     """Return how far along a direction a residual stays within `allowed`, up to a factor WIDENED.
 
-    0 means nowhere, ENDLESS everywhere. A power law through the last two lengths that were too long gives the next one.
-    `u`, `way` of shape (N + 1,); `allowed` of shape (N,); `begin`: first guess.
+    0: nowhere; ENDLESS: everywhere. Power laws extrapolate the lengths. `u`, `way` of shape (N + 1,); `allowed` of
+    shape (N,); `begin`: first guess.
     """
     low, high, over, power = 0.0, np.inf, np.inf, 2.0
     length, factor, allowed = begin, WIDENED, np.maximum(allowed, np.finfo(float).tiny)
@@ -81,7 +79,7 @@ def allowed_along(
         try:
             found = float((np.abs(residual(u + length * way)) / allowed).max())
         except Exception:
-            # H is probed beyond its domain; a step that needs the point will show the exception.
+            # H is probed beyond its domain.
             found = np.inf
         if found <= 1.0:  # false for NaN
             low, length, factor = length, length * factor, factor * factor

@@ -1,4 +1,4 @@
-"""Sparsity patterns: which unknowns each equation contains, and groups of columns without common equations."""
+"""Sparsity patterns, and groups of columns without common equations."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear import Banded
 
 BLOCKS_TELL = 64
-"""Number of blocks that shows sparsity: where rows touch half of the blocks the matrix counts as full. Eight random
-entries a row touch 12 % of 64 blocks, nearly half of 16.
+"""Blocks that show sparsity: a matrix whose rows touch half of them is full. Eight random entries a row touch 12 % of
+64, nearly half of 16.
 """
 
 Places = NDArray[np.signedinteger[Any]]
@@ -24,19 +24,19 @@ Places = NDArray[np.signedinteger[Any]]
 
 @lru_cache(maxsize=4)
 def generic(n: int) -> Array:
-    """A vector without equal or tiny components, so that joint perturbations do not cancel."""
+    """A vector without equal or tiny components: nothing cancels."""
     numbers = generic_vector(n)
     return np.asarray(np.sign(numbers) * (0.5 + 0.5 * np.abs(numbers) / np.abs(numbers).max()))
 
 
 Touched = Callable[[Places, int], NDArray[np.bool_]]
-"""Maps labels of the unknowns, shape (N,), and their number k to the equations touched by each label, shape (N, k)."""
+"""Maps labels of unknowns, shape (N,), and their number k to the equations with each label, shape (N, k)."""
 
 
 def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
-    """Return a group for each column; columns of a group have no common row (Curtis, Powell and Reid, 1974).
+    """Return groups of columns without common rows (Curtis, Powell and Reid, 1974).
 
-    Calls the routine inside `scipy.optimize.least_squares`: the public way takes ten times as long for 1,000 columns.
+    scipy's private routine: the public way takes ten times as long for 1,000 columns.
     """
     from scipy.optimize._group_columns import group_sparse
 
@@ -69,7 +69,7 @@ class Pattern:
 
     @cached_property
     def directions(self) -> Array:
-        """For each group the sum of its unit vectors, then the parameter's, then a check vector: (k, n + 1)."""
+        """Sums of unit vectors of each group, the parameter's, and a check vector: (k, n + 1)."""
         unit = np.zeros((self.count + 2, self.n + 1))
         unit[self.groups, np.arange(self.n)] = 1.0
         unit[-2, -1] = 1.0
@@ -78,7 +78,7 @@ class Pattern:
 
     @cached_property
     def weights(self) -> Array:
-        """Check vector at the column of each entry."""
+        """Check vector by entry."""
         found: Array = self.directions[-1][self.columns]
         return found
 
@@ -87,7 +87,7 @@ class Pattern:
         return np.asarray(self.rows * (self.count + 2) + self.groups[self.columns])
 
     def entries(self, products: Array) -> Array:
-        """Return the entries from products with `directions`, shape (n, k)."""
+        """Return entries from products with `directions`, shape (n, k)."""
         return products.ravel().take(self._places)
 
     @cached_property
@@ -101,7 +101,7 @@ class Pattern:
 
     @cached_property
     def banded(self) -> bool:
-        """Whether at least half of the band is full, so that banded LU is competitive."""
+        """Whether half of the band is full."""
         return (sum(self._band) + 1) * self.n <= 2 * self.rows.size
 
     @cached_property
@@ -122,7 +122,7 @@ class Pattern:
         return Banded(ab, lower, upper)
 
     def structure(self) -> Matrix:
-        """Return the transposed pattern (csr, ones), with a full last row: the equations of each component of u."""
+        """Return the transposed pattern as csr, with a full last row."""
         own = sp.csr_array((np.ones(self.rows.size), (self.columns, self.rows)), shape=(self.n, self.n))
         return sp.vstack([own, np.ones((1, self.n))], format="csr")
 
@@ -138,12 +138,12 @@ def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
 
 
 def found(touched: Touched, n: int) -> Pattern | None:
-    """Return the pattern of a square matrix, by halving blocks of columns; None if full or too expensive.
+    """Return a matrix' pattern by halving blocks of columns; None if full or too expensive.
 
-    Blocks known to have no common equation are halved together. That takes log2(n) times twice as many products as
-    groups (Griewank and Mitev, Mathematical Programming 93, 2002).
+    Known blocks without common equations are halved together, in log2(n) times twice as many products as groups
+    (Griewank and Mitev, Mathematical Programming 93, 2002).
     """
-    # Begin with 16 halves of 8 blocks: a first look at 8 saves nothing.
+    # 8 blocks cost as much as their 16 halves.
     shift = max(int(n - 1).bit_length() - 3, 0)
     columns = np.arange(n)
     rows, blocks = (places.ravel() for places in np.meshgrid(columns, np.unique(columns >> shift)))

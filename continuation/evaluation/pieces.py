@@ -1,4 +1,4 @@
-"""A piecewise smooth map: its switches, its pieces, and the whole map as one homotopy."""
+"""Piecewise smooth maps: switches, pieces, and the whole map."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from continuation.arguments.checks import complain
 from continuation.arrays import Array
 
 Signs = tuple[int, ...]
-"""Signs of all switches, -1 or +1: they name a piece."""
+"""Signs -1 or +1 of all switches: a piece's name."""
 
 REMEMBERED = 64
-"""Pieces kept: a kink with several switches needs the same few again."""
+"""Pieces kept: kinks need the same few again."""
 
 DIFFERENCE_STEP = 6e-6
-"""Step of central differences, relative to the point: the cube root of round-off."""
+"""Relative step of central differences: the cube root of round-off."""
 
 DERIVATIVES_AGREE = 1e-4
-"""Largest difference between valid jets and a difference, relative to the largest value."""
+"""Largest relative difference between valid jets and a difference."""
 
 BORDER_DISTANCE = 1e-9
-"""A start this near to a border, relative to its direction, lies on it."""
+"""A start this near to a border, relative to its direction, is on it."""
 
 SWITCH_STILL = 1e-9
-"""A switch derivative along the path below this part of the largest is round-off."""
+"""Smaller switch derivatives, relative to the largest, are round-off."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
 """Capabilities that the map takes from its pieces."""
@@ -47,7 +47,7 @@ class Pieces:
     def values(self, u: Array) -> Array:
         """Return the switches at u, shape (m,).
 
-        Raises `SwitchError` if they are not finite, `ValueError` unless they are a real vector.
+        `SwitchError` if not finite, `ValueError` unless a real vector.
         """
         try:
             with np.errstate(all="ignore"):
@@ -81,10 +81,7 @@ class Pieces:
         return True
 
     def along(self, u: Array, v: Array) -> Array:
-        """Return derivatives of the switches at u along v, shape (m,): by jets, else by differences.
-
-        The first call decides which.
-        """
+        """Return derivatives of the switches at u along v, shape (m,): by jets, else differences, as first decided."""
         if not self._jets:
             try:
                 with np.errstate(all="ignore"):
@@ -98,10 +95,9 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """Return a typical distance to the borders ahead along v, to first order: the lower median.
+        """Return the lower median distance to borders ahead along v, to first order.
 
-        Without a border ahead: the size of the given direction, else of the point, else 1. Borders through the point
-        are not ahead.
+        Without one: the size of the given direction, else of the point, else 1. Borders at the point are not ahead.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))
@@ -126,9 +122,9 @@ class Pieces:
 
 
 class WholeMap:
-    """All pieces as one homotopy, with the capabilities of the first piece.
+    """All pieces as one homotopy, with the first piece's capabilities, for single points.
 
-    It serves evaluations at single points. `u`, shape (N + 1,): Start.
+    `u`, shape (N + 1,): Start.
     """
 
     def __init__(self, homotopy: Any, u: Array) -> None:

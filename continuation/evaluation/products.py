@@ -27,7 +27,7 @@ class Products(Protocol):
 
     @property
     def agreement(self) -> float:
-        """Tolerance of the check by one more product, relative to its terms."""
+        """Tolerance of the check, relative to the terms."""
         ...
 
     @property
@@ -37,7 +37,7 @@ class Products(Protocol):
 
     @property
     def even(self) -> Array | float:
-        """Factors, in units of `scale`, that move all components equally far relative to their sizes."""
+        """Factors of `scale` that move all components alike, relative to size."""
         ...
 
     def scale(self, u: Array) -> Array | None:
@@ -57,7 +57,7 @@ class Products(Protocol):
 class Exact:
     """Products to round-off.
 
-    `function`: Maps the residual, u and directions (k, N + 1) to (N, k). `entire`: Optional faster way for all of H'.
+    `function`: Maps residual, u and directions (k, N + 1) to (N, k). `entire`: All of H', if faster.
     """
 
     name: str
@@ -119,40 +119,39 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
 
 
 DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
-"""Steps of central differences, relative to a component's size (1 if it is 0): eps^(1/3), usually the best, and others,
-since origin and units are arbitrary.
+"""Steps relative to a component's size (or 1): eps^(1/3), usually best, and others, since origin and units are
+arbitrary.
 """
 
 
 CHANCE = float(np.finfo(float).eps) ** (2.0 / 3.0)
-"""Best accuracy of a difference: closer agreement is chance, as for linear functions."""
+"""Best accuracy of a difference: closer agreement is chance."""
 
 
 def sizes(u: Array) -> Array:
-    """Return the units of difference steps: a component's size, or 1."""
+    """Return units of difference steps: |u|, or 1."""
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 
 def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[list[Array], Array]:
-    """Central differences along w at all steps, and their relative changes from step to step: (steps - 1, N).
+    """Central differences along w at all steps, and their relative changes: (steps - 1, N).
 
-    A change is relative to the difference, or to `rows`, shape (N,), if larger: else noise would choose the step for an
-    equation that does not depend on w.
+    `rows`, shape (N,): Least size of a change's unit; else noise chooses the step of equations constant along w.
     """
 
     def at(h: float) -> Array:
         ahead, behind = u + h * w, u - h * w
-        # Copied: a residual may reuse its array.
+        # A residual may reuse its array.
         try:
             change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
         except (ArithmeticError, ValueError):
-            # Outside the domain; shorter steps stay inside.
+            # Outside the domain.
             return np.full(u.size - 1, np.nan)
         return np.asarray(change / (2.0 * h), dtype=float)
 
     with np.errstate(all="ignore"):
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
-        # Two zeros agree only if no step shows a change: in single precision a short step shows none.
+        # In single precision short steps show no change: such zeros do not agree.
         seen = (np.array(found) != 0.0).any(axis=0)
         changes = []
         for one, other in pairwise(found):
@@ -165,9 +164,7 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
 
 def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
-    """Return the central difference of a residual along w, and its step.
-
-    The step minimises the mean relative change to the next step.
+    """Return the central difference along w with the least mean change, and its step.
 
     `u`, `w` of shape (N + 1,).
     """
@@ -177,7 +174,7 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
 
 
 def _best(changes: Array) -> Any:
-    """The step after the smallest change along the last axis; ties go to the usual step."""
+    """The step after the least change; ties go to the usual step."""
     order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
     return order[np.argmin(changes[..., order], axis=-1)] + 1
 
@@ -186,8 +183,8 @@ def _best(changes: Array) -> Any:
 class ByDifferences:
     """Central differences, eight to ten digits.
 
-    `u0`, shape (N + 1,): Where the steps were chosen. `steps`, shape (N + 1,): Relative to sizes. `usual`, shape (N,):
-    Change of each equation if all components move by their sizes.
+    `u0`, shape (N + 1,): Where `steps`, shape (N + 1,), relative to sizes, were chosen. `usual`, shape (N,): Change of
+    each equation as all components move by their sizes.
     """
 
     u0: Array
@@ -198,14 +195,14 @@ class ByDifferences:
     references: tuple[str, ...] = ()
 
     def over(self, noise: Array) -> ByDifferences:
-        """Return differences with steps that balance noise, shape (N,), and curvature."""
+        """Return differences whose steps balance noise, shape (N,), and curvature."""
         known = self.usual > 0.0
         least = float(np.cbrt((noise[known] / self.usual[known]).max(initial=0.0)))
         return evolve(self, steps=np.maximum(self.steps, min(least, float(DIFFERENCE_STEPS[0]))))
 
     @property
     def even(self) -> Array:
-        """Needed since steps differ by orders of magnitude."""
+        """Steps differ by orders of magnitude."""
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
@@ -228,16 +225,16 @@ class ByDifferences:
 
 
 def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
-    """Return differences with the best step for each component, chosen at `u0`, shape (N + 1,).
+    """Return differences with the best step for each component at `u0`.
 
     Parameters
     ----------
     residual : callable
     u0 : ndarray, shape (N + 1,)
     groups : ndarray of int, shape (N + 1,), optional
-        Components of a group move together. Default: each alone.
+        Components that move together. Default: each alone.
     rows : sparse array, shape (N + 1, N), optional
-        Ones for the equations of each component; components of a group have none in common. Default: all.
+        Ones for the equations of each component. Default: all.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     groups = np.arange(u0.size) if groups is None else groups

@@ -37,15 +37,14 @@ class Prediction(Protocol):
 
 @runtime_checkable
 class SupportsSegment(Curve, Protocol):
-    """A prediction so accurate that it serves as the path between its ends."""
+    """A prediction accurate enough to be the path between its ends."""
 
     def segment(self, h: float, end: Array) -> Segment:
-        """Return the path from the current point to the corrected point.
+        """Return the path from the current to the corrected point.
 
         Parameters
         ----------
         h : float
-            Step length.
         end : ndarray, shape (N + 1,)
             Corrected point.
         """
@@ -60,9 +59,9 @@ class Predictor(Protocol):
     memory : int
         Number of knots used, with the current one.
     order : int
-        The local error is O(h^(order + 1)); if it varies, the least, and the prediction has its own `order`.
+        Local error O(h^(order + 1)); the least, if the prediction has its own `order`.
     interior_fraction : float, optional
-        Largest part of the distance to the boundary that a prediction may use; default 0.9.
+        Part of the distance to the boundary that it may use; default 0.9.
     """
 
     @property
@@ -81,7 +80,6 @@ class Predictor(Protocol):
         Parameters
         ----------
         evaluator : Evaluator
-            Counted evaluations of the homotopy.
         point : Linearization
             Current point, with factorisation and tangent.
         history : sequence of Knot
@@ -91,10 +89,9 @@ class Predictor(Protocol):
 
 
 def history_in_pseudo_arclength(point: Linearization, history: Sequence[Knot]) -> list[tuple[float, Array, Array]]:
-    """Return the history in the pseudo-arclength of the current point, newest first: (sigma, u, du/dsigma).
+    """Return the history, newest first: (sigma, u, du/dsigma), sigma = border . (u - point.u).
 
-    sigma = border . (u - point.u) uses one metric for all knots. Knots before a turn by a right angle, or where sigma
-    does not decrease, are dropped with all earlier ones.
+    Knots before a right-angle turn, or where sigma stops decreasing, are dropped.
     """
     border = point.border
     knots = [(0.0, point.u, point.tangent)]

@@ -1,4 +1,4 @@
-"""Series coefficients without jets: a fit to points of the path on both sides."""
+"""Series coefficients without jets: a fit to nearby points of the path."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from continuation.metric import norm
 from continuation.point.linearization import Linearization
 
 FITTED_ORDER = 11
-"""Largest order of a fit: its powers of s magnify round-off by 1e4, by 1e8 with twice as many points."""
+"""Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
 
 CHORD = Contraction(iterations=30, ratio=HALVING)
-"""Chord steps with the current factorisation; the range shrinks if they diverge."""
+"""With the current factorisation; divergence shortens the range."""
 
 FOUND_BESIDE = 1e-8
-"""Last increment of a point, relative to its distance: near round-off for any factorisation."""
+"""Last increment relative to the point's distance: near round-off."""
 
 NOISE_SEEN = 8.0
-"""Largest of many increments, relative to the noise of one point: each is a difference of two."""
+"""Largest of many increments, in units of a point's noise."""
 
 ROUNDS = 40
-"""Limit of range changes, by four or to half of the fit's range; 4^-40 is nothing."""
+"""Limit of range changes; 4^-40 of a range is nothing."""
 
 
 def fitted(
@@ -38,10 +38,10 @@ def fitted(
     reach: Callable[[Array], float],
     accuracy: float,
 ) -> Array:
-    """Return coefficients of the path at a point, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
+    """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
-    The polynomial in the pseudo-arclength has the point's tangent and interpolates points of the path, found by chord
-    steps with the point's factorisation, over about the range of its use.
+    The polynomial has the point's tangent and interpolates points of the path, found by chord steps, over about the
+    range of its use.
 
     Parameters
     ----------
@@ -51,14 +51,14 @@ def fitted(
     first : float
         First range tried.
     reach : callable
-        Returns the range in which a series is accurate.
+        Range in which a series is accurate.
     accuracy : float
-        In the metric. The highest of k powers doubles noise k times, so noise in H lowers the order.
+        In the metric. k powers double noise k times, so noise lowers the order.
 
     Raises
     ------
     EvaluationError
-        If the path is found in no range.
+        If no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)
@@ -73,7 +73,7 @@ def fitted(
             barrier, r = r, 0.25 * r
             continue
         last, far = found, reach(found)
-        # With noise the longest range is best: in shorter ones noise would limit the series.
+        # In short ranges noise would limit the series.
         following = 0.5 * r if blur else min(0.5 * far, 0.5 * barrier)
         if (r <= 4.0 * far) if blur else (0.25 * far <= r <= far or 0.5 * following <= r <= following):
             break
@@ -84,8 +84,8 @@ def fitted(
 
 
 def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, blur: float) -> Array | None:
-    """The polynomial through path points at Chebyshev nodes within r; None if one is not found."""
-    count = order - order % 2  # even, so that no node is the point itself
+    """The polynomial through path points at Chebyshev nodes within r, or None."""
+    count = order - order % 2  # even: the point is no node
     nodes = np.cos((np.arange(count) + 0.5) * (np.pi / count))
     bends = np.empty((count, point.u.size))
     bend = np.zeros_like(point.u)

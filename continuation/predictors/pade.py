@@ -1,4 +1,4 @@
-"""Vector Pade approximants with one denominator, which extend a series beyond its radius of convergence."""
+"""Vector Pade approximants with one denominator: series beyond their radius of convergence."""
 
 from __future__ import annotations
 
@@ -12,18 +12,16 @@ from continuation.point.segment import SeriesSegment
 from continuation.tolerance import Tolerance
 
 DEGREES = 6
-"""Number of successive orders compared."""
+"""Successive orders compared."""
 
 LONGEST_RANGE = 8.0
-"""Longest range examined, in ranges of the series."""
+"""In ranges of the series."""
 
 RANGES_LOOKED_AT, BEFORE_POLE = 25, 0.95
-"""Sample count for comparing approximants, each a tenth farther out; part of the distance to a pole
-that is examined.
-"""
+"""Samples of the agreement, a tenth apart; part of the way to a pole that is sampled."""
 
 NUMERICAL_RANK, REAL = 1e-14, 1e-8
-"""Relative singular values that are round-off; relative imaginary part of a real root (half of the digits)."""
+"""Relative round-off of singular values, and of a real root's imaginary part."""
 
 HUGE = 1e150
 """The square of a larger number overflows."""
@@ -33,8 +31,7 @@ HUGE = 1e150
 class Pade:
     """The rational curve sum_j p_j s^j / sum_i d_i s^i.
 
-    `numerator`: shape (L + 1, N + 1). `denominator`: shape (m + 1,), ascending, first 1. `order`: L + m. `reach`:
-    Trusted range.
+    `numerator`: shape (L + 1, N + 1). `denominator`: shape (m + 1,), ascending, first 1. `order`: L + m.
     """
 
     numerator: Array
@@ -68,10 +65,9 @@ def _slope(coefficients: Array, h: float) -> Array:
 def approximant(coefficients: Array, weights: Array) -> Pade:
     """Return the approximant of degrees (K - K // 2, K // 2) of a series of order K, with reach 0.
 
-    Coefficients K - m + 1..K of denominator times series vanish, in least squares over the components in the metric
-    (simultaneous, or type II, Pade approximation; Baker and Graves-Morris, Section 8.1). An orthonormal basis of the
-    series terms reduces the problem to order m for any N; a scaled radius of convergence of 1 keeps it well
-    conditioned.
+    Coefficients K - m + 1..K of denominator times series vanish in least squares (simultaneous, or type II,
+    approximation; Baker and Graves-Morris, Section 8.1). An orthonormal basis of the terms makes the problem small,
+    scaling makes it well conditioned.
     """
     order = len(coefficients) - 1
     m = order // 2
@@ -92,13 +88,12 @@ def approximant(coefficients: Array, weights: Array) -> Pade:
 
 
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Pade | None:
-    """Return the approximant with the longest range among the highest orders; None if none exceeds the series.
+    """Return the approximant with the longest range; None if none exceeds the series.
 
-    Two successive orders agree in the range, and no pole lies in it. A pole of one order alone is an artefact
-    (Froissart doublet): a lower order then wins. A pole of the path limits all orders.
+    In its range two successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet),
+    and a lower order wins; a pole of the path limits all.
     """
     order = len(series) - 1
-    # Terms whose squares overflow have no size.
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() > HUGE:
         return None
     shapes = [approximant(series[: k + 1], weights) for k in range(order, max(order - DEGREES, 2), -1)]
@@ -113,7 +108,7 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
 
 
 def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, weights: Array) -> float:
-    """Length on which two approximants agree, sampled outward so that no gap is skipped."""
+    """Length on which two approximants agree, sampled outward."""
     measure = Tolerance(relative=accuracy).measure
     end = min(LONGEST_RANGE * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0
@@ -127,7 +122,7 @@ def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, w
 
 
 def first_pole(denominator: Array) -> float:
-    """Return the smallest positive real root of the denominator; inf without one."""
+    """Return the denominator's smallest positive real root, or inf."""
     trimmed = np.trim_zeros(denominator, "b")
     if len(trimmed) < 2:
         return float("inf")

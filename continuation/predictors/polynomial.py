@@ -33,11 +33,7 @@ class Interpolant:
 
 
 def interpolate(nodes: Sequence[float], values: Sequence[Array], slopes: Sequence[Array | None]) -> Interpolant:
-    """Return the Hermite interpolant by divided differences; a node with a slope counts twice.
-
-    Equal nodes must be adjacent. `point.segment.HermiteSegment` gives the cubic on [0, 1] in a form that makes all
-    samples by one matrix product.
-    """
+    """Return the Hermite interpolant; a node with a slope counts twice. Equal nodes must be adjacent."""
     z: list[float] = []
     table: list[Array] = []
     first: list[Array | None] = []
@@ -105,10 +101,7 @@ class Secant:
 
 @frozen
 class Hermite:
-    """The cubic through the last two points and their tangents, in pseudo-arclength; Euler's step at the start.
-
-    Order 3, at no extra cost.
-    """
+    """The cubic through the last two points and tangents; Euler's step at the start. Order 3, at no extra cost."""
 
     memory: int = field(default=2, init=False)
     order: int = field(default=3, init=False)
@@ -127,22 +120,21 @@ class Hermite:
 
 
 MOST_POINTS = 50
-"""Largest degree: divided differences take its square in time, soon more than the step."""
+"""More points would be slower than the step: time is their square."""
 
 
 @frozen
 class Polynomial:
     """A polynomial of up to `degree` through past points, with the current tangent.
 
-    The degree used ends where Newton terms at the previous step length stop decreasing: high degrees are bad on a rough
-    history.
+    It ends before Newton terms that do not decrease: high degrees fail on rough histories.
     """
 
     degree: int = field(default=4, validator=integer(2, MOST_POINTS))
 
     @property
     def memory(self) -> int:
-        """One knot a degree: the tangent is one condition."""
+        """The tangent counts as one condition."""
         return self.degree
 
     @property

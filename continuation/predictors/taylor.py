@@ -1,7 +1,6 @@
 """Taylor predictor: the path's power series from one factorisation.
 
-The asymptotic numerical method (Cochelin, Computers & Structures 53, 1994) in pseudo-arclength: border . (u(s) - u(0))
-= s, border = W tangent.
+Asymptotic numerical method (Cochelin, Computers & Structures 53, 1994) in pseudo-arclength.
 """
 
 from __future__ import annotations
@@ -29,13 +28,13 @@ from continuation.predictors.pade import Pade, best
 from continuation.tolerance import Tolerance
 
 ORDERS = (8, 30)
-"""Bounds of the chosen order: beyond 30 round-off in the last terms removes the gain."""
+"""Bounds of the chosen order: beyond 30 round-off removes the gain."""
 
 LARGEST_ORDER = 100
-"""Largest order allowed: the cost is its square, and from about 60 on it gains nothing."""
+"""The cost is its square; from about 60 on it gains nothing."""
 
 LONGEST_STEP = 100.0
-"""Longest step in the metric: a polynomial path has no last terms to limit it."""
+"""In the metric: a polynomial path has no last terms."""
 
 
 @frozen(eq=False)
@@ -73,12 +72,10 @@ class Series:
 
 
 def best_order(n: int, accuracy: float) -> int:
-    """Return the order that minimises work per length: (f + K) solves a step, with steps proportional to
-    accuracy^(1/K).
+    """Return the order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f is the cost of a factorisation and the rest of a step, in solves. 4 + n/60 is a compromise between dense matrices
-    of order n and the n times smaller systems of plug-ins; the chosen order takes at most a third more time than the
-    best measured (docs, "choosing"). The minimum of (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K + f).
+    f, the rest of a step in solves, is 4 + n/60, between dense matrices and smaller systems of plug-ins; time is at
+    most a third above the best (docs, "choosing"). The least (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -87,7 +84,7 @@ def best_order(n: int, accuracy: float) -> int:
 
 
 def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
-    """Return the step at which one of the last two terms reaches `accuracy`; one of them may vanish by symmetry."""
+    """Return the step at which one of the last two terms reaches `accuracy`; one may vanish by symmetry."""
     measure = Tolerance(relative=accuracy).measure
     order = len(coefficients) - 1
     reach = LONGEST_STEP
@@ -100,19 +97,19 @@ def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
 
 @frozen
 class Taylor:
-    """Series prediction of any order, with coefficients from the plug-in or from `continuation.jets`.
+    """Series prediction of any order, by the plug-in or `continuation.jets`.
 
     Parameters
     ----------
     order : int, optional
         Default: `best_order`.
     accuracy : float
-        Size of the last terms at the end of a step, in the metric. One corrector increment squares this error, so it
-        may exceed the tolerance; dense output in mid-step has about this accuracy times 2^-order.
+        Last terms at a step's end, in the metric. The corrector squares this error; dense output in mid-step has about
+        this accuracy times 2^-order.
     safety : float
         Factor on the reach.
     rational : bool
-        Use Pade approximants: a larger range, which ends before a pole.
+        Pade approximants: a larger range, ended before a pole.
     """
 
     order_wanted: int | None = field(default=None, validator=optional(integer(2, LARGEST_ORDER)), alias="order")
@@ -121,16 +118,16 @@ class Taylor:
     rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
-    """Part of the distance to the boundary it may use: its error is far smaller than the rest."""
+    """Its error is far below the remaining distance."""
 
     @property
     def references(self) -> tuple[str, ...]:
-        """The series method and, if rational, its theory."""
+        """Series method, and theory of rational curves."""
         return (COCHELIN, BAKER_GRAVES_MORRIS) if self.rational else (COCHELIN,)
 
     @property
     def order(self) -> int:
-        """The given or the least chosen order; `Series.order` is the actual one."""
+        """The given or least order; `Series.order` is the actual one."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
@@ -141,7 +138,7 @@ class Taylor:
             evaluator.followed = False
             evaluator.counts.notes.add("series through points of the path, since jets do not follow the residual")
             lately = [knot.arclength for knot in history[-2:]]
-            # The unit of the metric: about how far a path goes.
+            # The metric's unit: a path's length.
             first = 0.5 * (max(lately) - min(lately)) or 1.0
             coefficients = fitted(evaluator, point, order, first, partial(self._reach, point), self.accuracy)
         series = Series(coefficients, self.safety * self._reach(point, coefficients))
@@ -161,7 +158,7 @@ class Taylor:
 
 
 def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
-    """Return path coefficients at a point, shape (order + 1, N + 1); None if jets do not follow the residual."""
+    """Return path coefficients, shape (order + 1, N + 1); None if jets fail."""
     homotopy = evaluator.homotopy
     if offers(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)
