@@ -37,7 +37,7 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
     """Return the directions of the branches at a branch point.
 
     At a simple one they solve the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the
-    kernel (Keller 1977; Allgower and Georg, Section 8.1), else the reduced equations on a small sphere.
+    kernel (Keller 1977; Allgower and Georg, Section 8.1).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
     TypeError, ValueError
         If the event is no branch point.
     ArithmeticError
-        If directions are not stored (events from files) and not found, or branches are not isolated.
+        If directions, not stored in files, are not found, or branches are not isolated.
     """
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         found: list[Array] = []
@@ -129,10 +129,7 @@ def metric_at(event: LocatedEvent) -> Array:
 def switch_branch(
     homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
 ) -> tuple[tuple[Array, Array], ...]:
-    """Return starts on the other branches of a branch point or kink.
-
-    Each is a pair (u, v), a corrected point (the kink itself) and the direction away, for ``trace(homotopy,
-    start=...)``.
+    """Return starts on the other branches of a branch point or kink, for ``trace(homotopy, start=...)``.
 
     Parameters
     ----------
@@ -147,7 +144,7 @@ def switch_branch(
     Returns
     -------
     two pairs (u, v) of ndarray, shape (N + 1,)
-        At a kink one for each ray, at a multiple branch point two for each other branch.
+        Point (the kink itself at a kink) and direction away: one pair for each ray, two for each other branch.
 
     Raises
     ------

@@ -100,11 +100,11 @@ class Relative:
 
 @frozen
 class Automatic:
-    """Each component in units of how far the path has gone in it; independent of units and origin.
+    """Each component in units of how far the path has gone in it.
 
     ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``. The extent S is how far a component goes
-    until the path turns (`continuation.step.extent`), later at least its distance from the start. Changes y -> D y + c,
-    lam -> a lam + b, H -> E H keep the steps.
+    until the path turns (`continuation.step.extent`), later at least its distance from the start. Units and origin do
+    not change the steps.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class Automatic:
         Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth
         (examples/benchmarks/units).
     blocks : ndarray of int, shape (N,), optional
-        Labels; unknowns of one label get the largest scale among them.
+        Labels; a label's unknowns get its largest scale.
     """
 
     share: float = field(default=0.2, validator=FRACTION)
@@ -159,9 +159,8 @@ class Automatic:
 
 @frozen(eq=False)
 class Inherited:
-    """`Automatic` for a branch, with scales bounded below by its trunk's.
-
-    The scale of components that stand still would shrink from branch to branch.
+    """`Automatic` for a branch, with scales bounded below by its trunk's, since scales of components that stand still
+    would shrink.
 
     Parameters
     ----------

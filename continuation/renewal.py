@@ -98,8 +98,7 @@ def follow(
 ) -> Followed:
     """Trace a path and renew the homotopy every few steps, for example its mesh.
 
-    Closed curves are not recognised across renewals; event occurrences, and budgets other than steps, count for one
-    part.
+    Closed curves, event occurrences and budgets other than steps concern one part only.
 
     Parameters
     ----------

@@ -28,8 +28,8 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns, where eigenvalues cost less than a step, arcs are sampled inside: a pair may cross, become real,
-and one return through a turning point (MatCont's catalyst).
+"""Up to 30 unknowns, where eigenvalues are cheap, arcs are sampled inside: a pair may cross, become real, and one
+return through a turning point (MatCont's catalyst).
 """
 
 EVENT_MARGIN = 0.02
@@ -96,10 +96,9 @@ class HopfPoint:
 class Stability:
     """An observer that stores the stability of each point and locates Hopf points.
 
-    Points and events get ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the largest
-    real part; ``"frequency"``, the imaginary part of the pair nearest to the axis, or nan; ``"covered"``, 1 if no
-    unstable eigenvalue can be missing. A `Symmetric` H_y gives ``"unstable"`` only. Pictures show unstable parts
-    dashed.
+    ``observed["unstable"]`` is the number of unstable eigenvalues; ``"rightmost"``, the largest real part;
+    ``"frequency"``, the imaginary part of the pair nearest to the axis, or nan; ``"covered"``, 1 if no unstable
+    eigenvalue can be missing. A `Symmetric` H_y gives ``"unstable"`` only.
 
     Parameters
     ----------

@@ -28,7 +28,6 @@ def _of_geometric(bounds: Any) -> Bounds:
 
 
 def _of_series(bounds: Any) -> Bounds:
-    """The whole range of the series."""
     return checked_bounds(bounds).beginning_with(math.inf)
 
 
@@ -143,8 +142,8 @@ class AllgowerGeorg:
 class Curvature:
     """Steps from predicted curvature, as in PITCON (den Heijer and Rheinboldt 1981).
 
-    The curvature |2 sin(angle / 2)| / h is extrapolated linearly; h = sqrt(2 distance / curvature) makes Euler's error
-    the ideal distance, which the contraction adapts. State: last curvature, last length, ideal distance.
+    The curvature |2 sin(angle / 2)| / h is extrapolated; h = sqrt(2 distance / curvature) gives Euler's error the ideal
+    distance. State: last curvature, last length, ideal distance.
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)

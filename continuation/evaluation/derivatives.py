@@ -130,7 +130,6 @@ class Derivative:
         return pattern.matrix(entries), np.ascontiguousarray(column)
 
     def _grown(self, u: Array, known: Pattern) -> Pattern | None:
-        """The pattern with the entries at u."""
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
@@ -146,7 +145,6 @@ class Derivative:
 
 
 def _worth(pattern: Pattern | None) -> Pattern | None:
-    """The pattern if it saves most products."""
     return pattern if pattern is not None and 4 * pattern.count <= pattern.n else None
 
 
@@ -203,10 +201,10 @@ def from_residual(
 ) -> Derivative:
     """Return the best derivative: jets, else complex step, else central differences.
 
-    The first two must agree with a difference: ``abs`` or ``np.real`` run on complex numbers but are wrong.
+    The first two must agree with a difference: ``abs`` is wrong on complex numbers.
 
     `start` of shape (N,). `pattern`: Searched if None and N is large. `notes`: Receives the method. `products`: The
-    homotopy's own, unchecked.
+    homotopy's own.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

@@ -39,9 +39,7 @@ DERIVATIVES_KEPT = 4
 """Derivatives kept for step ends and the search for crossings."""
 
 LOOK = 64.0
-"""Perturbation of the round-off estimate, in ulps, to exceed an equation's own; signs and sizes vary, as common values
-cancel in differences.
-"""
+"""Perturbation of the round-off estimate, in ulps; signs and sizes vary, as common values cancel in differences."""
 
 NOT_OF_POINT = 3.0
 """Noise above this multiple of the point's round-off has another source; `Evaluator.look` sees
@@ -98,9 +96,8 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    `counts`: Receives the counts. `methods`: BibTeX of substitutes for derivatives. `keeping`: Keep derivatives for
-    `matrix`. `noise`: Beyond round-off of u, shape (N,), or None. `TypeError` without `start` or `residual`,
-    `ValueError` for bad answers.
+    `counts`: Receives the counts. `methods`: BibTeX of substitute derivatives. `keeping`: Keep derivatives for
+    `matrix`. `noise`: Beyond round-off of u, shape (N,), or None. `TypeError` or `ValueError` for a bad homotopy.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -138,7 +135,6 @@ class Evaluator:
             self._derivative = homotopy.jacobian
 
     def _given(self) -> Array:
-        """The start (y0, lam0) as one real vector."""
         answer = self.homotopy.start()
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
@@ -267,7 +263,6 @@ class Evaluator:
         return self._products[place]
 
     def _product(self, u: Array) -> Callable[[Array], Array]:
-        """The map v -> H'(u) v by the Jacobian."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)

@@ -58,20 +58,18 @@ class JacobianReport:
 def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
     """Compare a homotopy's derivative with its residual and find a wrong entry.
 
-    Products with random directions take a few residuals for any N; bisection of columns finds the entry, with 2 log2(N)
-    more.
+    Products with random directions cost a few residuals; bisection finds the entry with 2 log2(N) more.
 
     Parameters
     ----------
     homotopy : Homotopy
-        With `jacobian`, or with `bordered` and `differential`.
+        With `jacobian`, or `bordered` and `differential`.
     u : ndarray, shape (N + 1,), optional
-        Default: the start and a point near it, as zeros of a start can hide mistakes.
+        Default: the start and a point near it, as zeros can hide mistakes.
 
     Returns
     -------
     JacobianReport
-        For the first point with a wrong entry.
 
     Raises
     ------
@@ -147,7 +145,6 @@ def _product(products: Products, residual: Residual, u: Array, w: Array) -> Arra
 
 
 def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:
-    """Bisect the columns of a wrong row."""
 
     def error(columns: NDArray[np.intp]) -> float:
         part = np.zeros_like(w)

@@ -41,10 +41,8 @@ WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
-    """Return the noise of each equation, shape (N,): differences along w that do not shrink.
-
-    It contains errors of inner solvers and measurements (More and Wild, Estimating computational noise, SIAM J. Sci.
-    Comput. 33, 2011).
+    """Return the noise of each equation, shape (N,): differences along w that do not shrink (More and Wild, Estimating
+    computational noise, SIAM J. Sci. Comput. 33, 2011).
 
     `u`, `w` of shape (N + 1,). `here`, shape (N,): residual(u).
     """

@@ -15,8 +15,8 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear import Banded
 
 BLOCKS_TELL = 64
-"""Blocks that show sparsity: a matrix whose rows touch half of them is full. Eight random entries a row touch 12 % of
-64, nearly half of 16.
+"""Blocks that show sparsity: eight random entries a row touch 12 % of 64, nearly half of 16. A matrix whose rows touch
+half is full.
 """
 
 Places = NDArray[np.signedinteger[Any]]
@@ -138,10 +138,10 @@ def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
 
 
 def found(touched: Touched, n: int) -> Pattern | None:
-    """Return a matrix' pattern by halving blocks of columns; None if full or too expensive.
+    """Return a matrix' pattern, or None if full or too expensive.
 
-    Known blocks without common equations are halved together, in log2(n) times twice as many products as groups
-    (Griewank and Mitev, Mathematical Programming 93, 2002).
+    Blocks of columns are halved, those without common equations together (Griewank and Mitev, Mathematical Programming
+    93, 2002).
     """
     # 8 blocks cost as much as their 16 halves.
     shift = max(int(n - 1).bit_length() - 3, 0)

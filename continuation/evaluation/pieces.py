@@ -95,9 +95,9 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """Return the lower median distance to borders ahead along v, to first order.
+        """Return the lower median distance to borders ahead along v.
 
-        Without one: the size of the given direction, else of the point, else 1. Borders at the point are not ahead.
+        Without one: the size of the given direction, else of the point, else 1.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))

@@ -80,7 +80,6 @@ class Exact:
 
 
 def _by_jets(residual: Residual, u: Array, directions: Array) -> Array:
-    """All directions pass through the residual together."""
     from continuation import jets
 
     def along(s: Any) -> Any:
@@ -174,7 +173,7 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
 
 
 def _best(changes: Array) -> Any:
-    """The step after the least change; ties go to the usual step."""
+    """The step after the least change."""
     order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
     return order[np.argmin(changes[..., order], axis=-1)] + 1
 
@@ -232,9 +231,9 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     residual : callable
     u0 : ndarray, shape (N + 1,)
     groups : ndarray of int, shape (N + 1,), optional
-        Components that move together. Default: each alone.
+        Move together. Default: each alone.
     rows : sparse array, shape (N + 1, N), optional
-        Ones for the equations of each component. Default: all.
+        Ones for each component's equations. Default: all.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     groups = np.arange(u0.size) if groups is None else groups

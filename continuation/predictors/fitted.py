@@ -40,8 +40,7 @@ def fitted(
 ) -> Array:
     """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
-    The polynomial has the point's tangent and interpolates points of the path, found by chord steps, over about the
-    range of its use.
+    The polynomial has the point's tangent and interpolates points of the path, found by chord steps.
 
     Parameters
     ----------
@@ -53,7 +52,7 @@ def fitted(
     reach : callable
         Range in which a series is accurate.
     accuracy : float
-        In the metric. k powers double noise k times, so noise lowers the order.
+        In the metric; noise, doubled by each power, lowers the order.
 
     Raises
     ------

@@ -66,8 +66,7 @@ def approximant(coefficients: Array, weights: Array) -> Pade:
     """Return the approximant of degrees (K - K // 2, K // 2) of a series of order K, with reach 0.
 
     Coefficients K - m + 1..K of denominator times series vanish in least squares (simultaneous, or type II,
-    approximation; Baker and Graves-Morris, Section 8.1). An orthonormal basis of the terms makes the problem small,
-    scaling makes it well conditioned.
+    approximation; Baker and Graves-Morris, Section 8.1).
     """
     order = len(coefficients) - 1
     m = order // 2
@@ -88,10 +87,10 @@ def approximant(coefficients: Array, weights: Array) -> Pade:
 
 
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Pade | None:
-    """Return the approximant with the longest range; None if none exceeds the series.
+    """Return the approximant with the longest range, or None.
 
-    In its range two successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet),
-    and a lower order wins; a pole of the path limits all.
+    In its range successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet); a
+    pole of the path limits all.
     """
     order = len(series) - 1
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() > HUGE:

@@ -74,8 +74,8 @@ class Series:
 def best_order(n: int, accuracy: float) -> int:
     """Return the order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f, the rest of a step in solves, is 4 + n/60, between dense matrices and smaller systems of plug-ins; time is at
-    most a third above the best (docs, "choosing"). The least (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K + f).
+    f = 4 + n/60 is a compromise, at most a third slower than the best (docs, "choosing"). The least (f + K) exp(L/K), L
+    = -ln accuracy, is at K^2 = L (K + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -104,8 +104,7 @@ class Taylor:
     order : int, optional
         Default: `best_order`.
     accuracy : float
-        Last terms at a step's end, in the metric. The corrector squares this error; dense output in mid-step has about
-        this accuracy times 2^-order.
+        Last terms at a step's end, which the corrector squares; dense output has this times 2^-order in mid-step.
     safety : float
         Factor on the reach.
     rational : bool

@@ -40,7 +40,7 @@ crossing has another cause: a pole of H_y or a symmetry.
 
 @frozen(eq=False)
 class Accepted:
-    """An accepted arc: its end, its events, parts of the next state."""
+    """An accepted arc with its end and events."""
 
     ending: ArcEnd
     attempt: Arrival
@@ -74,10 +74,9 @@ class Examiner:
         ----------
         point : Linearization
         state : State
-            At `point`.
         attempt : Arrival
         prediction : Prediction
-            Used as the path between the points if accurate.
+            The path between the points, if accurate.
         landed : bool
             Whether the attempt aimed at the target.
         """
@@ -153,7 +152,6 @@ class Examiner:
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
-        """The target if it is the kink, else the kink."""
         if ending.at is not EndsAt.NOTHING:
             return ending
         target = self.settings.target

@@ -85,7 +85,7 @@ class Advance:
     settings : Settings
     recorder : StepRecorder
     spent : callable
-        Returns the exhausted limit of the budget, or "".
+        Names the exhausted limit of the budget, or "".
     pieces : Pieces or None
     """
 
@@ -236,7 +236,6 @@ class Advance:
         h: float,
         rejected: tuple[Rejected, ...],
     ) -> Moved:
-        """Make the arrival the current point."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
         monitor, infinity = divergence(
@@ -295,7 +294,6 @@ class Advance:
     def _behind(
         self, pieces: Pieces, crossing: Crossing, onward: Linearization, kink: Linearization, state: State
     ) -> tuple[Linearization, State]:
-        """The point on the next piece, without history."""
         self.solver.evaluator.bind(pieces.piece(crossing.signs))
         point = onward.with_weights(kink.weights)
         state = evolve(

@@ -19,9 +19,9 @@ from continuation.step.stepper import LOW_ORDER_FRACTION
 
 
 def max_step_of(homotopy: Any) -> MaxStep | None:
-    """Return the homotopy's checked `max_step`, or None.
+    """Return the homotopy's `max_step`, or None.
 
-    TypeError or ValueError unless it gives a number: NaN would shorten steps forever.
+    TypeError or ValueError unless it gives numbers: NaN would shorten steps forever.
     """
     if not offers(homotopy, SupportsMaxStep):
         return None
@@ -44,9 +44,9 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
 
 
 def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] | None:
-    """Return the homotopy's checked `observe`, or None.
+    """Return the homotopy's `observe`, or None.
 
-    TypeError unless it gives a mapping of names to numbers; ValueError if the names change: they are archive columns.
+    TypeError unless it maps names to numbers; ValueError if the names change: they are archive columns.
     """
     if not offers(homotopy, SupportsObserve):
         return None
@@ -71,9 +71,9 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 def finish_of(
     homotopy: Any, given: Callable[[Array, float], Array | None] | None
 ) -> Callable[[Array, float], Array | None] | None:
-    """Return the given finish, else the homotopy's, checked; or None.
+    """Return the given finish, else the homotopy's, or None.
 
-    ValueError unless it gives None or N finite numbers. `checked_end` checks H there.
+    ValueError unless it gives None or N finite numbers.
     """
     own = homotopy.finish if offers(homotopy, SupportsFinish) else None
     finish = own if given is None else given
@@ -99,8 +99,8 @@ FALSE_END = 1e-3
 def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | None) -> Array:
     """Return the end (y, lam) found by a `finish`, if H vanishes there.
 
-    An equation must be small relative to its terms, or no larger than at the last point moved to the end's parameter
-    (its terms may vanish, such as x_i w_i).
+    Each equation must be small relative to its terms, or as small as at the last point with the end's parameter, since
+    terms such as x_i w_i may vanish.
 
     Parameters
     ----------

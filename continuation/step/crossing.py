@@ -1,10 +1,9 @@
 """Eigenvalues of H' along an arc, and the branch point where one changes sign.
 
-Let M_a be the bordered matrix at the beginning of an arc, M(t) that at t, and z(t) an eigenvalue of M_a^-1 M(t). An arc
-is *regular* if no real z, from sample to sample, shrinks or grows by more than SPAN, and the outer of three samples
-add up to at most SPAN times the middle one. Then no branch crosses it. An arc *crosses* a branch if one z vanishes like
-1 - t / s at a simple branch point s, or like a power of it at a degenerate one, and no other z comes near zero. Any
-other arc is too long or leaves the path.
+Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at t. The arc is
+*regular* if no real z changes by more than SPAN between samples, nor the outer of three samples add up to more than
+SPAN times the middle one: then no branch crosses it. It *crosses* a branch if one z vanishes like 1 - t / s at a branch
+point s (a power of it at a degenerate one) and no other z comes near zero. Other arcs are too long or off the path.
 """
 
 from __future__ import annotations
@@ -31,8 +30,8 @@ from continuation.step.degenerate import Z_ROUND_OFF, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""Largest ratio of a real eigenvalue at two samples of a regular arc. Two crossings between samples leave no sign, but
-for a parabola that touches zero the sum of the outer samples is four times the middle one or more.
+"""Largest ratio of a real eigenvalue at two samples. For a parabola that touches zero the outer of three samples
+add up to four times the middle one or more.
 """
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
@@ -42,8 +41,8 @@ TOLD = 0.25
 """Least reported change of an eigenvalue."""
 
 ONWARD = 0.1
-"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths. If H' is more regular there by more,
-the singular point lies on the arc.
+"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths. A greater recovery of H' there shows a
+singular point on the arc.
 """
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
@@ -67,13 +66,13 @@ STEP_BACK = 0.7
 """Factor of a step that ended near a crossing; largest factor of one that is to end behind it."""
 
 BEST = 4.0 / 3.0
-"""Best step over a crossing, relative to its distance: weighs the cubic's error x^4 against the distance x - 1 of the
-branches.
+"""Best step over a crossing, relative to its distance: balances the cubic's error x^4 and the
+branches' distance x - 1.
 """
 
 SMALLEST = 2.0**-6
-"""Least part of an arc searched for pairs of crossings, and least factor of a step: round-off near the beginning must
-not end the path.
+"""Least part of an arc searched for pairs of crossings, and least factor of a step, since crossings near the beginning
+may be round-off.
 """
 
 AT_END = 1e-6
@@ -87,9 +86,9 @@ class Crossed:
     Attributes
     ----------
     point : Linearization
-        With the factorisation of the arc's beginning.
+        With the arc's first factorisation.
     rays : ndarray, shape (4, N + 1), or None
-        Unit directions away from the point: back, onward, both of the other branch. None if H' loses several ranks.
+        Unit vectors back, onward, and along the other branch; None if H' loses several ranks.
     """
 
     point: Linearization
@@ -109,7 +108,7 @@ class _BranchPoint:
     odd: bool = True
 
     def expected(self, t: float, s: float) -> float:
-        """1 - z at t if z vanishes at s."""
+        """The change 1 - z at t if z vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -167,7 +166,7 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 class _Looks:
     """Samples of the eigenvalues of H' along one arc.
 
-    `told`: Sorted large changes 1 - z by parameter. `along`: Their last eigenvectors' sum, which start vectors contain.
+    `told`: Large changes 1 - z by parameter. `along`: Sum of their last eigenvectors, for start vectors.
     """
 
     solver: PathSolver
@@ -238,9 +237,7 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Sample toward the beginning, where a pair of crossings makes an eigenvalue grow beyond SPAN; return the
-        parameters.
-        """
+        """Sample toward the beginning while a pair of crossings makes an eigenvalue grow; return the parameters."""
         t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
             t *= 0.5
@@ -251,7 +248,7 @@ class _Looks:
         return places
 
     def over(self, seen: _BranchPoint) -> Crossed | Rejected | None:
-        """The branch point, if the arc crosses it on its own branch; None if the arc ends before."""
+        """The branch point, if the arc crosses it on its own branch; None if it ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -306,17 +303,15 @@ class _Looks:
         return found
 
     def _rows(self) -> Array:
-        """Row sizes of H'."""
         a, b = self.arc.a, self.arc.b
         return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
-        """Whether H(u) is round-off."""
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> _BranchPoint | None:
-        """The simple branch point to which Newton converges from a guess."""
+        """The simple branch point found by Newton's method."""
         arc, a = self.arc, self.arc.a
         try:
             rows = self._rows()
@@ -332,7 +327,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float) -> bool:
-    """Whether a sample shows only the expected eigenvalue."""
+    """Whether a sample shows the expected eigenvalue only."""
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
     others = [mu for mu in told if mu != nearest and mu >= 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

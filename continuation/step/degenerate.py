@@ -1,7 +1,7 @@
 """Degenerate branch points: branches touch, more than two cross, or H' loses several ranks.
 
-There z, the eigenvalue of M_a^-1 M along an arc, behaves like (1 - t / s)^m with m > 1, or several vanish together.
-z / z' has a simple zero at s with slope 1 / m; the secant method finds both. The path goes straight on.
+The eigenvalue z of M_a^-1 M behaves like (1 - t / s)^m with m > 1, or several vanish together. The secant method finds
+s and m, since z / z' has a simple zero at s with slope 1 / m. The path goes straight on.
 """
 
 from __future__ import annotations
@@ -24,9 +24,7 @@ SECANTS_OF_Z = 20
 """Limit of secant steps; four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""Difference step for z', relative to the distance; order assumed first (not 2, which would hit a double zero);
-largest order of a simple zero.
-"""
+"""Relative difference step for z'; order assumed first (2 would hit a double zero); largest order of a simple zero."""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
 """Largest useful round-off of z; round-off of the products."""
@@ -38,7 +36,7 @@ FARTHEST = 3.0
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """Return the degenerate branch point seen from t; None if there is none or it is simple.
+    """Return the degenerate branch point near t, or None.
 
     Parameters
     ----------
@@ -48,14 +46,13 @@ def degenerate_point(
     t : float
         Where z has fallen.
     z_at : callable
-        Maps a parameter and a point to z or NaN.
+        Maps parameter and point to z or NaN.
     lost : int
         Number of eigenvalues like z.
 
     Returns
     -------
     u : ndarray, shape (N + 1,)
-        The point, to round-off in H.
     order : float
         Approximate order of the zero of z.
     """
@@ -115,7 +112,7 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """Effect on z of the distance across the path at which H stays round-off; 0 if too large."""
+    """Effect of round-off in H on z; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)

@@ -1,8 +1,8 @@
 """Extent: how far each component goes before the path turns; gives the first scales and step.
 
-It depends neither on units nor on the origin: the nonlinearity along the tangent v is measured by simplified Newton
-corrections d, e at u + h v (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). The median of
-|d_i| / (h |v_i|) measures the path's turn, |e| / |d| the change of the equations.
+Independent of units and origin: simplified Newton corrections d, e at u + h v, v the tangent, measure nonlinearity
+(Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). |d_i| / (h |v_i|), in the median, is the
+path's turn, |e| / |d| the equations' change.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ TURN = 0.25
 """Nonlinearity at the extent; 0.1 to 0.5 change factorisations on twelve problems by a tenth."""
 
 AROUND = 1.001
-"""Accuracy of the search for TURN, as a factor. With 1.05 a shift of the origin doubled factorisations on Bratu's
-problem.
+"""Accuracy factor of the search for TURN. With 1.05 shifts of the origin changed factorisations on Bratu's problem
+twofold.
 """
 
 POWERS = 0.5, 4.0
@@ -50,8 +50,8 @@ STILL_PIECEWISE = 1e-13
 """STANDSTILL on pieces, where components stand still to round-off of others."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""A tangent component is round-off if below the first, relatively, and changed by more than the second
-in refinement.
+"""A tangent component is round-off if below the first, relatively, and refinement changes it by more
+than the second.
 """
 
 UNCERTAIN = 100.0
@@ -81,18 +81,18 @@ def initial_extent(
     residual : ndarray, shape (N,)
         H at the point.
     farthest : float
-        Length of a path of straight pieces without target; else inf.
+        Length for straight pieces without target.
     room : float
-        Distance to an end value, if straight.
+        Distance to an end value.
     sizes : ndarray, shape (N + 1,), optional
-        Of the components, to recognise round-off.
+        Sizes of the components.
 
     Returns
     -------
     extent : ndarray, shape (N + 1,)
-        Positive; the median, in `sizes` if given, for a component that stands still.
+        Positive; the median for components that stand still.
     blur : ndarray, shape (N + 1,)
-        |H'^-1| times the noise in H and u.
+        |H'^-1| times the noise.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -174,7 +174,7 @@ def initial_extent(
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
     """Factor for the sizes of components that stand still, until H is about linear at that distance.
 
-    Other components' units may be far too large: a symmetric trunk's branches would be as short as round-off.
+    Too large a size would make a branch of a symmetric trunk as short as round-off.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -194,8 +194,7 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
     """The tangent, with zeros for round-off.
 
-    A tiny component may have another unit. One refinement decides, with H' at an indistinguishable point: it replaces
-    round-off only.
+    A tiny component may have another unit; refinement with H' at an indistinguishable point decides.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():

@@ -11,8 +11,7 @@ from continuation.point.arc import Arc
 class Guard(Protocol):
     """A function that says why an arc does not count; the step is then shortened.
 
-    Guards run last, on the part of the arc that counts, up to where the path ends. They do not see ends found by
-    `finish` or the endgame.
+    Guards run last, on the part of the arc up to the path's end; they do not see ends by `finish` or the endgame.
     """
 
     def __call__(self, arc: Arc, /) -> str | None:
@@ -21,8 +20,8 @@ class Guard(Protocol):
         Parameters
         ----------
         arc : Arc
-            Its ends `arc.a` and `arc.b` have `u`, `y`, `lam`, `tangent`, `weights`; `arc.samples` has points and
-            tangents between them, free of evaluations.
+            Ends `arc.a`, `arc.b` have `u`, `y`, `lam`, `tangent`, `weights`; `arc.samples` are points and tangents
+            between.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""The options of a path: names, types, meanings and defaults, for every function with `**options`."""
+"""The options of a path, for every function with `**options`."""
 
 from __future__ import annotations
 
@@ -34,22 +34,22 @@ class PartOptions(TypedDict, total=False):
     Parameters
     ----------
     preset : Preset, default DEFAULT
-        Predictor, corrector and controller: `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another.
+        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: the next three parts.
     predictor : Predictor, default None
         Replaces the preset's, like the next two.
     corrector : Corrector, default None
     controller : Controller, default None
     metric : Metric, default None
-        For arclength. Default: the homotopy's own, else `Automatic`.
+        For arclength. Default: the homotopy's, else `Automatic`.
     events : sequence of Event, default ()
-        Watched besides the homotopy's own, turning points and branch points.
+        Watched besides the homotopy's, turning points and branch points.
     guards : sequence of Guard, default ()
-        Functions of an arc that return why it does not count, or None. A refused step is shortened. Not archived.
+        Functions of an arc that return why it does not count, or None; refused steps are shortened. Not archived.
     check_jacobian : bool, default False
         Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True
-        Watch turning points and branch points. False costs two thirds and refuses steps over branch points: for
-        searches that need only the ends.
+        Watch turning points and branch points. False saves a third of the cost, for searches of ends; steps over branch
+        points are refused.
     """
 
     preset: Preset
@@ -77,16 +77,16 @@ class Options(PartOptions, total=False):
     direction : int, default 0
         Sign of the parameter's first movement; 0: towards the target.
     start : tuple of (u, v) or (y, lam), or Path, default None
-        Replaces the homotopy's start: a point ``(y, lam)`` as one vector and a direction; or a guess of y at a
-        parameter value; or a path, continued from its last point.
+        Replaces the homotopy's start: point ``(y, lam)`` and direction; or a guess of y at a parameter value; or a path
+        to continue.
     finish : callable, default None
-        Maps ``(y, lam)`` to the end y or None, after each step, in place of the homotopy's own. Not archived.
+        Maps ``(y, lam)`` to the end y or None, after each step; replaces the homotopy's. Not archived.
     max_step : float, default None
-        Largest step in arclength: the resolution of pictures and of the path. Bends narrower than half of it may be
-        missed (docs/guarantee.md).
+        Largest step in arclength, the resolution of pictures and path: bends narrower than half of it may be missed
+        (docs/guarantee.md).
     box : mapping or None, default "homotopy"
-        The path ends where it leaves the box. Maps ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to
-        (low, high); None means open. Default: the homotopy's, if any.
+        The path ends where it leaves the box: ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to (low,
+        high), None for open. Default: the homotopy's, if any.
     """
 
     tolerance: float | Tolerance

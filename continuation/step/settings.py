@@ -128,7 +128,6 @@ def complete_settings(
 
 
 def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
-    """The homotopy's checked blocks, or None."""
     if not offers(homotopy, SupportsBlocks):
         return None
     blocks = np.asarray(homotopy.blocks)
@@ -138,7 +137,6 @@ def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
 
 
 def _capped(controller: Any, longest: float | None) -> Any:
-    """The controller with steps up to `longest`."""
     if longest is None or longest >= controller.bounds.maximum:
         return controller
     bounds: Bounds = controller.bounds

@@ -62,8 +62,8 @@ def first_point(
 ) -> tuple[Linearization, float]:
     """Return the start on the path, with tangent, and a first step length.
 
-    `direction`: Sign of the tangent's parameter component; 0: towards the target, else +1. `StartError` for a wrong
-    point, SingularStartError for a wrong problem.
+    `direction`: Sign of the tangent's parameter component; 0: towards the target, else +1. `StartError`: wrong point;
+    SingularStartError: wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.zeros_like(u)
@@ -109,10 +109,8 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """Return the start in the trace's metric, and its extent.
-
-    Noise of H beyond round-off raises the tolerance to the median component's noise, and the extent of noisier
-    components.
+    """Return the start in the trace's metric, and its extent. Noise of H raises the tolerance, and noisier components'
+    extents.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
@@ -129,7 +127,6 @@ def measured(
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
-    """Correct the start at its parameter, else along the shortest way."""
     for border in (unit, point.border):
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
         if correction.converged and (border is unit or correction.distance <= NEARBY):
@@ -143,8 +140,7 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank.
 
-    At a turning point border e_{N+1} fails too, so random borders decide: a kernel that depends on them has more than
-    one dimension.
+    Border e_{N+1} fails at turning points too; a kernel that depends on random borders has more than one dimension.
     """
     ones = np.ones_like(u)
     try:
@@ -174,7 +170,6 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
 
 
 def _well_conditioned(point: Linearization) -> bool:
-    """Whether a generic solve is moderate and the tangent not steep."""
     r = generic_vector(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)

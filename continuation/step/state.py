@@ -26,13 +26,12 @@ class State:
     h : float
         Next step length.
     controller : tuple of float
-        Controller state.
     monitors : tuple of float
-        Monitors of the events; 0 for an event found at the point.
+        Of the events; 0 if found at the point.
     occurrences : tuple of int
-        Of each event.
+        Of the events.
     origin : Knot
-        The start, with its metric `origin_weights`: to recognise a closed curve.
+        The start, with metric `origin_weights`.
     divergence_monitor : tuple of float
         See `continuation.ends.divergence`.
     last_failed_landing : float
@@ -42,9 +41,9 @@ class State:
     index : int
         Of the last step.
     signs : tuple of int
-        The piece ahead, if any.
+        The piece ahead.
     noise : ndarray, shape (N,), or (0,) where there is none
-        Of each equation, if above round-off.
+        Of each equation.
     tolerance : float
         Raised for noise, else 0.
     """

@@ -18,7 +18,7 @@ from continuation.rejection import Rejected, Rejection
 
 LOW_ORDER_FRACTION = 0.9
 """Part of the distance to the boundary that a prediction may use: usual in interior methods (Wright, Primal-Dual
-Interior-Point Methods, 1997), as its error may equal that distance.
+Interior-Point Methods, 1997).
 """
 
 SHORTENINGS, SHORTEST = 60, 0.1

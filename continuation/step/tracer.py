@@ -85,15 +85,13 @@ class Observer(Protocol):
 class Tracer:
     """One path as an iterable of steps: ``for step in Tracer(homotopy)``; the loop may be left.
 
-    A second loop continues after the last step, with clock and budget; an ended path yields nothing. Each time a loop
-    is left, observers see the end, so archives close.
+    A second loop continues, with clock and budget. Observers see the end whenever a loop is left.
 
     Parameters
     ----------
     homotopy : Homotopy
         Has `start`, `residual` and optional capabilities.
     observers : sequence of Observer, default ()
-        Watch the trace.
     state : State, default None
         Resume from here, bit for bit.
     {options}
@@ -103,14 +101,12 @@ class Tracer:
     settings : Settings
         The completed options.
     path : Path
-        Found so far.
     state : State or None
-        For the next step.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, with the argument; for an unknown option, with the nearest one.
+        For bad input; for an unknown option, with the nearest one.
     """
 
     def __init__(
@@ -236,7 +232,6 @@ class Tracer:
         return self.settings.budget.spent(self.counts, self.seconds, arclength)
 
     def _beginning(self) -> Array:
-        """The approximate start."""
         if self._start is not None:
             return point_and_direction(self._start)[0]
         if self.state is not None:
@@ -287,7 +282,6 @@ class Tracer:
         return point
 
     def _restored(self, state: State) -> Linearization:
-        """The point of a stored state, factored again, with the stored tangent."""
         at, border = state.anchor
         self._evaluator.noisy(state.noise)
         self._solver.noisy(state.tolerance)
@@ -311,7 +305,6 @@ class Tracer:
                 telling.callback(observer.end, self)
 
     def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
-        """Add a step and its events to path, state and observers."""
         self.path.events.extend(events)
         self.path.steps.append(step)
         self.state = state
@@ -323,7 +316,6 @@ class Tracer:
             observer.step(self, step)
 
     def _next(self, point: Linearization) -> Linearization | None:
-        """The next point, or None at the end."""
         state = self.state
         assert state is not None
         # Steps that are not finite show overflow.
