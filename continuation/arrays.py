@@ -1,4 +1,4 @@
-"""Array types and fast vector operations."""
+"""Array types, and fast operations on vectors of shape (N,)."""
 
 from __future__ import annotations
 

@@ -169,7 +169,6 @@ def switch_branch(
 def _start(
     evaluator: Evaluator, u: Array, away: Array, onward: Array, weights: Array, step: float
 ) -> tuple[Array, Array]:
-    """A point of the other branch and its direction."""
     border, failed = weights * away, ""
     for h in step * SHORTER ** np.arange(TRIALS):
         guess = u + h * away

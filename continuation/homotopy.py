@@ -76,7 +76,7 @@ class SupportsTarget(Protocol):
 
 @runtime_checkable
 class SupportsBordered(Protocol):
-    """An own factorisation of [[H_y, H_lam], [border]]."""
+    """A factorisation of the homotopy's own for [[H_y, H_lam], [border]]."""
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix.
@@ -97,7 +97,7 @@ class SupportsBordered(Protocol):
 
 @runtime_checkable
 class SupportsDifferential(Protocol):
-    """H' times a vector: replaces a matrix with `bordered`, builds one without."""
+    """H' times a vector: with `bordered` no matrix is formed; without it the library builds H' from products."""
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """Return H_y v_y + H_lam v_lam.
@@ -145,7 +145,7 @@ class TangentPoint(Protocol):
 
 @runtime_checkable
 class SupportsTaylor(Protocol):
-    """Own path coefficients."""
+    """Path coefficients of the homotopy's own."""
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
         """Return c: u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.

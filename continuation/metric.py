@@ -18,7 +18,7 @@ class Metric(Protocol):
     """Weights of the inner product at a point."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return positive weights.
+        """Return positive weights, shape (N + 1,).
 
         Parameters
         ----------
@@ -41,7 +41,7 @@ def norm(weights: Array, a: Array) -> float:
 
 
 def share(weights: Array, v: Array) -> float:
-    """The parameter's part of the squared length of v."""
+    """The parameter's part of the squared length of v, between 0 and 1."""
     return float(weights[-1] * v[-1] ** 2 / dot(weights * v, v))
 
 
@@ -56,8 +56,9 @@ class Euclidean:
 
 @frozen
 class Weighted:
-    """Given weights of y (one, or one a component) and of the parameter; ``Weighted(1 / N, 1)`` is the root-mean-square
-    metric.
+    """Given weights of y (one, or one a component) and of the parameter.
+
+    ``Weighted(1 / N, 1)`` is the root-mean-square metric.
     """
 
     y: float | Array = 1.0
@@ -120,7 +121,7 @@ class Automatic:
 
     @property
     def longest(self) -> float:
-        """Longest step: it doubles the known extent."""
+        """Longest step: it at most doubles the known extent."""
         return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
@@ -159,8 +160,9 @@ class Automatic:
 
 @frozen(eq=False)
 class Inherited:
-    """`Automatic` for a branch, with scales bounded below by its trunk's, since scales of components that stand still
-    would shrink.
+    """`Automatic` for a branch, with scales bounded below by its trunk's.
+
+    Otherwise scales of components that stand still would shrink from branch to branch.
 
     Parameters
     ----------

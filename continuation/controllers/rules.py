@@ -23,7 +23,6 @@ def _of_fixed(bounds: Any) -> Bounds:
 
 
 def _of_geometric(bounds: Any) -> Bounds:
-    """The paper's step: ratio^0."""
     return checked_bounds(bounds).beginning_with(1.0)
 
 
@@ -143,7 +142,7 @@ class Curvature:
     """Steps from predicted curvature, as in PITCON (den Heijer and Rheinboldt 1981).
 
     The curvature |2 sin(angle / 2)| / h is extrapolated; h = sqrt(2 distance / curvature) gives Euler's error the ideal
-    distance. State: last curvature, last length, ideal distance.
+    distance, which the contraction adapts. State: last curvature, last length, ideal distance.
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)

@@ -127,8 +127,9 @@ INCREMENT_LEAVES = 0.5
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
-    """Return whether H vanishes where Newton's increment is small: its residual is round-off, or noise with a valid
-    increment.
+    """Return whether H vanishes where Newton's increment is small.
+
+    The residual is round-off, or noise with a valid increment.
     """
     if not far_from_round_off(evaluator, u):
         return True

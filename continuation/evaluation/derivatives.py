@@ -110,7 +110,6 @@ class Derivative:
         return full[:, :-1], full[:, -1]
 
     def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
-        """The sparse derivative, or None if the pattern lacks an entry."""
         scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
         if scale is not None:
             directions = directions.copy()

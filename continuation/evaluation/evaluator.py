@@ -275,7 +275,6 @@ class Evaluator:
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) at u; EvaluationError if undefined."""
         if not silent():
             with Silence():
                 return self._evaluated(u)

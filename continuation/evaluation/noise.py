@@ -17,7 +17,6 @@ NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
 
 
 def _divided_differences(places: Array, order: int) -> Array:
-    """Divided differences of one order, as unit rows."""
     rows = np.zeros((places.size - order, places.size))
     for k, row in enumerate(rows):
         some = places[k : k + order + 1]
@@ -41,10 +40,10 @@ WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
-    """Return the noise of each equation, shape (N,): differences along w that do not shrink (More and Wild, Estimating
-    computational noise, SIAM J. Sci. Comput. 33, 2011).
+    """Return the noise of each equation, shape (N,): differences along w that do not shrink.
 
-    `u`, `w` of shape (N + 1,). `here`, shape (N,): residual(u).
+    Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` of shape (N + 1,).
+    `here`, shape (N,): residual(u).
     """
     least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))

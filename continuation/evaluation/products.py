@@ -128,7 +128,7 @@ CHANCE = float(np.finfo(float).eps) ** (2.0 / 3.0)
 
 
 def sizes(u: Array) -> Array:
-    """Return units of difference steps: |u|, or 1."""
+    """Return units of difference steps: sizes of the components, or 1."""
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 

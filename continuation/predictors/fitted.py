@@ -24,7 +24,7 @@ FOUND_BESIDE = 1e-8
 """Last increment relative to the point's distance: near round-off."""
 
 NOISE_SEEN = 8.0
-"""Largest of many increments, in units of a point's noise."""
+"""Largest of many increments, in units of a point's noise; each is a difference of two."""
 
 ROUNDS = 40
 """Limit of range changes; 4^-40 of a range is nothing."""
@@ -83,7 +83,6 @@ def fitted(
 
 
 def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, blur: float) -> Array | None:
-    """The polynomial through path points at Chebyshev nodes within r, or None."""
     count = order - order % 2  # even: the point is no node
     nodes = np.cos((np.arange(count) + 0.5) * (np.pi / count))
     bends = np.empty((count, point.u.size))

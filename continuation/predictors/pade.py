@@ -107,7 +107,6 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
 
 
 def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, weights: Array) -> float:
-    """Length on which two approximants agree, sampled outward."""
     measure = Tolerance(relative=accuracy).measure
     end = min(LONGEST_RANGE * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0

@@ -104,7 +104,8 @@ class Taylor:
     order : int, optional
         Default: `best_order`.
     accuracy : float
-        Last terms at a step's end, which the corrector squares; dense output has this times 2^-order in mid-step.
+        Size of the last terms at a step's end, in the metric. The corrector squares it; dense output has it times
+        2^-order in mid-step.
     safety : float
         Factor on the reach.
     rational : bool

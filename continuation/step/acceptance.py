@@ -1,7 +1,4 @@
-"""Decide whether an arc counts, where the path ends on it, and which events it has.
-
-A new check of the library belongs in `Examiner.examine`, before the end of the arc is fixed.
-"""
+"""Decide whether an arc counts, where the path ends on it, and which events it has."""
 
 from __future__ import annotations
 
@@ -53,7 +50,7 @@ class Accepted:
 
 @frozen(eq=False)
 class Examiner:
-    """Examines the arcs of one path."""
+    """Examines arcs."""
 
     solver: PathSolver
     settings: Settings

@@ -155,7 +155,6 @@ def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
 
 
 def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | None:
-    """The map v -> H' v at u; None if unavailable."""
     try:
         return solver.evaluator.differential(u)
     except EvaluationError:
@@ -273,7 +272,6 @@ class _Looks:
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
-        """Reject the arc; the next attempt has `factor` of its length."""
         attempt = self.attempt
         factor = max(factor * self.arc.length / attempt.h, SMALLEST)
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)

@@ -55,10 +55,10 @@ than the second.
 """
 
 UNCERTAIN = 100.0
-"""Smaller corrections, in units of their sampled round-off, are ignored."""
+"""Corrections below this multiple of their sampled round-off are ignored."""
 
 OTHER_UNITS = 1e4
-"""Larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
+"""A larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -216,7 +216,6 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
 
 
 def _across(v: Array, z: Array) -> Array:
-    """The correction minus its median part along v."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * v
     return across

@@ -235,5 +235,4 @@ def documented(function: Documented) -> Documented:
 
 
 def _parameters(options: Any) -> str:
-    """Parameter list of a TypedDict."""
     return (inspect.getdoc(options) or "").partition("----------\n")[2] + "\n"

@@ -72,7 +72,6 @@ class Progress:
 
 
 def _tqdm(stream: TextIO, label: str) -> Any:
-    """A bar without a total; None without tqdm."""
     try:
         from tqdm import tqdm
     except ImportError:

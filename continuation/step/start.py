@@ -109,8 +109,9 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """Return the start in the trace's metric, and its extent. Noise of H raises the tolerance, and noisier components'
-    extents.
+    """Return the start in the trace's metric, and its extent.
+
+    Noise of H raises the tolerance, and the extents of noisier components.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)

@@ -52,7 +52,7 @@ class Observer(Protocol):
     """Watches a trace, without influence: an archive, a progress bar, a plot."""
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """An accepted step; `tracer.state` follows it.
+        """Receive an accepted step; `tracer.state` is the state after it.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class Observer(Protocol):
         ...
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """A located event, before its step.
+        """Receive a located event, before its step.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Observer(Protocol):
         ...
 
     def end(self, tracer: Tracer) -> None:
-        """The end; `tracer.path` is complete.
+        """Receive the end; `tracer.path` is complete.
 
         Parameters
         ----------
