@@ -1,9 +1,7 @@
 """Pseudo-arclength continuation with pluggable parts.
 
-``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target.
-
-Names are imported when they are first asked for: ``import continuation`` by itself takes no time, and a trace does not
-wait for what proofs, diagrams and archives are made with.
+``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target. Names are imported at
+first use.
 """
 
 from importlib import import_module
@@ -80,7 +78,7 @@ _HOMES = {
     "tolerance": "Tolerance",
     "tracing": "solve_at trace trace_both",
 }
-"""Which module holds what: the imports above, for those who run this."""
+"""Module of each name."""
 
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 
@@ -149,7 +147,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """A public name, or a module of the package, imported now."""
+    """Import a public name or a module of the package."""
     if name in _HOME:
         found = getattr(import_module(f"continuation.{_HOME[name]}"), name)
         globals()[name] = found

@@ -1,11 +1,11 @@
-"""``python -m continuation``: the command line, where the script is not on the path."""
+"""``python -m continuation``: the command line without the script."""
 
 import sys
 
 from continuation.version import __version__
 
 if sys.argv[1:] == ["--version"]:
-    # Said at once: the commands import all that they may need.
+    # Quick: the commands import much.
     print(f"continuation {__version__}")
     sys.exit()
 

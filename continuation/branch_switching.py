@@ -1,4 +1,4 @@
-"""Branch switching: the directions of the branches that meet at a point of a path, and starts on the others."""
+"""Branch switching: directions of crossing branches, and starts on them."""
 
 from __future__ import annotations
 
@@ -22,42 +22,40 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 SHORTER, TRIALS = 0.25, 16
-"""Where an unknown stands still along the path, its size on the other branch is not known beforehand: shorter steps are
-tried, down to a billionth of the one asked for."""
+"""Factor and number of trial steps: an unknown that stands still along the path has no known size on
+the other branch.
+"""
 
 SAME_LINE = 1.0 - 1e-5
-"""The cosine between the two rays of one smooth branch, whose directions are extrapolated from points on it."""
+"""Cosine between both extrapolated rays of one branch."""
 
 ROUND_OFF_SHARE = 1e-12
-"""A component of a tangent that is smaller than this, beside the largest, may be round-off."""
+"""A smaller tangent component, relative to the largest, may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
-    """The directions of the branches that cross at a branch point: of a simple one as found when it was polished.
+    """Return the directions of the branches at a branch point.
 
-    The roots of the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel
-    (Keller 1977; Allgower and Georg, Section 8.1). Where H' loses two or three ranks, the zeros of what
-    is left of the equations on a small sphere.
+    At a simple one they solve the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the
+    kernel (Keller 1977; Allgower and Georg, Section 8.1).
 
     Parameters
     ----------
     homotopy : Homotopy
-        The one that was traced.
     event : LocatedEvent
-        Of kind BRANCH_POINT or SINGULAR_POINT.
+        Kind BRANCH_POINT or SINGULAR_POINT.
 
     Returns
     -------
     (known, other, ...) : ndarray, shape (N + 1,)
-        Of unit Euclidean length; `known` is that of the path. Of a simple branch point there is one other.
+        Euclidean unit vectors; `known` is the path's.
 
     Raises
     ------
     TypeError, ValueError
-        If the event is none, or no branch point.
+        If the event is no branch point.
     ArithmeticError
-        If the event comes from a file, which keeps no directions, and they are not found again; if several ranks are
-        lost, and the branches do not leave one by one: the sentence says the dimension of the kernel.
+        If directions, not stored in files, are not found, or branches are not isolated.
     """
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         found: list[Array] = []
@@ -71,39 +69,39 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
 
 
 def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> list[Leaving]:
-    """All branches that leave a multiple branch point, the path's own first: the one back, then the one onward.
+    """Return all branches at a multiple branch point; the first are the path's, back and onward.
 
     Parameters
     ----------
     homotopy : Homotopy
     event : LocatedEvent
-        Of kind SINGULAR_POINT.
+        Kind SINGULAR_POINT.
     step : float, default 1e-2
-        How far from it each is found, in the metric.
+        Distance of the points found.
 
     Raises
     ------
     ArithmeticError
-        If the kernel of H' has more than four dimensions, or there is a continuum of branches.
+        If the kernel of H' has more than four dimensions, or branches form a continuum.
     """
     return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 
 
 def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
-    """Back, onward and both ways of the other branch: as they were found, or for an event of a file again.
+    """Return the rays back, onward and both of the other branch, stored or recomputed.
 
     Parameters
     ----------
     homotopy : Homotopy
     event : LocatedEvent
-        Of kind BRANCH_POINT.
+        Kind BRANCH_POINT.
 
     Raises
     ------
     TypeError, ValueError
-        If the event is none, or no simple branch point.
+        If the event is no simple branch point.
     ArithmeticError
-        If it comes from a file, which keeps no rays, and they are not found again.
+        If no rays are found.
     """
     if not isinstance(event, LocatedEvent):
         raise complain(TypeError, "event", "a located event of a path", event)
@@ -121,7 +119,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
 
 
 def metric_at(event: LocatedEvent) -> Array:
-    """The metric at the event; for one of a file by what moves along its tangent, round-off apart."""
+    """Return the metric at the event, stored or from its tangent."""
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)
@@ -131,34 +129,29 @@ def metric_at(event: LocatedEvent) -> Array:
 def switch_branch(
     homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
 ) -> tuple[tuple[Array, Array], ...]:
-    """Starts on the crossing branch, one on either side of the branch point; at a kink, starts along its other rays.
-
-    Each is a pair (u, v), a corrected point at distance about `step` and the direction away from the branch point;
-    pass it to ``trace(homotopy, start=...)``. At a kink the point is the kink itself.
+    """Return starts on the other branches of a branch point or kink, for ``trace(homotopy, start=...)``.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The one that was traced.
     event : LocatedEvent
-        A branch point, simple or multiple, or a kink of its path.
+        A branch point or kink.
     step : float, default 1e-2
-        How far from the branch point the starts are, in the metric of the path: a fraction of its extent. Where the
-        corrector does not reach the other branch from there they are nearer.
+        Distance of the starts in the path's metric; shorter if the corrector fails.
     ray : int, optional
-        At a kink: which of its `rays` to turn to, in place of all on which the path neither came nor went on.
+        One of a kink's `rays`. Default: all that the path did not use.
 
     Returns
     -------
     two pairs (u, v) of ndarray, shape (N + 1,)
-        At a kink as many pairs as rays are asked for, at a multiple branch point two for each other branch.
+        Point (the kink itself at a kink) and direction away: one pair for each ray, two for each other branch.
 
     Raises
     ------
     TypeError, ValueError
-        If the event is no branch point, or the step no positive number.
+        If the event is no branch point, or the step not positive.
     ArithmeticError
-        If no point of the other branch is found at that distance, or one of the branch that the path is on.
+        If no point of the other branch is found.
     """
     if not is_number(step) or not 0.0 < step < np.inf:
         raise complain(ValueError, "step", "a positive finite number", step)
@@ -176,7 +169,6 @@ def switch_branch(
 def _start(
     evaluator: Evaluator, u: Array, away: Array, onward: Array, weights: Array, step: float
 ) -> tuple[Array, Array]:
-    """A point of the other branch and its direction, at the distance asked for or nearer."""
     border, failed = weights * away, ""
     for h in step * SHORTER ** np.arange(TRIALS):
         guess = u + h * away

@@ -1,4 +1,4 @@
-"""How much a trace may cost."""
+"""Limits of a trace's cost."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from continuation.counts import Counts
 
 @frozen
 class Budget:
-    """Limits on accepted steps, seconds, factorisations and arclength; reaching one ends as BUDGET_EXHAUSTED."""
+    """Limits of steps, seconds, factorisations and arclength; the path ends with BUDGET_EXHAUSTED."""
 
     steps: float = field(default=10_000, validator=POSITIVE)
     seconds: float = field(default=math.inf, validator=POSITIVE)
@@ -20,16 +20,14 @@ class Budget:
     arclength: float = field(default=math.inf, validator=POSITIVE)
 
     def spent(self, counts: Counts, seconds: float, arclength: float = 0.0) -> str:
-        """Which limit is reached, as text; empty if none is.
+        """Return the exhausted limit as text, or "".
 
         Parameters
         ----------
         counts : Counts
-            Of the path so far.
         seconds : float
-            Since its first step was asked for.
         arclength : float
-            Of the path so far, in the metric of the trace.
+            So far, in the trace's metric.
 
         Returns
         -------

@@ -1,7 +1,6 @@
-"""Iterations that add increments until one is small: one loop, and the ratios at which they are given up.
+"""Iterations that add increments until one is small.
 
-An iteration whose increments shrink by a ratio q < 1 is, after an increment d, within q / (1 - q) |d| of its limit
-(Banach's fixed-point theorem); so the ratio says what the last increment is worth.
+After increment d the error is at most q / (1 - q) |d| if increments shrink by a ratio q < 1 (Banach's theorem).
 """
 
 from __future__ import annotations
@@ -14,26 +13,23 @@ from attrs import define, frozen
 from continuation.arrays import Array
 
 HALVING = 0.5
-"""At this ratio the last increment is itself a bound of the error. Iterative refinement is stopped there (Higham,
-Accuracy and Stability of Numerical Algorithms, Section 12.1; LAPACK's xGERFS), and so are chord steps here."""
+"""The last increment then bounds the error; iterative refinement stops here too (Higham, Accuracy and Stability of
+Numerical Algorithms, Section 12.1; LAPACK's xGERFS).
+"""
 
 RELIABLE = 0.3
-"""Where more hangs on it than one more factorisation: the sign of a determinant that is read off a factorisation from
-nearby, the coefficients of a series, the branch on which a path lands."""
+"""For important decisions: determinant signs, series coefficients, branches of landings."""
 
 MONOTONE = 0.9
-"""Increments that merely fall, and do not crawl: Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems,
-Section 2.1) for an iteration whose limit is examined afterwards."""
+"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), for limits checked afterwards."""
 
 
 @frozen
 class Contraction:
-    """When an iteration is given up.
+    """When an iteration gives up.
 
-    `iterations`: At most so many increments. `ratio`: An increment larger than this, relative to the one before, is not
-    added any more. `first`: The same for the first two increments, which may be of unlike parts of the error; `ratio`
-    unless given. `noise`: Increments up to this size may be round-off: their ratios mean nothing, and are not looked
-    at.
+    `iterations`: Limit. `ratio`: Largest ratio of increments. `first`: Largest first ratio, if different. `noise`:
+    Smaller increments are round-off, their ratios ignored.
     """
 
     iterations: int
@@ -44,11 +40,10 @@ class Contraction:
 
 @define(eq=False)
 class Iteration:
-    """An iteration under way; what it has come to is to be read off it, also where an increment raised.
+    """State of an iteration.
 
-    `x`: The iterate. `size`: Of the last increment that was added. `ratio`, `worst`: Of the last two increments, and
-    the largest so far that was looked at. `count`: Increments computed. `stalled`: Whether it was given up for its
-    ratio.
+    `x`: Iterate. `size`: Last added increment. `ratio`, `worst`: Last and largest ratio. `count`: Increments computed.
+    `stalled`: Stopped for its ratio.
     """
 
     x: Array
@@ -60,7 +55,7 @@ class Iteration:
     stalled: bool = False
 
     def add(self, step: Array, size: float) -> bool:
-        """Add an increment of a size; False, and nothing is added, if the iteration is given up for it."""
+        """Add an increment; False, without adding, if its ratio is too large."""
         rule, k, before = self.rule, self.count, self.size
         self.count = k + 1
         if k:
@@ -78,10 +73,9 @@ class Iteration:
     def run(
         self, increment: Callable[[], Array], measure: Callable[[Array], float], done: Callable[[float], bool]
     ) -> bool:
-        """Add increments; whether it is done. What every step does is a loop of its own over `add`, for its time.
+        """Add increments; return whether done. Fast loops call `add` themselves.
 
-        `increment`: The next increment at `x`. `measure`: Its size. `done`: Whether an increment of that size, which
-        has been added, was the last.
+        `increment`: Next increment at `x`. `measure`: Its size. `done`: Whether a size ends the iteration.
         """
         self.count = 0
         while self.count < self.rule.iterations:

@@ -1,4 +1,4 @@
-"""What a trace cost."""
+"""Counts of a trace's operations."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from attrs import asdict, define, field
 
 @define
 class Counts:
-    """What a trace cost. One factorisation is O(N^3) dense, one solve O(N^2), one residual what the plug-in says."""
+    """Operations of a trace. A dense factorisation is O(N^3), a solve O(N^2)."""
 
     residuals: int = 0
     jacobians: int = 0
@@ -16,14 +16,14 @@ class Counts:
     accepted: int = 0
     rejected: int = 0
     notes: set[str] = field(factory=set, eq=False, repr=False, kw_only=True)
-    """What was made from the residual since the homotopy does not give it, and how; no part of archives."""
+    """How missing derivatives were made; not archived."""
 
     def as_dict(self) -> dict[str, int]:
-        """The counts by name."""
+        """Return the counts by name."""
         return asdict(self, filter=lambda attribute, _: attribute.name != "notes")
 
     def copy(self) -> Counts:
-        """The counts as they stand."""
+        """Return a copy."""
         return Counts(*self.as_dict().values(), notes=set(self.notes))
 
     def __add__(self, other: Counts) -> Counts:

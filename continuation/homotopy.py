@@ -1,4 +1,4 @@
-"""What a plug-in is: three methods, and capabilities that are found by their presence."""
+"""Protocols of plug-ins: two methods, and optional capabilities."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from continuation.metric import Metric
 
 
 class Homotopy(Protocol):
-    """A map H: R^N x R -> R^N whose zero set holds the path. No base class is needed."""
+    """A map H: R^N x R -> R^N whose zeros form the path; no base class."""
 
     def start(self) -> tuple[Array, float]:
-        """A point (y0, lam0) on, or near, the path."""
+        """Return a point (y0, lam0) on or near the path."""
         ...
 
     def residual(self, y: Array, lam: float) -> Array:
-        """H(y, lam), shape (N,). Must not modify `y`.
+        """Return H(y, lam), shape (N,), without modifying `y`.
 
         Parameters
         ----------
@@ -38,10 +38,10 @@ class Homotopy(Protocol):
 
 @runtime_checkable
 class SupportsJacobian(Protocol):
-    """The derivative; without it products with `differential`, jets, complex step or differences serve."""
+    """The derivative; default: `differential`, jets, complex step or differences."""
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam): an (N, N) matrix (dense, sparse, Banded, LinearOperator) and an (N,) array.
+        """Return (H_y, H_lam).
 
         Parameters
         ----------
@@ -58,10 +58,10 @@ class SupportsJacobian(Protocol):
 
 @runtime_checkable
 class SupportsSparsity(Protocol):
-    """Where H_y may have entries, for a homotopy without `jacobian`: else that is looked for, from 64 unknowns on.
+    """Sparsity of H_y without `jacobian`; default: searched from 64 unknowns on.
 
-    Shape (N, N), an array or a sparse one: what is not zero counts. H_y then comes by groups of columns that have no
-    equation in common, each evaluation checked by one more product: entries that are missing are noticed, and found.
+    Shape (N, N), dense or sparse; nonzeros count. Columns without common equations are differentiated together; one
+    more product finds missing entries.
     """
 
     sparsity: Matrix
@@ -69,24 +69,24 @@ class SupportsSparsity(Protocol):
 
 @runtime_checkable
 class SupportsTarget(Protocol):
-    """The parameter value at which the path ends; 0 where a homotopy does not say, None for no target."""
+    """Final parameter value, or None; default 0."""
 
     target: float | None
 
 
 @runtime_checkable
 class SupportsBordered(Protocol):
-    """A factorisation of its own for [[H_y, H_lam], [border]], which replaces the library's."""
+    """A factorisation of the homotopy's own for [[H_y, H_lam], [border]]."""
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix at (y, lam); `border` has shape (N + 1,).
+        """Factor the bordered matrix.
 
         Parameters
         ----------
         y : ndarray, shape (N,)
         lam : float
         border : ndarray, shape (N + 1,)
-            The last row: (H_y, H_lam) has one more column than rows.
+            Last row.
 
         Returns
         -------
@@ -97,20 +97,16 @@ class SupportsBordered(Protocol):
 
 @runtime_checkable
 class SupportsDifferential(Protocol):
-    """H' applied to a direction.
-
-    With `bordered`, for a homotopy that never forms its matrix; without it and `jacobian`, H' is made of such products.
-    """
+    """H' times a vector: with `bordered` no matrix is formed; without it the library builds H' from products."""
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H_y v_y + H_lam v_lam, shape (N,).
+        """Return H_y v_y + H_lam v_lam.
 
         Parameters
         ----------
         y : ndarray, shape (N,)
         lam : float
         v : ndarray, shape (N + 1,)
-            The direction (v_y, v_lam).
 
         Returns
         -------
@@ -120,7 +116,7 @@ class SupportsDifferential(Protocol):
 
 
 class TangentPoint(Protocol):
-    """A point of the path as a plug-in sees it: what coefficients of a series are made of."""
+    """A point of the path, as plug-ins see it."""
 
     @property
     def u(self) -> Array:
@@ -129,11 +125,11 @@ class TangentPoint(Protocol):
 
     @property
     def tangent(self) -> Array:
-        """Of unit length in the metric, shape (N + 1,)."""
+        """Unit vector in the metric, shape (N + 1,)."""
         ...
 
     def solve(self, r: Array, rho: float = 0.0) -> Array:
-        """The solution z, shape (N + 1,), of ``H' z = r``, ``border . z = rho``, the border dual to the tangent.
+        """Return z with ``H' z = r``, ``border . z = rho``; the border is dual to the tangent.
 
         Parameters
         ----------
@@ -149,15 +145,14 @@ class TangentPoint(Protocol):
 
 @runtime_checkable
 class SupportsTaylor(Protocol):
-    """Path coefficients of its own, usually by convolutions, from the factorisation of the point."""
+    """Path coefficients of the homotopy's own."""
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
-        """Coefficients c, shape (order + 1, N + 1): u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
+        """Return c: u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
 
         Parameters
         ----------
         point : TangentPoint
-            Where the path is expanded.
         order : int
             Of the last coefficient, at least 1.
 
@@ -170,17 +165,17 @@ class SupportsTaylor(Protocol):
 
 @runtime_checkable
 class SupportsMaxStep(Protocol):
-    """An interior path: how far one may go along v and stay inside."""
+    """The path stays inside a domain."""
 
     def max_step(self, u: Array, v: Array) -> float:
-        """The largest h >= 0 (or inf) for which u + t v is admissible for every t in [0, h).
+        """Return the largest h >= 0 (or inf) such that u + t v is inside for t in [0, h).
 
         Parameters
         ----------
         u : ndarray, shape (N + 1,)
             A point inside.
         v : ndarray, shape (N + 1,)
-            A direction, of any length.
+            Of any length.
 
         Returns
         -------
@@ -191,35 +186,32 @@ class SupportsMaxStep(Protocol):
 
 @runtime_checkable
 class SupportsMetric(Protocol):
-    """The inner product in which this homotopy's arclength makes sense."""
+    """The inner product for arclength."""
 
     metric: Metric
 
 
 @runtime_checkable
 class SupportsExtents(Protocol):
-    """How large the unknowns and the parameter are, about: what moves by less than their round-off stands still.
-
-    Positive, shape (N + 1,). Of use where unknowns stand at zero all along, and nothing else tells their units.
-    """
+    """Approximate sizes of unknowns and parameter, positive, shape (N + 1,): units of those that stay zero."""
 
     extents: Array
 
 
 @runtime_checkable
 class SupportsBlocks(Protocol):
-    """Which unknowns are samples of one field: the default metric gives those of one label one scale."""
+    """Unknowns that sample one field share a scale of the default metric."""
 
     blocks: Sequence[int]
-    """A label for each unknown: 0, 1, ..."""
+    """Labels 0, 1, ..."""
 
 
 @runtime_checkable
 class SupportsFinish(Protocol):
-    """A problem's own way to end, tried after accepted steps; returns the end y at the target, or None."""
+    """The problem's own end, tried after accepted steps."""
 
     def finish(self, y: Array, lam: float) -> Array | None:
-        """The end point, certified by the problem, or None to go on tracing.
+        """Return the certified end, or None.
 
         Parameters
         ----------
@@ -235,10 +227,10 @@ class SupportsFinish(Protocol):
 
 @runtime_checkable
 class SupportsObserve(Protocol):
-    """Extra scalars, stored with every point of an archive."""
+    """Extra scalars stored with each point."""
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Named scalars at a point; the same names at every point.
+        """Return scalars, the same names at every point.
 
         Parameters
         ----------
@@ -254,32 +246,31 @@ class SupportsObserve(Protocol):
 
 @runtime_checkable
 class SupportsNames(Protocol):
-    """What the parameter and the unknowns are called: for axes, tables and archives. Each of the three is optional."""
+    """Names for axes, tables and archives; all optional."""
 
     parameter_name: str
     names: Sequence[str]
-    """One an unknown."""
+    """One for each unknown."""
     units: Mapping[str, str]
-    """By name: of the parameter, the unknowns, and what is observed."""
+    """By name of parameter, unknown or observed scalar."""
 
 
 @runtime_checkable
 class SupportsEvents(Protocol):
-    """Events that belong to the homotopy, added to those of the call."""
+    """Events of the homotopy, added to the caller's."""
 
     events: Sequence[Event]
 
 
 @runtime_checkable
 class SupportsPieces(Protocol):
-    """A piecewise smooth map: smooth where no switching function changes its sign, and continuous where one does.
+    """A continuous map, smooth where no switch changes sign.
 
-    `start`, `residual` and the other capabilities that belong to a path (`target`, `max_step`, `metric`, `events`,
-    `finish`, `observe`) are asked of the map; `jacobian`, `bordered`, `differential` and `taylor` of its pieces.
+    Its pieces have `jacobian`, `bordered`, `differential`, `taylor`; the map has everything else.
     """
 
     def switches(self, y: Array, lam: float) -> Array:
-        """The switching functions, shape (m,): smooth, and none vanishes on an open part of a path.
+        """Return smooth switches, shape (m,), that do not vanish along a path.
 
         Parameters
         ----------
@@ -289,30 +280,30 @@ class SupportsPieces(Protocol):
         ...
 
     def piece(self, signs: Array) -> Homotopy:
-        """The smooth homotopy that the map is where the switches have these signs, defined a little beyond.
+        """Return the smooth homotopy for these signs, defined slightly beyond.
 
         Parameters
         ----------
         signs : ndarray of int, shape (m,)
-            Each of them -1 or +1.
+            Each -1 or +1.
 
         Raises
         ------
         ValueError
-            If such signs cannot hold together anywhere: then there is no such piece.
+            If no piece has these signs.
         """
         ...
 
 
 class SupportsBox(Protocol):
-    """Where its path ends for those who say nothing of that: no target, no events, no box."""
+    """Box for callers without target, events and box."""
 
     box: Box
 
 
 @runtime_checkable
 class SupportsReferences(Protocol):
-    """Where the method was published."""
+    """Publications of the method."""
 
     references: Sequence[str]
     """BibTeX entries."""
@@ -325,5 +316,5 @@ def _names(protocol: Any) -> tuple[str, ...]:
 
 
 def offers(part: Any, protocol: Any) -> bool:
-    """Whether an object has what a Protocol of capabilities names: as `isinstance` says, in a tenth of its time."""
+    """Return whether an object has a Protocol's attributes: ten times as fast as `isinstance`."""
     return all(getattr(part, name, None) is not None for name in _names(protocol))

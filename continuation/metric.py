@@ -1,4 +1,4 @@
-"""The inner product that defines arclength: <a, b> = sum_i w_i a_i b_i with positive weights w."""
+"""Metrics: arclength from <a, b> = sum_i w_i a_i b_i with positive weights w."""
 
 from __future__ import annotations
 
@@ -15,57 +15,57 @@ from continuation.arrays import Array, dot
 
 
 class Metric(Protocol):
-    """Weights of the inner product at a point of the path."""
+    """Weights of the inner product at a point."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Positive weights, shape (N + 1,).
+        """Return positive weights, shape (N + 1,).
 
         Parameters
         ----------
         u, v : ndarray, shape (N + 1,)
-            The point (y, lam) and a direction of the path there (of any length and sign).
+            Point (y, lam), and a path direction of any length and sign.
         current : ndarray or None
-            The weights of the step before; None at the start. A metric that stays as it began returns them.
+            Last weights; None at the start.
         """
         ...
 
 
 def inner(weights: Array, a: Array, b: Array) -> float:
-    """<a, b> in the metric of `weights`."""
+    """<a, b> in the metric."""
     return dot(weights * a, b)
 
 
 def norm(weights: Array, a: Array) -> float:
-    """The length of `a` in the metric of `weights`."""
+    """Length of `a` in the metric."""
     return sqrt(dot(weights * a, a))
 
 
 def share(weights: Array, v: Array) -> float:
-    """The parameter's share of the squared length of v, between 0 and 1."""
+    """The parameter's part of the squared length of v, between 0 and 1."""
     return float(weights[-1] * v[-1] ** 2 / dot(weights * v, v))
 
 
 @frozen
 class Euclidean:
-    """Every component counts alike."""
+    """Weights 1."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Ones."""
+        """Return ones."""
         return np.ones_like(u) if current is None else current
 
 
 @frozen
 class Weighted:
-    """Given weights: one for y (a number, or one a component) and one for the parameter.
+    """Given weights of y (one, or one a component) and of the parameter.
 
-    ``Weighted(1 / N, 1)`` is the root-mean-square metric of discretised functions.
+    ``Weighted(1 / N, 1)`` is the root-mean-square metric.
     """
 
     y: float | Array = 1.0
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """The given weights, as one array."""
+        """Return the given weights."""
         if current is not None:
             return current
         weights = np.empty_like(u)
@@ -78,25 +78,22 @@ class Weighted:
 
 @frozen
 class RootMeanSquare:
-    """Weights 1/N on y and 1 on the parameter: what a discretised function has as its L2 norm."""
+    """The L2 norm of a discretised function: weights 1/N on y, 1 on the parameter."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """1/N for each component of y, 1 for the parameter."""
+        """Return the weights."""
         return Weighted(1.0 / (u.size - 1)).weights(u, v, current)
 
 
 @frozen
 class Relative:
-    """Components measured by their own size, 1/max(|u_i|, floor)^2, anew at each point; the parameter absolutely.
-
-    Made for interior paths, whose components live in orders of magnitude.
-    """
+    """Weights 1/max(|u_i|, floor)^2 at each point, and a fixed one for the parameter: for interior paths."""
 
     floor: float = field(default=1e-12, validator=POSITIVE_FINITE)
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """1/max(|u_i|, floor)^2, and `lam` for the parameter."""
+        """Return the weights."""
         weights: Array = np.maximum(np.abs(u), self.floor) ** -2
         weights[-1] = self.lam
         return weights
@@ -104,24 +101,19 @@ class Relative:
 
 @frozen
 class Automatic:
-    """Each component measured by how far the path has gone in it: the same path in any units, and wherever zero is.
+    """Each component in units of how far the path has gone in it.
 
-    ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``, where S is the extent: at the start how
-    far each component goes until the path has turned noticeably (`continuation.step.extent`), from then on at least its
-    distance from the start. A change of units y -> D y + c, lam -> a lam + b, H -> E H changes neither lengths nor
-    angles, so a trace takes the same steps.
-
-    The mean over y makes the length independent of N. The parameter's share decides how sharp a turning point looks;
-    measured on twelve problems (examples/benchmarks/units), factorisations differ by less than a tenth between shares
-    of 0.1 and 0.3.
+    ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``. The extent S is how far a component goes
+    until the path turns (`continuation.step.extent`), later at least its distance from the start. Units and origin do
+    not change the steps.
 
     Parameters
     ----------
     share : float
-        Weight of the parameter's change beside the mean of all others.
+        Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth
+        (examples/benchmarks/units).
     blocks : ndarray of int, shape (N,), optional
-        A label for each unknown. Those of one label are samples of one field, and are measured alike: by what goes
-        farthest.
+        Labels; a label's unknowns get its largest scale.
     """
 
     share: float = field(default=0.2, validator=FRACTION)
@@ -129,18 +121,18 @@ class Automatic:
 
     @property
     def longest(self) -> float:
-        """The longest step: at most doubles what is known of the path. Farther ahead nothing has been seen yet."""
+        """Longest step: it at most doubles the known extent."""
         return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """The current weights; without any, each component is measured by its share in the direction `v`."""
+        """Return the current weights, else those for `v`."""
         if current is not None:
             return current
         size = np.abs(v)
         return self.of_extent(np.where(size > 0.0, size, float(size.max())))
 
     def of_extent(self, extent: Array) -> Array:
-        """The weights for the extent of each component.
+        """Return the weights for an extent.
 
         Parameters
         ----------
@@ -157,7 +149,7 @@ class Automatic:
         return weights
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """The weights where the path, which began at `origin`, has come to `u`.
+        """Return the weights at `u`.
 
         Parameters
         ----------
@@ -168,18 +160,17 @@ class Automatic:
 
 @frozen(eq=False)
 class Inherited:
-    """`Automatic` for a branch that leaves another: no component is measured by less than a part of what it was there.
+    """`Automatic` for a branch, with scales bounded below by its trunk's.
 
-    What stands still where a branch begins has no scale of its own; the median of what moves, which is little beside a
-    branch point, would become less with each branch that leaves a branch.
+    Otherwise scales of components that stand still would shrink from branch to branch.
 
     Parameters
     ----------
     before : ndarray, shape (N + 1,)
-        The weights where it leaves.
+        Weights where it leaves.
     part : float
-        Measured on four pitchforks that leave each other: with 0.01 the third generation begins a thousandth as far
-        away as the first, with 0.1 all begin well.
+        Of the old scale. On four successive pitchforks 0.01 starts the third generation a thousandth as far away as the
+        first; 0.1 is good.
     """
 
     before: Array
@@ -192,11 +183,11 @@ class Inherited:
         return self.automatic.longest
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """As of `Automatic`, no more than those before allow."""
+        """As of `Automatic`, bounded."""
         return self._bounded(self.automatic.weights(u, v, current))
 
     def of_extent(self, extent: Array) -> Array:
-        """As of `Automatic`, no more than those before allow.
+        """As of `Automatic`, bounded.
 
         Parameters
         ----------
@@ -218,25 +209,25 @@ class Inherited:
 
 
 INVERTIBLE = 1e-150
-"""Below this a distance counts as this: its square can still be inverted."""
+"""Least distance whose square has an inverse."""
 
 
 @runtime_checkable
 class SupportsExtent(Protocol):
-    """A metric that measures components by how far the path has gone in them; found by presence."""
+    """A metric with scales from the path's extent."""
 
     @property
     def longest(self) -> float:
-        """The longest step, in its own length."""
+        """Longest step."""
         ...
 
     def of_extent(self, extent: Array) -> Array:
-        """The weights for the extent of each component.
+        """Return the weights for an extent.
 
         Parameters
         ----------
         extent : ndarray, shape (N + 1,)
-            How far the path goes in each component; positive.
+            How far the path goes in each component.
 
         Returns
         -------
@@ -245,14 +236,13 @@ class SupportsExtent(Protocol):
         ...
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """The weights where a path has come to `u`.
+        """Return the weights at `u`.
 
         Parameters
         ----------
         current : ndarray, shape (N + 1,)
-            The weights before.
         origin, u : ndarray, shape (N + 1,)
-            The start of the path, and where it is.
+            The path's start, and its point.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Why an attempt at a step failed: one enum, which the controllers, the tracer and the path's verdict look at."""
+"""Reasons why an attempt at a step failed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from attrs import frozen
 
 
 class Rejection(Enum):
-    """Why an attempt failed; the value says it in words."""
+    """Why an attempt failed; the value is the sentence."""
 
     NO_VALUE = "the homotopy has no finite value at a point that was tried"
     SINGULAR = "the bordered matrix has no factorisation at a point that was tried"
@@ -34,25 +34,24 @@ class Rejection(Enum):
 
     @property
     def leaves_domain(self) -> bool:
-        """Whether it says that the homotopy cannot be evaluated ahead."""
+        """Whether the homotopy cannot be evaluated ahead."""
         return self in (Rejection.NO_VALUE, Rejection.OVERFLOW)
 
 
 @frozen
 class Rejected:
-    """An attempt that failed.
+    """A failed attempt.
 
     Attributes
     ----------
     h : float
-        Its step length.
+        Step length.
     reason : Rejection
     detail : str
-        What is particular to this attempt.
     contraction : float
-        Largest ratio of successive increments of the corrector; nan where it did not get so far.
+        Largest ratio of corrector increments, or nan.
     factor : float
-        Of the step length: what an examination of the arc says of the next attempt.
+        Next step, relative to h.
     """
 
     h: float

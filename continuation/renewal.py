@@ -1,8 +1,4 @@
-"""`follow`: a path in unknowns that are chosen anew along it, as meshes are that are to suit the point.
-
-A path is a plain trace for a number of steps; then the homotopy is asked for another one in better unknowns, whose path
-goes on from there. Nothing in a trace knows of it.
-"""
+"""`follow`: a path in unknowns renewed along it, such as adapted meshes, by successive traces."""
 
 from __future__ import annotations
 
@@ -29,13 +25,13 @@ from continuation.tracing import trace
 
 @runtime_checkable
 class SupportsRenewal(Protocol):
-    """Unknowns that suit a part of a path only; found by presence, and asked for by `follow`."""
+    """Unknowns that suit a part of a path, for `follow`."""
 
     renewed_at: Sequence[str]
-    """Names of events of its own that end a trace because other unknowns are due."""
+    """Own events that end a trace for renewal."""
 
     def renewed(self, u: Array, v: Array) -> tuple[Any, Array, Array]:
-        """Another homotopy, of as many unknowns, and the same point and direction of the path in its unknowns.
+        """Return another homotopy of equal size, and point and direction in its unknowns.
 
         Parameters
         ----------
@@ -51,19 +47,19 @@ class SupportsRenewal(Protocol):
 
 @frozen(eq=False)
 class Followed:
-    """A path in several homotopies' unknowns, one after another.
+    """A path in the unknowns of several homotopies.
 
     Attributes
     ----------
     homotopies : tuple
     paths : tuple of Path
-        As many; each begins where the one before ends, in other unknowns.
+        One for each.
     """
 
     homotopies: tuple[Any, ...]
     paths: tuple[Path, ...]
     path: Path = field(init=False, repr=False)
-    """All steps and events as one path, for pictures and tables: what is observed has one meaning all along."""
+    """All steps and events as one path: observed scalars keep their meaning."""
 
     @path.default
     def _path(self) -> Path:
@@ -82,7 +78,7 @@ class Followed:
         )
 
     def homotopy_of(self, event: Any) -> Any:
-        """The homotopy in whose unknowns an event, or a step, of `path` is.
+        """Return the homotopy of an event or step of `path`.
 
         Parameters
         ----------
@@ -91,7 +87,7 @@ class Followed:
         number = event.index if isinstance(event, Step) else event.step if isinstance(event, LocatedEvent) else -1
         if not 0 <= number < len(self.path):
             raise complain(ValueError, "event", "an event or a step of this path", event)
-        # A part ends with the point from which the next one goes on, in unknowns of its own.
+        # The last point of a part has the part's unknowns.
         ends = np.cumsum([len(path) - 1 for path in self.paths])
         return self.homotopies[int(np.searchsorted(ends, number))]
 
@@ -100,20 +96,18 @@ class Followed:
 def follow(
     homotopy: Any, *, every: int = 5, archive: str | PathLike[str] | None = None, **options: Unpack[Options]
 ) -> Followed:
-    """Trace a path, and have the homotopy renewed after every few steps: on a mesh that suits the point, say.
+    """Trace a path and renew the homotopy every few steps, for example its mesh.
 
-    A closed curve is not recognised beyond one renewal, and events' occurrences are counted anew behind each. Budgets
-    of anything but steps hold for the part between two renewals.
+    Closed curves, event occurrences and budgets other than steps concern one part only.
 
     Parameters
     ----------
     homotopy : Homotopy
         With `renewed` and `renewed_at`.
     every : int, default 5
-        Steps between two renewals.
+        Steps between renewals.
     archive : path, default None
-        A new HDF5 file, which gets the parts as paths. If it is cut off, `continuation.archive.resume` goes on with the
-        last part in its own unknowns.
+        New HDF5 file, one path a part; `continuation.archive.resume` continues the last part.
     {options}
 
     Returns
@@ -123,7 +117,7 @@ def follow(
     Raises
     ------
     TypeError, ValueError
-        For bad input, as `trace` does.
+        For bad input, as `trace`.
     ArithmeticError
         If a renewal fails.
     """
@@ -149,5 +143,5 @@ def follow(
             renewed, *asked["start"] = homotopies[-1].renewed(last.u, last.tangent)
             homotopies.append(renewed)
             controller: Any = asked.get("controller") or (asked.get("preset") or DEFAULT).controller
-            # A trace begins with short steps; this one goes on.
+            # A new trace would begin with short steps.
             asked["controller"] = evolve(controller, bounds=evolve(controller.bounds, initial=last.step_length))

@@ -1,8 +1,7 @@
-"""Stability along a path: eigenvalues at its points, Hopf points between them, and a census of what crosses.
+"""Stability along a path: eigenvalues, Hopf points, and an eigenvalue count.
 
-The flow is dy/dt = side H(y, lam). Its equilibria are the points of the path; they are stable where all eigenvalues of
-side H_y lie to the left of the imaginary axis. A real eigenvalue crosses it at turning points and branch points, which
-the tracer finds by itself, a complex pair at Hopf points.
+A point is stable in dy/dt = side H(y, lam) if all eigenvalues of side H_y have negative real parts. Complex pairs cross
+the axis at Hopf points, real eigenvalues at turning points and branch points.
 """
 
 from __future__ import annotations
@@ -28,21 +27,21 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns, where eigenvalues take less time than a step, an arc is looked at between its ends too: a pair may
-cross, become real, and one of the two come back through a turning point, within one step (MatCont's catalyst)."""
+"""Up to 30 unknowns, where eigenvalues are cheap, arcs are sampled inside: a pair may cross, become real, and one
+return through a turning point (MatCont's catalyst).
+"""
 
 EVENT_MARGIN = 0.02
-"""So far from where it lies on an arc, in its lengths, an event may change what is seen on the segment."""
+"""Events this near, in arc lengths, may change an interval's count."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
-"""How many eigenvalues change sides there, at most."""
+"""Largest number of eigenvalues crossing at an event."""
 
 SPECTRA_KEPT = 12
-"""Spectra that are remembered: those along an arc, and the event that is being looked at."""
+"""Enough for an arc and an event."""
 
 ON_AXIS = 1e-6
-"""The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
-crossed."""
+"""Largest relative real part of a Hopf pair; otherwise a pair appeared or vanished."""
 
 ZERO_RESOLVED = 1e-14
 """The real part of a pair, relative to its modulus, that is zero: what is left is round-off of the eigenvalues."""
@@ -50,19 +49,18 @@ ZERO_RESOLVED = 1e-14
 
 @frozen
 class HopfPoint:
-    """A complex pair of eigenvalues of H_y crosses the imaginary axis: a Hopf point, with what is known on the way.
+    """A Hopf point: a complex pair of eigenvalues of H_y crosses the imaginary axis.
 
     Parameters
     ----------
     side : {1, -1}, default 1
-        Of dy/dt = side H(y, lam): a Hopf point does not depend on it, the counts stored do.
+        In dy/dt = side H(y, lam); affects stored counts only.
     k : int, optional
-        So many eigenvalues on the right are computed, by Arnoldi's method. By default all where there are
-        at most 100, else 6.
+        Number of rightmost eigenvalues, by Arnoldi's method. Default: all up to 100 unknowns, else 6.
     terminal : int, default 0
-        The trace ends at the k-th occurrence; 0 for never.
+        End at the k-th occurrence; 0: never.
     direction : int, default 0
-        +1 only where a pair becomes unstable, -1 only where one becomes stable.
+        +1: only pairs that become unstable; -1: stable.
     """
 
     side: int = field(default=1, validator=one_of(1, -1))
@@ -73,16 +71,15 @@ class HopfPoint:
     name: str = field(default="Hopf point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: the event needs H_y, and watches for crossings when it is `bound` to a homotopy."""
+        """Return 1: only the `bound` event sees H_y."""
         return 1.0
 
     def bound(self, evaluator: Evaluator) -> BoundHopf:
-        """The event as it watches one path.
+        """Return the event for one path.
 
         Parameters
         ----------
         evaluator : Evaluator
-            Of the homotopy.
         """
         evaluator.keeping = True
         return BoundHopf(evaluator, *astuple(self))
@@ -90,17 +87,16 @@ class HopfPoint:
 
 @frozen
 class Stability:
-    """An observer that stores the stability of each point, and locates Hopf points.
+    """An observer that stores the stability of each point and locates Hopf points.
 
-    Each point, and each event, has ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the
-    largest real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis (nan without one);
-    and ``"covered"``, 1 where no unstable eigenvalue can have been overlooked. Pictures are solid where none is
-    unstable, and dashed elsewhere. Where H_y is `Symmetric` only signs are computed: ``"unstable"`` is all there is.
+    ``observed["unstable"]`` is the number of unstable eigenvalues; ``"rightmost"``, the largest real part;
+    ``"frequency"``, the imaginary part of the pair nearest to the axis, or nan; ``"covered"``, 1 if no unstable
+    eigenvalue can be missing. A `Symmetric` H_y gives ``"unstable"`` only.
 
     Parameters
     ----------
     side, k, terminal
-        As for `HopfPoint`, which is watched for.
+        As for `HopfPoint`.
     """
 
     side: int = field(default=1, validator=one_of(1, -1))
@@ -109,22 +105,22 @@ class Stability:
 
     @property
     def events(self) -> tuple[HopfPoint, ...]:
-        """What is watched for: ``trace_both(homotopy, events=Stability().events)`` does the same."""
+        """Watched events; ``trace_both(homotopy, events=Stability().events)`` does the same."""
         return (HopfPoint(self.side, self.k, self.terminal),)
 
     def step(self, tracer: Any, step: Step) -> None:
-        """The point has its numbers already."""
+        """Do nothing."""
 
     def event(self, tracer: Any, event: LocatedEvent) -> None:
-        """The event has its numbers already."""
+        """Do nothing."""
 
     def end(self, tracer: Any) -> None:
-        """Nothing is left to do."""
+        """Do nothing."""
 
 
 @define(eq=False)
 class BoundHopf:
-    """The event `HopfPoint` on the path of one homotopy."""
+    """`HopfPoint` on the path of one homotopy."""
 
     evaluator: Evaluator
     side: int
@@ -136,7 +132,7 @@ class BoundHopf:
     _known: dict[Any, Spectrum] = field(factory=dict, init=False)
 
     def at(self, u: Array) -> Spectrum:
-        """The eigenvalues at a point, on the piece that the path is on."""
+        """Return the eigenvalues at a point."""
         key = (id(self.evaluator.homotopy), u.tobytes())
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
@@ -156,12 +152,12 @@ class BoundHopf:
             raise EvaluationError(str(error)) from error
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The real part of the pair nearest to the axis: how well a Hopf point is located."""
+        """Return the real part of the pair nearest to the axis."""
         pairs = self.at(u).pairs
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
     def observe(self, u: Array) -> dict[str, float]:
-        """What is stored with a point."""
+        """Return a point's stored scalars."""
         found = self.at(u)
         if not found.values.size:
             return {"unstable": float(found.unstable)}
@@ -171,11 +167,11 @@ class BoundHopf:
         return dict(zip(("unstable", "rightmost", "frequency", "covered"), known))
 
     def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
-        """The Hopf points of an arc, in order: of each pair that changes sides, where its real part vanishes."""
+        """Return the Hopf points of an arc, in order."""
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs
-            # Real eigenvalues that become a pair, or a pair that becomes real, change no other number.
+            # Pairs that become real, or the reverse, change only the number of pairs.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
             points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
@@ -183,13 +179,13 @@ class BoundHopf:
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
-        """Spectra along an arc: at its ends, and between them on its segment where eigenvalues cost next to nothing."""
+        """Spectra at an arc's ends, and inside if cheap."""
         inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
-        """Of the pair of a rank, the rightmost first: smooth where that pair crosses alone."""
+        """Real part of the pair of a rank, rightmost first."""
         found = self.at(u)
         if rank >= found.pairs.size:
             return -found.size
@@ -215,7 +211,7 @@ class BoundHopf:
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
-        """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""
+        """Return whether an arc's events explain its change in unstable eigenvalues."""
         length = position(arc, arc.b.u)
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):

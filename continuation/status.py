@@ -1,4 +1,4 @@
-"""How a path ended, each way a sentence with the next move; and what a stored point is."""
+"""How a path ended, and kinds of stored points."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from enum import IntEnum
 
 
 class Described(IntEnum):
-    """Numbers with a sentence each, which is the member's description too."""
+    """Numbers with sentences as descriptions."""
 
     def __new__(cls, number: int, sentence: str = "") -> Described:
-        """A member."""
+        """Make a member."""
         member = int.__new__(cls, number)
         member._value_ = number
         member.__doc__ = sentence
@@ -17,12 +17,12 @@ class Described(IntEnum):
 
     @property
     def flag(self) -> str:
-        """The name in lower case, as CF flag_meanings want it."""
+        """Lower-case name, for CF flag_meanings."""
         return self.name.lower()
 
 
 class Status(Described):
-    """The end of a path. Numbers are stored in archives: they are added to, never renumbered."""
+    """The end of a path. Archives store the numbers: never renumber."""
 
     TRACING = 0, "The path is still being traced."
     REACHED_TARGET = 1, "The path reached the target."
@@ -50,12 +50,12 @@ class Status(Described):
 
     @property
     def success(self) -> bool:
-        """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
+        """Whether the path reached a requested end: target, terminal event, or its own start."""
         return self in (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
 
 
 class Kind(Described):
-    """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
+    """Kind of a stored point. Archives store the numbers: never renumber."""
 
     REGULAR = 0, "A point like others."
     START = 1, "Where the path begins."

@@ -1,4 +1,4 @@
-"""When a correction is small enough: by its length in the metric of the path."""
+"""Tolerance of corrections, in the metric of the path."""
 
 from __future__ import annotations
 
@@ -12,47 +12,42 @@ from continuation.arrays import Array
 from continuation.metric import norm
 
 LEAST_TOLERANCE = sys.float_info.epsilon**2
-"""Of a fraction of the path: after an increment of the size of round-off the error is about its square."""
+"""As a fraction of the path: the error after an increment at round-off."""
 
 
 @frozen
 class Tolerance:
-    """An increment d is small if its length in the metric of the path is at most `relative`: ``|d|_W <= relative``.
+    """An increment d is small if ``|d|_W <= relative``, in the metric of the path: a fraction of the path, by default.
 
-    The default metric measures each component by how far the path has gone in it, so this is a fraction of the path,
-    in any units. After the last increment of Newton's method the error is about its square; so a tolerance below the
-    root of round-off, as the default is, asks for points whose residual is round-off of what H is made of there, and
-    a looser one for points whose error is about its square.
+    Newton's error is about the last increment's square. So up to the root of round-off (the default) residuals must be
+    round-off; looser tolerances accept errors of about their square.
 
     Attributes
     ----------
     relative : float
-        Of the last increment.
     residual : float
-        Points with a larger residual, in the units of the equations, do not count; infinity (the default) judges by
-        increments and round-off alone.
+        Largest residual; default infinity: increments and round-off decide.
     """
 
     relative: float = field(default=1e-8, validator=FRACTION)
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, weights: Array) -> float:
-        """The length of an increment in units of the tolerance: small is <= 1.
+        """Return an increment's length in tolerances.
 
         Parameters
         ----------
         increment : ndarray, shape (N + 1,)
         weights : ndarray, shape (N + 1,)
-            Of the metric.
+            Metric.
         """
         return norm(weights, increment) / self.relative
 
 
 def as_tolerance(value: float | Tolerance) -> Tolerance:
-    """A Tolerance as it is, a number as its relative part.
+    """Return a Tolerance, from a number as its relative part.
 
-    Raises `TypeError` if it is neither a Tolerance nor a real number. Raises `ValueError` if the number is not between
-    the square of round-off and 1: it is a fraction of the path.
+    `TypeError` for other types, `ValueError` unless round-off squared <= number < 1.
     """
     expected = "a positive finite number or a Tolerance"
     if not isinstance(value, Tolerance):

@@ -1,4 +1,4 @@
-"""`trace`: the loop that most people call; both directions of a path; one point of it."""
+"""`trace`, `trace_both` and `solve_at`."""
 
 from __future__ import annotations
 
@@ -43,34 +43,33 @@ def trace(
     Parameters
     ----------
     homotopy : Homotopy
-        An object with `start` and `residual`, and whatever other capability it has (`continuation.homotopy`).
+        Has `start`, `residual` and optional capabilities (`continuation.homotopy`).
     archive : path or PathLog, default None
-        An HDF5 file to write the path to; must not exist.
+        New HDF5 file for the path.
     save_every : int, default 1
-        Of the steps only so many are written to it: 10 for every tenth, the ends and the events besides.
+        Write every n-th step, and ends and events.
     progress : bool, default False
-        Show a progress bar (needs tqdm).
+        Show progress, by tqdm if installed.
     certified : bool, default False
-        Prove the path (`continuation.certify`), with steps shortened until that succeeds; `path.proof` and the message
-        say what was proved. Needs a residual that runs on interval arrays.
+        Prove the path (`continuation.certify`), with shorter steps if needed; see `path.proof`. The residual must
+        accept interval arrays.
     observers : sequence of Observer, default ()
         Watch the trace: a plot, a log.
     state : State, default None
-        Resume from here; `continuation.archive.resume` takes it from a file.
+        Resume from here; `continuation.archive.resume` reads it from a file.
     {options}
 
     Returns
     -------
     Path
-        With `success`, a `status`, a `message`, the points, the events and the counts. A path that fails is returned
-        too.
+        With `success`, `status`, `message`, points, events and counts, also after a failure.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
+        For bad input.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive has it too.
+        After Ctrl-C: a KeyboardInterrupt with ``interrupt.path``, which the archive has too.
     """
     check_run(observers, state)
     for name, flag in (("progress", progress), ("certified", certified)):
@@ -108,26 +107,25 @@ def trace_both(
     progress: bool = False,
     **options: Unpack[Options],
 ) -> Path:
-    """Trace the path from its start in both directions, as one path: from the end behind, over the start, to the end.
+    """Trace the path from its start in both directions, as one path.
 
     Parameters
     ----------
     homotopy : Homotopy
     archive : path, default None
-        A new HDF5 file, which gets the two halves as two paths, each from the start.
+        New HDF5 file with the halves as two paths.
     progress : bool, default False
     {options}
 
     Returns
     -------
     Path
-        With the status and the message of the half that was traced in the direction of a growing parameter; a closed
-        curve is traced once.
+        Status and message of the half with growing parameter; a closed curve is traced once.
 
     Raises
     ------
     TypeError, ValueError
-        As for `trace`; for `direction`, which is both.
+        As for `trace`; also if `direction` is given.
     """
     if options.get("direction"):
         raise ValueError(f"direction: expected none, since both are traced, found {options['direction']!r}")
@@ -148,14 +146,14 @@ def trace_both(
 
 
 def solve_at(homotopy: Any, lam: float, guess: Any = None, tolerance: float | Tolerance = 1e-8) -> Array:
-    """The unknowns at a value of the parameter, by Newton's method from a guess: H(y, lam) = 0.
+    """Solve H(y, lam) = 0 for y by Newton's method.
 
     Parameters
     ----------
     homotopy : Homotopy
     lam : float
     guess : array_like, shape (N,), optional
-        The homotopy's start by default.
+        Default: the homotopy's start.
     tolerance : float or Tolerance, default 1e-8
 
     Returns
@@ -165,9 +163,9 @@ def solve_at(homotopy: Any, lam: float, guess: Any = None, tolerance: float | To
     Raises
     ------
     ArithmeticError
-        If Newton's method does not converge from there; the sentence says why.
+        If Newton's method does not converge.
     ValueError
-        If the guess has another size than the homotopy's start.
+        If the guess has the wrong size.
     """
     evaluator = Evaluator(homotopy, Counts())
     start = evaluator.start()

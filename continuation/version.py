@@ -1,3 +1,3 @@
-"""The version of the library, for what is written by it."""
+"""Version of the library."""
 
 __version__ = "0.2.0"

@@ -1,4 +1,4 @@
-"""Step controllers: how long the next step is, and whether the last one is accepted."""
+"""Step controllers: accept a step, choose the next length."""
 
 from continuation.controllers.base import Bounds, Controller, Decision, StepMeasures
 from continuation.controllers.rules import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange

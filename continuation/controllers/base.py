@@ -1,4 +1,4 @@
-"""What a step controller is: frozen settings, and a state that is a tuple of floats, so that it can be archived."""
+"""The controller protocol; its state is floats, for archives."""
 
 from __future__ import annotations
 
@@ -16,27 +16,26 @@ State: TypeAlias = tuple[float, ...]
 
 @frozen
 class StepMeasures:
-    """What a controller learns of one attempt.
+    """Measures of one attempt.
 
     Attributes
     ----------
     h : float
-        Its step length, in arclength of the metric.
+        Step length.
     rejection : Rejection or None
-        Why it failed before it could be measured; None where the corrector converged inside the domain. The measures
-        below are meaningful only then.
+        Reason of an early failure; the other measures need None.
     iterations : int
-        The corrector's increments.
+        Corrector increments.
     contraction : float
-        Worst ratio of successive increments.
+        Worst ratio of increments.
     distance : float
         Length of the correction.
     angle : float
         Between the tangents, radians.
     order : int
-        The predictor's order p: the distance behaves like h^(p + 1).
+        Predictor's order p: distance is O(h^(p + 1)).
     rejections : int
-        Attempts at this step before this one.
+        Earlier attempts at this step.
     """
 
     h: float
@@ -50,13 +49,13 @@ class StepMeasures:
 
     @property
     def converged(self) -> bool:
-        """Whether the other measures are to be judged."""
+        """Whether the measures are valid."""
         return self.rejection is None
 
 
 @frozen
 class Decision:
-    """Whether the attempt is accepted, the next step length to try, and the controller's new state."""
+    """Acceptance, next step length, and new state."""
 
     accept: bool
     h: float
@@ -65,17 +64,15 @@ class Decision:
 
 @frozen
 class Bounds:
-    """Floor, ceiling and first value of the step length, in arclength of the metric.
+    """Bounds and first value of the step length, in arclength.
 
     Attributes
     ----------
     minimum : float, default 1e-10
-        A path whose step falls below it ends.
+        The path ends below it.
     maximum : float, default inf
-        No step is longer, the first one included.
     initial : float or None, default None
-        The first step. None is chosen from the problem (`continuation.step.extent`), or by a controller that has a
-        usual step of its own.
+        None: from the problem (`continuation.step.extent`) or the controller.
     """
 
     minimum: float = field(default=1e-10, validator=POSITIVE_FINITE)
@@ -91,7 +88,7 @@ class Bounds:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
     def cap(self, h: float) -> float:
-        """The step kept below the ceiling; the floor is the tracer's to check.
+        """Return the step, at most the maximum.
 
         Parameters
         ----------
@@ -104,23 +101,23 @@ class Bounds:
         return min(h, self.maximum)
 
     def beginning_with(self, usual: float) -> Bounds:
-        """The same bounds, with a first step where they do not say one.
+        """Return bounds with a first step.
 
         Parameters
         ----------
         usual : float
-            That of the controller.
+            Used unless `initial` is given.
         """
         return self if self.initial is not None else evolve(self, initial=max(self.cap(usual), self.minimum))
 
     @property
     def longest(self) -> float:
-        """The first value, for a controller that goes back to it after every step."""
+        """First step, for controllers that return to it."""
         return self.maximum if self.initial is None else self.cap(self.initial)
 
 
 def checked_bounds(value: Any) -> Bounds:
-    """The bounds of a step; TypeError for anything else."""
+    """Return the bounds; raise TypeError for anything else."""
     if not isinstance(value, Bounds):
         raise complain(TypeError, "bounds", "Bounds(minimum, maximum, initial)", value)
     return value
@@ -131,20 +128,19 @@ class Controller(Protocol):
 
     @property
     def bounds(self) -> Bounds:
-        """Floor, ceiling and first value."""
+        """Minimum, maximum and first value."""
         ...
 
     def init(self) -> State:
-        """The state before the first step."""
+        """Return the state before the first step."""
         ...
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Judge an attempt; pure, so that a resumed run decides alike.
+        """Judge an attempt; pure, so that resumed runs decide alike.
 
         Parameters
         ----------
         state : tuple of float
-            What `init`, or the decision before this one, gave.
         attempt : StepMeasures
 
         Returns

@@ -12,11 +12,10 @@ from continuation.citation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINB
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
-"""A rejected step becomes shorter by this factor at least: else asymptotics that do not hold yet repeat it."""
+"""Least shrink factor of a rejected step, where asymptotics do not hold yet."""
 
 STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
-"""What keeps PITCON's formula from dividing by zero: the next step's turn in radians and its curvature, relative to
-the last one's, are taken for this at least; a corrector that contracts better tells nothing more."""
+"""Lower bounds in PITCON's formula against division by zero: turn in radians, relative curvature, contraction."""
 
 
 def _of_fixed(bounds: Any) -> Bounds:
@@ -24,28 +23,26 @@ def _of_fixed(bounds: Any) -> Bounds:
 
 
 def _of_geometric(bounds: Any) -> Bounds:
-    """The paper's step: ratio^0."""
     return checked_bounds(bounds).beginning_with(1.0)
 
 
 def _of_series(bounds: Any) -> Bounds:
-    """The whole range of the series."""
     return checked_bounds(bounds).beginning_with(math.inf)
 
 
 @frozen
 class Fixed:
-    """The same step always, `bounds.initial` (0.1); halved within a step that fails, and restored after it."""
+    """A constant step, `bounds.initial` (0.1); failures halve it once."""
 
     bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
     max_angle: float = field(default=0.8, validator=POSITIVE)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept whatever converged within the angle."""
+        """Accept if converged within the angle."""
         if attempt.converged and attempt.angle <= self.max_angle:
             return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h / 2.0, state)
@@ -53,21 +50,20 @@ class Fixed:
 
 @frozen
 class Geometric:
-    """The backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, and l starts at 0 at every point.
+    """Backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, with l = 0 first at every point.
 
-    `bounds.initial` is the longest step (1, as in the paper). It accepts whatever the corrector does, however far the
-    tangent turned, so it can jump between paths: here to be compared with, not to be used.
+    `bounds.initial` is the longest step (1). It accepts any angle and may jump between paths: for comparison only.
     """
 
     ratio: float = field(default=0.5, validator=FRACTION)
     bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6), converter=_of_geometric)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Back to the longest step after success, one power of the ratio down after failure."""
+        """Longest step after success, else times the ratio."""
         if attempt.converged:
             return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h * self.ratio, state)
@@ -75,7 +71,7 @@ class Geometric:
 
 @frozen
 class IterationCount:
-    """The step grows when the corrector needs fewer increments than `target`, and shrinks when it needs more."""
+    """Grows the step if the corrector needs fewer than `target` increments, else shrinks it."""
 
     target: int = field(default=3, validator=integer(1))
     grow: float = field(default=2.0, validator=FACTOR)
@@ -84,11 +80,11 @@ class IterationCount:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept what converged within the angle; scale by grow^((target - iterations) / target)."""
+        """Accept if converged within the angle; scale by grow^((target - iterations) / target)."""
         if not attempt.converged or attempt.angle > self.max_angle:
             return Decision(False, attempt.h * self.shrink, state)
         factor = self.grow ** ((self.target - attempt.iterations) / self.target)
@@ -99,16 +95,15 @@ class IterationCount:
 class AllgowerGeorg:
     """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
 
-    For a predictor of order p the contraction and the distance behave like h^(p + 1) and the angle like h, so each
-    measure over its goal says by which factor the step was too long; the worst decides. An attempt with a measure
-    beyond `deceleration` times its goal is rejected.
+    Contraction and distance behave like h^(p + 1) for predictor order p, the angle like h; the worst measure over its
+    goal scales the step.
 
     Parameters
     ----------
     contraction, distance, angle : float
-        The goals; distance is relative to the step length, the angle is in radians.
+        Goals; distance relative to the step, angle in radians.
     deceleration, acceleration : float
-        How far beyond a goal is still accepted; how fast the step may grow.
+        Accepted excess over a goal; largest growth.
     bounds : Bounds
     """
 
@@ -121,7 +116,7 @@ class AllgowerGeorg:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -133,25 +128,21 @@ class AllgowerGeorg:
         distance = attempt.distance / (self.distance * attempt.h)
         angle = attempt.angle / self.angle
         factor = max(contraction**root, distance**root, angle)
-        # Judged by the measures themselves, not by their roots: for a predictor of high order a root forgives a
-        # correction half as long as the step, and that is how paths are jumped.
+        # Measures, not roots: at high order a root accepts corrections of half a step, and paths jump.
         if max(contraction, distance, angle) > self.deceleration:
             return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
-        # Right after a rejection the step must not grow: the reason for it lies just ahead.
+        # The cause of a rejection is near.
         grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
         return Decision(True, self.bounds.cap(grown), state)
 
 
 @frozen
 class Curvature:
-    """Steps from the predicted curvature and the corrector's quality, as in PITCON (den Heijer and Rheinboldt 1981).
+    """Steps from predicted curvature, as in PITCON (den Heijer and Rheinboldt 1981).
 
-    The curvature over the last step is |2 sin(angle / 2)| / h; the next step's is extrapolated linearly, and the step
-    chosen so that Euler's predictor would err by the distance the corrector is known to like, h = sqrt(2 distance /
-    curvature). That distance is adapted by the corrector's contraction.
-
-    State: the curvature of the step before, its length, and the liked distance.
+    The curvature |2 sin(angle / 2)| / h is extrapolated; h = sqrt(2 distance / curvature) gives Euler's error the ideal
+    distance, which the contraction adapts. State: last curvature, last length, ideal distance.
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)
@@ -162,11 +153,11 @@ class Curvature:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def _step(self, liked: float, curvature: float) -> float:
-        # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
+        # PITCON's limit on the turn.
         return min(math.sqrt(2.0 * liked / curvature), self.max_angle / curvature)
 
     def init(self) -> State:
-        """No curvature known."""
+        """Return a state without curvature."""
         return (-1.0, 0.0, self.initial_distance)
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -190,10 +181,9 @@ class Curvature:
 
 @frozen
 class SeriesRange:
-    """The whole range of a series predictor at every step; a failed attempt halves it for that step alone.
+    """The whole range of a series predictor; a failure halves it once.
 
-    The range carries its own error bound, so what is watched is the corrector: a correction longer than `distance`
-    times the step means that the series and the path have parted.
+    The range has its own error bound, so only long corrections are refused.
     """
 
     distance: float = field(default=1e-3, validator=POSITIVE)
@@ -201,11 +191,11 @@ class SeriesRange:
     bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:
-        """No state."""
+        """Return no state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Accept small corrections; ask for the whole range again."""
+        """Accept small corrections; ask for the whole range."""
         near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
         if attempt.converged and near:
             return Decision(True, self.bounds.cap(math.inf), state)

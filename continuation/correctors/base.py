@@ -1,4 +1,4 @@
-"""What a corrector is, and the loop that all of them share."""
+"""The corrector protocol and the common loop."""
 
 from __future__ import annotations
 
@@ -21,26 +21,25 @@ from continuation.tolerance import LEAST_TOLERANCE, Tolerance
 
 @frozen(eq=False)
 class Correction:
-    """The outcome of a correction.
+    """Result of a correction.
 
     Attributes
     ----------
     u : ndarray, shape (N + 1,)
-        The corrected point (the last iterate where it failed).
+        Corrected point or last iterate.
     iterations : int
-        Increments computed.
+        Increments.
     residual_norm : float
-        Largest component of the residual at u; nan where it failed before one was evaluated.
+        Largest component of H(u), or nan.
     contraction : float
-        Largest ratio of successive increments seen; 0 with a single increment.
+        Largest ratio of increments; 0 for one.
     distance : float
-        Length of u minus the predicted point in the metric.
+        From the prediction, in the metric.
     rejection : Rejection or None
-        Why it failed; None where it converged.
+        Reason of a failure.
     detail : str
-        What is particular to this failure.
     anchor : Anchor or None
-        The last factorisation made on the way, which may serve the tangent too.
+        Last factorisation, for the tangent.
     """
 
     u: Array
@@ -58,7 +57,7 @@ class Correction:
         return self.rejection is None
 
     def rejected(self, h: float) -> Rejected | None:
-        """The failure as that of an attempt with step length h; None where it converged.
+        """Return the failure of a step of length h, or None.
 
         Parameters
         ----------
@@ -72,7 +71,7 @@ class Correction:
 
 
 class Corrector(Protocol):
-    """A way back to the path from a predicted point."""
+    """Moves a predicted point onto the path."""
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
@@ -83,55 +82,54 @@ class Corrector(Protocol):
         ----------
         evaluator : Evaluator
         point : Linearization
-            The last accepted point, whose factorisation may serve.
+            Last accepted point.
         predicted : ndarray, shape (N + 1,)
         border : ndarray, shape (N + 1,)
-            The direction that correctors of Keller's kind keep fixed: border . (u - predicted) = 0.
+            Keller's correctors keep border . (u - predicted) = 0.
         tolerance : Tolerance
         """
         ...
 
 
 ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
-"""A tolerance below this asks for a residual at round-off: Newton's last error is about the square of its increment."""
+"""Tolerances below demand residuals at round-off: Newton's error is the increment squared."""
 
 TINY = 1e-300
-"""Stands for terms that do not move: no residual beside them is round-off."""
+"""Replaces zero round-off."""
 
 POLISHING = Contraction(iterations=12)
-"""From the tolerance to round-off chord steps that halve an increment, or better, need no more."""
+"""Enough halving chord steps from the tolerance to round-off."""
 
 RESIDUAL_NOISE = 32.0
-"""How much larger than what `Evaluator.round_off` sees a residual at round-off may be: it looks once, at something
-random, and H adds up as many terms as it has."""
+"""Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
 
 
 FAR_FROM_ROUND_OFF = 30.0 * RESIDUAL_NOISE
-"""A residual this large after polishing is worth a factorisation of its own."""
+"""Such a residual after polishing deserves a factorisation."""
 
 POLISHING_ROUNDS = 10
-"""At most so many, while they help: near a pole Newton's method first creeps."""
+"""Limit of helpful rounds: near a pole Newton begins slowly."""
 
 
 def level(r: Array, terms: Array) -> float:
-    """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
+    """Return the largest residual relative to its round-off."""
     return largest(r / np.maximum(terms, TINY))
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
-    """Whether a component of the residual at u is far above the round-off of what that equation is made of."""
+    """Return whether a residual at u is far above round-off."""
     r = evaluator.residual(u)
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
 INCREMENT_LEAVES = 0.5
-"""The part of a residual that an increment may leave in the linear equations: one that leaves more solves nothing."""
+"""Largest part of a residual left by a valid increment."""
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
-    """Whether a point at which Newton's increment is small is a zero of H.
+    """Return whether H vanishes where Newton's increment is small.
 
-    Either the residual is round-off, or (where it is noise of another kind) the increment does solve its equations.
+    The residual is round-off, or noise with a valid increment.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -144,7 +142,7 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
 
 
 SAME_TERMS = 0.1
-"""A component that changed by less than this part of it leaves the round-off of its terms what it was, about."""
+"""A component that changes less keeps its round-off."""
 
 
 def _alike(u: Array, v: Array) -> bool:
@@ -153,7 +151,7 @@ def _alike(u: Array, v: Array) -> bool:
 
 @define(eq=False)
 class _Terms:
-    """What round-off makes of the terms of H at a point: seen in one direction, in two where that might matter."""
+    """Noise level of H, sampled twice if it matters."""
 
     evaluator: Evaluator
     u: Array
@@ -163,7 +161,7 @@ class _Terms:
     least: Array
 
     def level(self, r: Array, most: float = np.inf) -> float:
-        """That of a residual beside them; one above `most`, as one look shows it, needs no second."""
+        """Residual relative to noise; above `most` no second sample."""
         found = largest(r / self.terms)
         if not self.twice and RESIDUAL_NOISE < found <= most:
             self.twice = True
@@ -193,10 +191,8 @@ def iterate(
 ) -> Correction:
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
-    An increment that grows by more than `max_contraction` ends the iteration: a corrector that wanders finds another
-    branch, and a shorter step is cheaper than a lucky one. Near the tolerance round-off makes ratios meaningless, so
-    there only the iteration limit counts. `direction` may add the factorisations that it makes to `anchors`: the last
-    goes with the outcome.
+    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
+    where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, _rule(max_iterations, max_contraction)), point.weights
     r, found, done = predicted, False, False
@@ -213,16 +209,14 @@ def iterate(
             done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
-            # Judged by the residual itself: an increment may be small beside the path and large beside what is left of
-            # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. Rounds
-            # after the first have factorisations of their own: the one at hand may be of a point where that component
-            # was another.
+            # Polish by the residual: an increment may be large for a small component. A residual that stays is
+            # round-off of constant terms. Later rounds refactor, as the component may have changed.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING_ROUNDS):
                 u = iteration.x
                 terms = evaluator.round_off(u, r, least) if fresh else evaluator.look(u, r, 1, least)
                 beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0, least=least)
-                # What is far from round-off is polished, what is at round-off needs no second look.
+                # Residuals far from round-off need no second sample.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:
                     break

@@ -1,4 +1,4 @@
-"""The quasi-Newton corrector: Broyden's good update in product form on the factorisation of the last point."""
+"""Broyden's good update on the last point's factorisation."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from continuation.tolerance import Tolerance
 
 
 def updated(increments: list[Array], z: Array, weights: Array) -> Array:
-    """An increment z of the chord method as Broyden's good update in the metric makes it, added to the `increments`.
+    """Apply Broyden's good update to a chord increment z; append it to `increments`.
 
-    These are all since the factorisation was made: no more of the update is kept (Kelley, Iterative Methods for Linear
-    and Nonlinear Equations, Section 7.3).
+    All increments since the factorisation define the update (Kelley, Iterative Methods for Linear and Nonlinear
+    Equations, Section 7.3).
     """
     for before, after in itertools.pairwise(increments):
         z = z + (inner(weights, before, z) / inner(weights, before, before)) * after
@@ -30,7 +30,7 @@ def updated(increments: list[Array], z: Array, weights: Array) -> Array:
         last = increments[-1]
         left = 1.0 - inner(weights, last, z) / inner(weights, last, last)
         if left < 1.0 - MONOTONE:
-            # What hardly falls along itself is round-off, and tells nothing of the matrix.
+            # Round-off contains nothing about the matrix.
             increments.clear()
         else:
             z = z / left
@@ -41,11 +41,9 @@ def updated(increments: list[Array], z: Array, weights: Array) -> Array:
 
 @frozen
 class Broyden:
-    """Broyden's method on the bordered system, started anew at each step from the tangent's factorisation.
+    """Broyden's method on the bordered system, restarted each step from the tangent's factorisation.
 
-    One factorisation a step, superlinear convergence; the updates are kept as increments only (Kelley, Iterative
-    Methods for Linear and Nonlinear Equations, Section 7.3), so a step carries no matrix over and resuming a path
-    from its archive needs none.
+    One factorisation a step, superlinear. It stores increments only (see `updated`), so resuming needs no matrix.
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLEY,)

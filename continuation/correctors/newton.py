@@ -1,4 +1,4 @@
-"""Correctors of Newton's kind: bordered, chord, Moore-Penrose, at a fixed parameter."""
+"""Newton-type correctors."""
 
 from __future__ import annotations
 
@@ -24,19 +24,16 @@ class BorderedNewton:
     Parameters
     ----------
     reuse : float
-        A factorisation serves again while the increments shrink by this factor or better; 0 is Newton's method,
-        which factors at every iterate.
+        Largest ratio of increments at which a factorisation is reused; 0 is Newton's method.
     max_iterations : int
     max_contraction : float
-        Increments that shrink by less end the attempt. Newton's own shrink by the size of the one before; by more than
-        a half only outside the ball in which its theorem holds, so that a shorter step is cheaper.
+        Largest ratio of increments: above a half Newton's theorem fails, and a shorter step is cheaper.
 
     References
     ----------
-    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; the reuse is the
-    simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1);
-    while a factorisation serves, increments have Broyden's good update (C. T. Kelley, Iterative Methods for Linear and
-    Nonlinear Equations, Section 7.3).
+    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; Deuflhard's monotonicity
+    test (Newton Methods for Nonlinear Problems, Section 2.1); Broyden's good update (C. T. Kelley, Iterative Methods
+    for Linear and Nonlinear Equations, Section 7.3).
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)
@@ -60,7 +57,7 @@ class BorderedNewton:
                 increments.clear()
             return updated(increments, anchors[0].system.approximate(-r, 0.0), point.weights)
 
-        # Newton's own factors are those of the iterate before the last: not offered where none is to serve twice.
+        # With reuse 0 no factorisation serves twice.
         offered = anchors if self.reuse > 0.0 else ()
         return iterate(
             evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction, offered
@@ -69,10 +66,9 @@ class BorderedNewton:
 
 @frozen
 class Chord:
-    """The bordered iteration with the factorisation of the last accepted point: no factorisation of its own.
+    """Bordered iteration with the last point's factorisation.
 
-    Converges linearly with a ratio proportional to the step, so steps are shorter and each costs one factorisation in
-    all, that of the tangent.
+    Linear, at a ratio proportional to the step: short steps, one factorisation each.
     """
 
     max_iterations: int = field(default=12, validator=integer(1))
@@ -91,10 +87,9 @@ class Chord:
 
 @frozen
 class MoorePenrose:
-    """Normal-flow Newton: the increment is -H'(u)^+ H(u), orthogonal to the kernel at the iterate.
+    """Normal-flow Newton: increments -H'(u)^+ H(u), orthogonal to the kernel in the default metric.
 
-    With the default metric's weights in the inner product. It needs no hyperplane, and lands near the foot of the
-    perpendicular (Allgower and Georg, Chapter 3).
+    It ends near the foot of the perpendicular (Allgower and Georg, Chapter 3).
 
     Parameters
     ----------
@@ -119,7 +114,7 @@ class MoorePenrose:
 
 @frozen
 class NaturalParameter:
-    """Newton at the predicted value of the parameter: the border is e_{N+1}, which is singular at a fold itself."""
+    """Newton at fixed parameter: border e_{N+1}, singular at folds."""
 
     reuse: float = field(default=0.1, validator=SHARE)
     max_iterations: int = field(default=8, validator=integer(1))

@@ -1,1 +1,1 @@
-"""A homotopy as the engine sees it: evaluations counted, derivatives from wherever they come."""
+"""Evaluates a homotopy: counted, with derivatives from any source."""

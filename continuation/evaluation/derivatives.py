@@ -1,4 +1,4 @@
-"""Derivatives of a homotopy that gives only its residual: dense, or by groups of columns where H_y is sparse."""
+"""Derivatives from a residual alone: dense, or by column groups."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ from continuation.evaluation.products import (
 from continuation.linear import Banded
 
 ULPS = 8.0
-"""Units in the last place by which the ends of a difference may be off, in all."""
+"""Rounding error of a difference, in ulps."""
 
 AGREEMENT = 1e-3
-"""Of a derivative with a difference, beside the sum of its terms: what is wrong is wrong by more."""
+"""Largest difference between correct derivatives and differences, relative to their terms."""
 
 SPARSE_FROM = 64
-"""Unknowns: below, a dense factorisation takes less time than a sparse one does without its arithmetic."""
+"""Number of unknowns from which sparse factorisations win."""
 
 LOOKS_AT_ONCE = 64
-"""Directions that are looked at together: more only cost memory."""
+"""Directions at once; more cost only memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
-    """Raise unless a homotopy's answer is a pair (H_y, H_lam) of the right shapes, of real numbers."""
+    """Raise unless `answer` is a pair (H_y, H_lam) of real arrays of the right shapes."""
     wanted = f"a pair (H_y, H_lam) of real numbers, shapes ({n}, {n}) and ({n},)"
     if not isinstance(answer, (tuple, list)) or len(answer) != 2:
         raise TypeError(f"jacobian: expected {wanted}, found {type(answer).__name__}")
@@ -54,7 +54,7 @@ def check_derivative(answer: Any, n: int) -> None:
 
 
 def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
-    """What a difference along w cannot tell from zero: u + h w is rounded, and the function's slope there shows it."""
+    """Effect of rounding u + h w on a difference."""
     with np.errstate(all="ignore"):
         here, ahead, behind = (np.array(residual(at[:-1], float(at[-1]))) for at in (u, u + h * w, u - h * w))
     return np.asarray(ULPS * np.finfo(float).eps * (np.abs(ahead - here) + np.abs(behind - here)) / h**2, dtype=float)
@@ -62,10 +62,9 @@ def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
 
 @define(eq=False)
 class Derivative:
-    """(H_y, H_lam) of a residual, by products with it.
+    """(H_y, H_lam) of a residual, by products.
 
-    Every sparse one is checked by a product with a direction of its own: an equation in which an unknown stands that
-    the pattern does not know of is noticed where it first matters, and the pattern grows.
+    One more product checks each sparse derivative; if it fails, the pattern lacks an entry and grows.
     """
 
     residual: Residual
@@ -73,9 +72,9 @@ class Derivative:
     pattern: Pattern | None = None
     notes: set[str] = field(factory=set)
     plain: Products = field(init=False)
-    """The products without what is known of noise."""
+    """The products without noise."""
     agreement: float = field(init=False)
-    """What the check asks for: as the products do, or less where round-off within the residual leaves less."""
+    """Tolerance of the check; AGREEMENT if the residual has round-off inside."""
 
     @plain.default
     def _without_noise(self) -> Products:
@@ -86,12 +85,12 @@ class Derivative:
         return self.products.agreement
 
     def know(self, noise: Array) -> None:
-        """Take the residual for uncertain by so much in each equation, shape (N,)."""
+        """Adapt difference steps to noise, shape (N,)."""
         if isinstance(self.plain, ByDifferences):
             self.products = self.plain.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) at a point, dense or sparse."""
+        """Return (H_y, H_lam), dense or sparse."""
         u = np.append(y, lam)
         if self.pattern is not None:
             answer = self._by_groups(u, self.pattern)
@@ -104,14 +103,13 @@ class Derivative:
                 answer = None if self.pattern is None else self._by_groups(u, self.pattern)
                 if answer is not None:
                     return answer
-            # What is no sum of its parts is no derivative that groups could give.
+            # Products that do not add up give no derivative by groups.
             self.pattern = None
             self.notes.add("a sparsity pattern that could not be found")
         full = self.products.whole(self.residual, u)
         return full[:, :-1], full[:, -1]
 
     def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
-        """The sparse derivative; None where it lacks something."""
         scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
         if scale is not None:
             directions = directions.copy()
@@ -122,7 +120,7 @@ class Derivative:
         terms, more = entries * weights, column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
-        # Not finite: outside the domain, which is not the pattern's fault.
+        # Not finite: outside the domain, no fault of the pattern.
         allowed = self.agreement * size
         if (gap > allowed).any() and (gap > np.maximum(allowed, self.agreement * float(allowed.max()))).any():
             return None
@@ -131,7 +129,6 @@ class Derivative:
         return pattern.matrix(entries), np.ascontiguousarray(column)
 
     def _grown(self, u: Array, known: Pattern) -> Pattern | None:
-        """The pattern together with what stands at u."""
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
@@ -147,12 +144,11 @@ class Derivative:
 
 
 def _worth(pattern: Pattern | None) -> Pattern | None:
-    """The pattern, if fewer products are needed than without it by far: a sparse factorisation costs more an entry."""
     return pattern if pattern is not None and 4 * pattern.count <= pattern.n else None
 
 
 def _looked_for(residual: Residual, u: Array) -> Pattern | None:
-    """The pattern at a point beside u, where zeros hide nothing: an equation that is moved at all has the unknown."""
+    """The pattern near u, where no entry vanishes."""
     size = sizes(u)
 
     def at(v: Array) -> Array:
@@ -184,7 +180,7 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
 
 
 def given_pattern(sparsity: Any, n: int) -> Pattern:
-    """The pattern of a homotopy's `sparsity`: an array or a sparse one, in which what is not zero counts."""
+    """Return the pattern of a homotopy's `sparsity`."""
     try:
         places = sp.coo_array(sparsity)
     except (TypeError, ValueError):
@@ -202,13 +198,12 @@ def from_residual(
     notes: set[str] | None = None,
     products: Products | None = None,
 ) -> Derivative:
-    """The best derivative that a residual allows: jets, else complex step, else central differences.
+    """Return the best derivative: jets, else complex step, else central differences.
 
-    The first two are tried at the start, and believed when they agree with a difference there, since a residual may
-    well run on complex numbers and be wrong on them (``abs``, ``np.real``).
+    The first two must agree with a difference: ``abs`` is wrong on complex numbers.
 
-    `start` of shape (N,). `pattern`: What may not be zero in H_y; looked for where None, if there are many unknowns.
-    `notes`: Where it is said what was done. `products`: The homotopy's own, taken for granted.
+    `start` of shape (N,). `pattern`: Searched if None and N is large. `notes`: Receives the method. `products`: The
+    homotopy's own.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

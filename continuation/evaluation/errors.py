@@ -1,4 +1,4 @@
-"""Why a homotopy has no value at a point: the errors that an evaluation raises, and which of them an exception is."""
+"""Errors of evaluations, and their classification."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from continuation.rejection import Rejection
 
 
 class EvaluationError(ArithmeticError):
-    """The homotopy has no finite value, or no factorisation, at a point; the sentence says which."""
+    """The homotopy has no finite value or factorisation at a point."""
 
     rejection: ClassVar[Rejection] = Rejection.UNSOLVABLE
 
 
 class NotFiniteError(EvaluationError):
-    """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
+    """The edge of the domain, or an overflow."""
 
     rejection = Rejection.NO_VALUE
 
 
 class RaisedError(EvaluationError):
-    """The homotopy's own code says ``raise ValueError(...)`` at a point: the edge of its domain, or a mistake in it."""
+    """The homotopy raises ValueError: its domain ends, or a mistake."""
 
     rejection = Rejection.RAISED
 
 
 class SingularPointError(EvaluationError):
-    """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
+    """The bordered matrix is singular, as at a branch point."""
 
     rejection = Rejection.SINGULAR
 
 
 MATHS_OWN = ("math domain error", "expected a")
-"""How `math` begins to say that an argument lies outside a function's domain: up to Python 3.13, and from 3.14 on."""
+"""Beginnings of `math`'s domain errors: up to Python 3.13, from 3.14."""
 
 
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """The error for a function that raised: of `math`, numpy and scipy it is the domain's edge, else its author's."""
+    """Return a domain error for exceptions of `math`, numpy and scipy, else the author's."""
     if isinstance(error, EvaluationError):
-        # Of a homotopy that evaluates others, which has said it.
+        # Raised by a homotopy inside this one.
         return error
     *_, (frame, line) = walk_tb(error.__traceback__)
     module = str(frame.f_globals.get("__name__", "")).partition(".")[0]

@@ -1,4 +1,4 @@
-"""A homotopy as the engine sees it: capabilities resolved once, evaluations counted, u = (y, lam) as one vector."""
+"""Counted evaluations of a homotopy at u = (y, lam)."""
 
 from __future__ import annotations
 
@@ -33,30 +33,30 @@ from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
-"""Units in the last place by which round-off moves a point, about."""
+"""Round-off of a point, in ulps."""
 
 DERIVATIVES_KEPT = 4
-"""Derivatives that are kept where somebody looks again: at a step's end, and where crossings are looked for ahead."""
+"""Derivatives kept for step ends and the search for crossings."""
 
 LOOK = 64.0
-"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places.
-The moves are of either sign, no two alike: what has one value in all neighbours may not change a difference of them."""
+"""Perturbation of the round-off estimate, in ulps; signs and sizes vary, as common values cancel in differences."""
 
 NOT_OF_POINT = 3.0
-"""Noise of so many times what the last places of u make of an equation has another source, and goes with the path: what
-`Evaluator.look` sees of that source is POINT_ULPS / LOOK of it."""
+"""Noise above this multiple of the point's round-off has another source; `Evaluator.look` sees
+POINT_ULPS / LOOK of it.
+"""
 
 
 @frozen(eq=False, slots=False)
 class CountedSystem:
-    """A bordered factorisation whose solves are counted."""
+    """A bordered factorisation with counted solves."""
 
     system: BorderedSystem
     counts: Counts
     solve: Callable[[Array, float], Array] = field(init=False)
-    """The bordered solve; EvaluationError where the answer is not finite."""
+    """Bordered solve; EvaluationError if not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
-    """The same for an iteration that measures its own residual: not refined where the structure can do without."""
+    """Unrefined solve, for iterations that measure their residual."""
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
@@ -69,12 +69,12 @@ class CountedSystem:
 
     @cached_property
     def sign(self) -> int:
-        """Sign of the determinant of the bordered matrix; 0 if unknown."""
+        """Determinant's sign; 0 if unknown."""
         return self.system.sign
 
     @property
     def approximates(self) -> bool:
-        """Whether `approximate` is another solve than `solve`."""
+        """Whether `approximate` differs from `solve`."""
         return self.approximate is not self.solve
 
 
@@ -96,11 +96,8 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    `counts`: Where evaluations are added up. `methods`: BibTeX of what served where the homotopy gave no derivative of
-    its own. `keeping`: Whether the last derivatives are kept, for `matrix`. `noise`: What each equation is uncertain by
-    beside the round-off of u, shape (N,), where that was measured. Raises `TypeError` if `start` or `residual`
-    is missing. Raises `ValueError` if the start is empty, not a vector, or not finite, or if the residual's shape
-    disagrees with it.
+    `counts`: Receives the counts. `methods`: BibTeX of substitute derivatives. `keeping`: Keep derivatives for
+    `matrix`. `noise`: Beyond round-off of u, shape (N,), or None. `TypeError` or `ValueError` for a bad homotopy.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -116,9 +113,9 @@ class Evaluator:
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
-        """Evaluate this one from now on: the next piece of a piecewise smooth map.
+        """Evaluate this homotopy from now on, such as the next piece.
 
-        Raises `TypeError` if it lacks a method, or has something else in the place of one.
+        `TypeError` if a method is missing.
         """
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
@@ -127,7 +124,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
-        self.followed = True  # by jets, as long as nobody finds otherwise
+        self.followed = True  # by jets
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
         self._products: dict[bytes, Callable[[Array], Array]] = {}
@@ -138,7 +135,6 @@ class Evaluator:
             self._derivative = homotopy.jacobian
 
     def _given(self) -> Array:
-        """The start as one vector (y0, lam0), of real numbers."""
         answer = self.homotopy.start()
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
@@ -153,7 +149,7 @@ class Evaluator:
         return u
 
     def start(self) -> Array:
-        """The start as one vector (y0, lam0), checked, at which the residual is one."""
+        """Return the checked start (y0, lam0) as one vector."""
         u = self._given()
         y0 = u[:-1]
         self._sparsity(y0.size)
@@ -170,22 +166,21 @@ class Evaluator:
         return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
-        """The plug-in's residual, on numbers or on jets, counted.
+        """Return the plug-in's residual, counted, also for jets.
 
-        `y`, `lam` of shape (N,).
+        `y` of shape (N,).
         """
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
-        """H(u), shape (N,); EvaluationError where it is not finite."""
+        """Return H(u), shape (N,); EvaluationError if not finite."""
         if not silent():
             with Silence():
                 return self.residual(u)
         self.counts.residuals += 1
-        # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         try:
-            # A copy: a plug-in may well return the same array every time.
+            # A plug-in may reuse its array.
             r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("residual", error) from error
@@ -194,25 +189,24 @@ class Evaluator:
         return r
 
     def residual_norm(self, u: Array) -> float:
-        """The largest component of H(u); nan where there is none."""
+        """Return the largest component of H(u), or nan."""
         try:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
 
     def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
-        """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
+        """Return the effect of round-off in u on H, shape (N,), by two perturbations: terms may cancel in one.
 
-        Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
-        an equation may cancel in one of them. `residual` is H(u).
+        `residual` is H(u).
         """
         terms: Array = np.maximum(self.look(u, residual, 1, least), self.look(u, residual, -1, least))
         return terms
 
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
-        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both.
+        """Return the estimate from one perturbation; order -1 gives another.
 
-        `least`: What each component is known to at most, whatever its size.
+        `least`: Smallest perturbation.
         """
         change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual
@@ -221,9 +215,9 @@ class Evaluator:
         return change if self.noise is None else np.maximum(change, self.noise)
 
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
-        """What the last place of u makes of each equation, or its noise if that is more, which is kept; shape (N,).
+        """Measure and keep the noise; return it, or the effect of one ulp of u if larger, shape (N,).
 
-        `w`, of shape (N + 1,): A way ahead on which H may change. `residual` is H(u).
+        `w`, shape (N + 1,): A direction of change. `residual` is H(u).
         """
         self.noise = None
         terms = self.round_off(u, residual)
@@ -235,17 +229,14 @@ class Evaluator:
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:
-        """Take the equations for uncertain by so much, shape (N,); by round-off alone where that is nothing.
-
-        Differences, where derivatives are made of these, are taken over steps that are the longer for it.
-        """
+        """Set the noise, shape (N,), for residuals and difference steps; zeros mean round-off alone."""
         self.noise = noise if noise.any() else None
         if noise.size and isinstance(self._derivative, Derivative):
             self._derivative.know(noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
-        """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
+        """The plug-in's `jacobian`, else from the residual; chosen at first use."""
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
@@ -258,7 +249,7 @@ class Evaluator:
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
-        """The map v -> H'(u) v without a factorisation; None where only a structured factorisation is to be had."""
+        """Return v -> H'(u) v, or None if only a structured factorisation exists."""
         if self._differential is not None:
             apply, y, lam = self._differential, u[:-1], float(u[-1])
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
@@ -266,18 +257,17 @@ class Evaluator:
             return None
         place = u.tobytes()
         if place not in self._products:
-            # Of two points: of an arc's end somebody looks at the inside before the end is asked for again.
+            # Two are kept: an arc's end is needed again after its inside.
             self._products = dict([*self._products.items()][-1:])
             self._products[place] = self._product(u)
         return self._products[place]
 
     def _product(self, u: Array) -> Callable[[Array], Array]:
-        """The same by the Jacobian, which is evaluated."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)
         if isinstance(H_y, np.ndarray):
-            # One product with all of it takes a third of the time of one with each part.
+            # One product takes a third of the time of two.
             whole = np.empty((u.size - 1, u.size))
             whole[:, :-1] = H_y
             whole[:, -1] = column
@@ -285,7 +275,6 @@ class Evaluator:
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
         if not silent():
             with Silence():
                 return self._evaluated(u)
@@ -294,18 +283,17 @@ class Evaluator:
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("derivative", error) from error
         if not self._checked:
-            # Once: whoever gets it right at the start does so later on.
             check_derivative(answer, u.size - 1)
             self._checked = True
         if self.keeping:
             while len(self._kept) >= DERIVATIVES_KEPT:
                 del self._kept[next(iter(self._kept))]
-            # A dense one may be an array that the plug-in fills anew every time.
+            # A plug-in may reuse its array.
             self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
 
     def matrix(self, u: Array) -> Matrix:
-        """H_y at u: that of a step there, if it is `keeping` some, else evaluated and counted."""
+        """Return H_y at u, kept or evaluated."""
         known = self._kept.get(u.tobytes())
         if known is None:
             self.counts.jacobians += 1
@@ -313,10 +301,10 @@ class Evaluator:
         return known
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
-        """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""
+        """Factor [[H_y, H_lam], [border']] at u; EvaluationError if impossible."""
         self.counts.jacobians += 1
         self.counts.factorizations += 1
-        # A factorisation may keep views of the point, and correctors move theirs in place.
+        # Factorisations may keep views; correctors move points in place.
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
@@ -333,7 +321,6 @@ class Evaluator:
         except EvaluationError:
             raise
         except ArithmeticError as error:
-            # A dense factorisation looks at all entries itself.
             if dense and not (finite(column) and finite(H_y.ravel("K"))):
                 raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error

@@ -1,4 +1,4 @@
-"""A homotopy out of plain functions."""
+"""Homotopies from plain functions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _start_vector(y: object) -> Array:
 
 @frozen(eq=False)
 class FunctionHomotopy:
-    """A homotopy made of a residual alone; see `from_functions`."""
+    """A homotopy made of a residual; see `from_functions`."""
 
     function: Callable[[Any, Any], Any]
     y0: Array = field(converter=_start_vector)
@@ -27,11 +27,11 @@ class FunctionHomotopy:
     sparsity: Matrix | None = None
 
     def start(self) -> tuple[Array, float]:
-        """The given start."""
+        """Return the given start."""
         return self.y0.copy(), self.lam0
 
     def residual(self, y: Array, lam: float) -> Array:
-        """The given residual."""
+        """Return the given residual."""
         value: Array = self.function(y, lam)
         return value
 
@@ -45,19 +45,19 @@ class DifferentiableHomotopy:
 
     @property
     def target(self) -> float | None:
-        """Where the path is to end."""
+        """Final parameter value."""
         return self.plain.target
 
     def start(self) -> tuple[Array, float]:
-        """The given start."""
+        """Return the given start."""
         return self.plain.start()
 
     def residual(self, y: Array, lam: float) -> Array:
-        """The given residual."""
+        """Return the given residual."""
         return self.plain.residual(y, lam)
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """The given derivative."""
+        """Return the given derivative."""
         return self.derivative(y, lam)
 
 
@@ -69,27 +69,25 @@ def from_functions(
     target: float | None = 0.0,
     sparsity: Any = None,
 ) -> FunctionHomotopy | DifferentiableHomotopy:
-    """Make a homotopy of functions.
+    """Make a homotopy from functions.
 
     Parameters
     ----------
     residual : callable
         ``residual(y, lam) -> (N,)``.
     jacobian : callable, optional
-        ``jacobian(y, lam) -> (H_y, H_lam)``; without it derivatives come from `residual`.
+        ``jacobian(y, lam) -> (H_y, H_lam)``; default: from `residual`.
     start : tuple
-        ``(y0, lam0)``, a point on or near the path.
+        ``(y0, lam0)``, on or near the path.
     target : float or None
-        Where the path is to end; None for a curve that is followed for its own sake.
-
+        Final parameter value, if any.
     sparsity : array or sparse array, shape (N, N), optional
-        Where H_y may have entries, for large problems without `jacobian`: what is not zero counts. By default it is
-        looked for.
+        Nonzero where H_y may be, for large problems without `jacobian`. Default: searched.
 
     Raises
     ------
     TypeError, ValueError
-        If one of them is no function, or the start no pair.
+        If an argument is no function, or the start no pair.
     """
     for name, function in (("residual", residual), ("jacobian", jacobian)):
         if not callable(function) and (name == "residual" or function is not None):

@@ -1,4 +1,4 @@
-"""The check of a plug-in's derivative against its own residual."""
+"""Checks a plug-in's derivative against its residual."""
 
 from __future__ import annotations
 
@@ -23,25 +23,24 @@ Product = Callable[[Array], Array]
 
 _PROBES = 3
 _RELATIVE = 1e-6
-"""Error, relative to the size of its row, above which an entry is called wrong; differences have about ten digits."""
+"""Largest error relative to the row; differences have about ten digits."""
 
 
 @frozen
 class JacobianReport:
-    """What the check found.
+    """Result of the check.
 
     Attributes
     ----------
     correct : bool
-        Whether no wrong entry was found.
     sentence : str
-        The finding in words.
+        The result in words.
     source : str
-        What the derivative was compared with: jets, complex step or differences.
+        Reference: jets, complex step or differences.
     row, column : int or None
-        The wrong entry; column N is that of the parameter.
+        The wrong entry; column N is the parameter's.
     found, expected : float or None
-        Its value as given, and from the residual.
+        Given value, and the residual's.
     """
 
     correct: bool
@@ -57,29 +56,27 @@ class JacobianReport:
 
 
 def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
-    """Compare a homotopy's derivative with its residual, and name an entry that is wrong.
+    """Compare a homotopy's derivative with its residual and find a wrong entry.
 
-    Products with random directions are compared, so the cost is a few residuals, whatever N; where they differ, the
-    entry is found by bisection of the columns, in 2 log2(N) more.
+    Products with random directions cost a few residuals; bisection finds the entry with 2 log2(N) more.
 
     Parameters
     ----------
     homotopy : Homotopy
-        With `jacobian`, or with `bordered` and `differential`.
+        With `jacobian`, or `bordered` and `differential`.
     u : ndarray, shape (N + 1,), optional
-        Where to check. By default the start and a point beside it, since a start often has zeros that hide a mistake.
+        Default: the start and a point near it, as zeros can hide mistakes.
 
     Returns
     -------
     JacobianReport
-        Of the first point at which an entry is wrong.
 
     Raises
     ------
     TypeError
-        If the homotopy gives no derivative to check.
+        Without a derivative.
     ValueError
-        If `u` has the wrong shape, or the residual has no finite value at the point.
+        If `u` has the wrong shape, or the residual is not finite.
     """
     evaluator = Evaluator(homotopy, Counts())
     if not any(callable(getattr(homotopy, name, None)) for name in ("jacobian", "differential")):
@@ -97,7 +94,7 @@ def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
     try:
         return _check(evaluator, beside)
     except ValueError:
-        # The start may lie on the edge of the residual's domain.
+        # At the edge of the domain.
         return report
 
 
@@ -113,7 +110,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
     source, expected = _reference(evaluator, u, probes[0])
     pairs = [(given(w), expected(w)) for w in probes]
     size = np.max([np.fmax(np.abs(p), np.abs(q)) for p, q in pairs], axis=0)
-    # A row of zeros has no size of its own; then round-off of the others is its measure.
+    # A zero row is measured by the others.
     allowed = _RELATIVE * size + 1e-10 * float(size.max())
     for w, (p, q) in zip(probes, pairs):
         excess = np.where(np.isfinite(p), np.abs(p - q), np.inf) / np.maximum(allowed, np.finfo(float).tiny)
@@ -124,7 +121,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
 
 
 def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Product]:
-    """The best directional derivative that the residual allows, believed if it agrees with differences."""
+    """The best product that agrees with differences."""
 
     def by_differences(w: Array) -> Array:
         return difference_along(evaluator.called, u, w)[0]
@@ -148,7 +145,6 @@ def _product(products: Products, residual: Residual, u: Array, w: Array) -> Arra
 
 
 def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:
-    """Bisect the columns of a wrong row down to one of the wrong entries (a NaN spoils every product with its row)."""
 
     def error(columns: NDArray[np.intp]) -> float:
         part = np.zeros_like(w)

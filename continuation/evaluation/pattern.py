@@ -1,4 +1,4 @@
-"""Which unknowns stand in which equations, found by moving them; and groups of columns that share no equation."""
+"""Sparsity patterns, and groups of columns without common equations."""
 
 from __future__ import annotations
 
@@ -15,29 +15,28 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear import Banded
 
 BLOCKS_TELL = 64
-"""With few entries a row minds few of so many blocks: where rows mind half of them the matrix counts as full. Random
-entries, eight a row, give 12 % here; of a quarter as many blocks they would fill nearly half."""
+"""Blocks that show sparsity: eight random entries a row touch 12 % of 64, nearly half of 16. A matrix whose rows touch
+half is full.
+"""
 
 Places = NDArray[np.signedinteger[Any]]
 
 
 @lru_cache(maxsize=4)
 def generic(n: int) -> Array:
-    """No two alike, none near zero: what is moved by them together does not cancel."""
+    """A vector without equal or tiny components: nothing cancels."""
     numbers = generic_vector(n)
     return np.asarray(np.sign(numbers) * (0.5 + 0.5 * np.abs(numbers) / np.abs(numbers).max()))
 
 
 Touched = Callable[[Places, int], NDArray[np.bool_]]
-"""From the label of each unknown, shape (N,), and how many labels there are, k, to the equations in which unknowns of
-each label stand, shape (N, k)."""
+"""Maps labels of unknowns, shape (N,), and their number k to the equations with each label, shape (N, k)."""
 
 
 def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
-    """A group for each of `count` columns: no two of one group have a row in common (Curtis, Powell and Reid, 1974).
+    """Return groups of columns without common rows (Curtis, Powell and Reid, 1974).
 
-    By what `scipy.optimize.least_squares` groups columns with, without the sparse matrices in between, which take ten
-    times as long for 1,000 of them.
+    scipy's private routine: the public way takes ten times as long for 1,000 columns.
     """
     from scipy.optimize._group_columns import group_sparse
 
@@ -49,9 +48,9 @@ def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
 
 @frozen(eq=False, slots=False)
 class Pattern:
-    """Places of a square sparse matrix, column by column.
+    """Entries of a square sparse matrix, column by column.
 
-    `rows`, `columns`: Of the entries. `n`: Its order.
+    `rows`, `columns`: Of the entries. `n`: Order.
     """
 
     rows: Places
@@ -60,17 +59,17 @@ class Pattern:
 
     @cached_property
     def groups(self) -> Places:
-        """Of each column, shape (n,)."""
+        """Group of each column, shape (n,)."""
         return grouped(self.rows, self.columns, self.n, self.n)
 
     @cached_property
     def count(self) -> int:
-        """How many groups there are."""
+        """Number of groups."""
         return int(self.groups.max()) + 1
 
     @cached_property
     def directions(self) -> Array:
-        """Of each group the sum of its unit vectors, then that of the parameter, then one for a check: (k, n + 1)."""
+        """Sums of unit vectors of each group, the parameter's, and a check vector: (k, n + 1)."""
         unit = np.zeros((self.count + 2, self.n + 1))
         unit[self.groups, np.arange(self.n)] = 1.0
         unit[-2, -1] = 1.0
@@ -79,7 +78,7 @@ class Pattern:
 
     @cached_property
     def weights(self) -> Array:
-        """Of each entry, the last direction in its column."""
+        """Check vector by entry."""
         found: Array = self.directions[-1][self.columns]
         return found
 
@@ -88,7 +87,7 @@ class Pattern:
         return np.asarray(self.rows * (self.count + 2) + self.groups[self.columns])
 
     def entries(self, products: Array) -> Array:
-        """The entries, from products with `directions`, shape (n, k)."""
+        """Return entries from products with `directions`, shape (n, k)."""
         return products.ravel().take(self._places)
 
     @cached_property
@@ -102,7 +101,7 @@ class Pattern:
 
     @cached_property
     def banded(self) -> bool:
-        """Whether at least half of the band is there: LU within it then does hardly more than a sparse one."""
+        """Whether half of the band is full."""
         return (sum(self._band) + 1) * self.n <= 2 * self.rows.size
 
     @cached_property
@@ -114,7 +113,7 @@ class Pattern:
         return self.rows.astype(np.int32)
 
     def matrix(self, entries: Array) -> Matrix:
-        """The matrix with these entries: `Banded` or csc."""
+        """Return the matrix with these entries: `Banded` or csc."""
         if not self.banded:
             return sp.csc_array((entries, self._indices, self._starts), shape=(self.n, self.n))
         lower, upper = self._band
@@ -123,29 +122,28 @@ class Pattern:
         return Banded(ab, lower, upper)
 
     def structure(self) -> Matrix:
-        """Ones, csr, transposed, and a full last row: of each component of u, the equations in which it stands."""
+        """Return the transposed pattern as csr, with a full last row."""
         own = sp.csr_array((np.ones(self.rows.size), (self.columns, self.rows)), shape=(self.n, self.n))
         return sp.vstack([own, np.ones((1, self.n))], format="csr")
 
     def joined(self, other: Pattern) -> Pattern:
-        """All places of both."""
+        """Return the union of two patterns."""
         return pattern_of(np.append(self.rows, other.rows), np.append(self.columns, other.columns), self.n)
 
 
 def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
-    """These places, in order and each once."""
+    """Return the pattern of these entries, sorted, without repetition."""
     columns, rows = np.divmod(np.unique(np.asarray(columns, np.intp) * n + np.asarray(rows, np.intp)), n)
     return Pattern(rows, columns, n)
 
 
 def found(touched: Touched, n: int) -> Pattern | None:
-    """The pattern of a square matrix, by halving blocks of columns; None where it is full, or n looks would not do.
+    """Return a matrix' pattern, or None if full or too expensive.
 
-    What is known of the blocks tells which of them share no equation: their halves are looked at together. The places
-    are found by log2(n) times twice as many looks as there are groups (Griewank and Mitev, Mathematical Programming 93,
-    2002).
+    Blocks of columns are halved, those without common equations together (Griewank and Mitev, Mathematical Programming
+    93, 2002).
     """
-    # Of 8 blocks nothing is known: looks at their 16 halves cost no more than first to find out.
+    # 8 blocks cost as much as their 16 halves.
     shift = max(int(n - 1).bit_length() - 3, 0)
     columns = np.arange(n)
     rows, blocks = (places.ravel() for places in np.meshgrid(columns, np.unique(columns >> shift)))

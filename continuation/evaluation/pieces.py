@@ -1,4 +1,4 @@
-"""A piecewise smooth map as the engine sees it: its switches, its pieces, and the map itself as one homotopy."""
+"""Piecewise smooth maps: switches, pieces, and the whole map."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from continuation.arguments.checks import complain
 from continuation.arrays import Array
 
 Signs = tuple[int, ...]
-"""Of all switches, each -1 or +1: the name of a piece."""
+"""Signs -1 or +1 of all switches: a piece's name."""
 
 REMEMBERED = 64
-"""Pieces that are kept: a kink with several switches asks for the same few again."""
+"""Pieces kept: kinks need the same few again."""
 
 DIFFERENCE_STEP = 6e-6
-"""Of a central difference, relative to the point: the cube root of round-off."""
+"""Relative step of central differences: the cube root of round-off."""
 
 DERIVATIVES_AGREE = 1e-4
-"""Jets are believed where they agree with a difference so well, relative to the largest."""
+"""Largest relative difference between valid jets and a difference."""
 
 BORDER_DISTANCE = 1e-9
-"""How near to a border, in lengths of the direction in which it leaves, a start is that was given on it."""
+"""A start this near to a border, relative to its direction, is on it."""
 
 SWITCH_STILL = 1e-9
-"""The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
+"""Smaller switch derivatives, relative to the largest, are round-off."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
-"""Capabilities of pieces that the map has where they have them."""
+"""Capabilities that the map takes from its pieces."""
 
 
 class SwitchError(ArithmeticError):
-    """The switches have no finite value at a point."""
+    """A switch has no finite value."""
 
 
 @frozen(eq=False)
@@ -45,10 +45,9 @@ class Pieces:
     _jets: list[bool] = field(factory=list, init=False)
 
     def values(self, u: Array) -> Array:
-        """The switches at u, shape (m,).
+        """Return the switches at u, shape (m,).
 
-        Raises `SwitchError` where they are not finite, or cannot be evaluated. Raises `ValueError` if they are no
-        vector of real numbers.
+        `SwitchError` if not finite, `ValueError` unless a real vector.
         """
         try:
             with np.errstate(all="ignore"):
@@ -62,11 +61,11 @@ class Pieces:
         return np.array(found, dtype=float)
 
     def signs(self, u: Array) -> Signs:
-        """The piece of a point; where a switch vanishes, that in which it is positive."""
+        """Return the piece of a point; a zero switch counts as positive."""
         return tuple(np.where(self.values(u) >= 0.0, 1, -1).tolist())
 
     def piece(self, signs: Signs) -> Any:
-        """The smooth homotopy of these signs."""
+        """Return the smooth homotopy of these signs."""
         if signs not in self._made:
             if len(self._made) >= REMEMBERED:
                 self._made.clear()
@@ -74,7 +73,7 @@ class Pieces:
         return self._made[signs]
 
     def exists(self, signs: Signs) -> bool:
-        """Whether there is a piece of these signs."""
+        """Return whether these signs have a piece."""
         try:
             self.piece(signs)
         except ValueError:
@@ -82,10 +81,7 @@ class Pieces:
         return True
 
     def along(self, u: Array, v: Array) -> Array:
-        """Derivatives of the switches at u along v, shape (m,): by jets, or by differences where jets will not do.
-
-        Which of them is decided at the first call.
-        """
+        """Return derivatives of the switches at u along v, shape (m,): by jets, else differences, as first decided."""
         if not self._jets:
             try:
                 with np.errstate(all="ignore"):
@@ -99,10 +95,9 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """How far borders are from u along v, to first order: half of the switches are no nearer.
+        """Return the lower median distance to borders ahead along v.
 
-        Where no border is ahead it is the size of the direction in which a path was told to leave, else of the point,
-        or 1 at zero: there is no other length then. Borders beside the point, by the same measure, are not ahead.
+        Without one: the size of the given direction, else of the point, else 1.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))
@@ -127,11 +122,9 @@ class Pieces:
 
 
 class WholeMap:
-    """All pieces together, each where it belongs: a homotopy with the capabilities that the piece of the start has.
+    """All pieces as one homotopy, with the first piece's capabilities, for single points.
 
-    What looks at single points of a path, and does not follow it, needs no more.
-
-    `u`, of shape (N + 1,): Its start.
+    `u`, shape (N + 1,): Start.
     """
 
     def __init__(self, homotopy: Any, u: Array) -> None:

@@ -1,4 +1,4 @@
-"""Products H'(u) w of a homotopy that gives only its residual: by jets, the complex step, or differences."""
+"""Products H'(u) w from a residual: by jets, complex step or differences."""
 
 from __future__ import annotations
 
@@ -18,38 +18,38 @@ Residual = Callable[..., Any]
 
 
 class Products(Protocol):
-    """A way to get H' without its author."""
+    """A way to compute H' from the residual."""
 
     @property
     def name(self) -> str:
-        """How it is called."""
+        """Name for messages."""
         ...
 
     @property
     def agreement(self) -> float:
-        """How far two sums of the same products may differ, beside the sum of their terms."""
+        """Tolerance of the check, relative to the terms."""
         ...
 
     @property
     def references(self) -> tuple[str, ...]:
-        """Where it was published, in BibTeX."""
+        """BibTeX entries."""
         ...
 
     @property
     def even(self) -> Array | float:
-        """In units of `scale`, what moves each component as far as the others, beside its size."""
+        """Factors of `scale` that move all components alike, relative to size."""
         ...
 
     def scale(self, u: Array) -> Array | None:
-        """What directions are measured in at u, shape (N + 1,); None for 1."""
+        """Return units of directions at u, shape (N + 1,); None for 1."""
         ...
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """H'(u) times each of the directions, in units of `scale`: (k, N + 1) gives (N, k)."""
+        """Return H'(u) times directions in units of `scale`: (k, N + 1) gives (N, k)."""
         ...
 
     def whole(self, residual: Residual, u: Array) -> Array:
-        """All of H'(u), shape (N, N + 1)."""
+        """Return H'(u), shape (N, N + 1)."""
         ...
 
 
@@ -57,8 +57,7 @@ class Products(Protocol):
 class Exact:
     """Products to round-off.
 
-    `function`: The residual, u and directions (k, N + 1) to (N, k). `entire`: The same for all unit vectors, where that
-    can be done better.
+    `function`: Maps residual, u and directions (k, N + 1) to (N, k). `entire`: All of H', if faster.
     """
 
     name: str
@@ -69,19 +68,18 @@ class Exact:
     even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> None:
-        """None: units do not matter to it."""
+        """Return None: units do not matter."""
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """H'(u) times each of the directions."""
+        """Return H'(u) times each direction."""
         return self.function(residual, u, directions)
 
     def whole(self, residual: Residual, u: Array) -> Array:
-        """All of H'(u)."""
+        """Return H'(u)."""
         return self(residual, u, np.eye(u.size)) if self.entire is None else self.entire(residual, u)
 
 
 def _by_jets(residual: Residual, u: Array, directions: Array) -> Array:
-    """All directions go through the residual together."""
     from continuation import jets
 
     def along(s: Any) -> Any:
@@ -103,14 +101,14 @@ def _by_complex_step(residual: Residual, u: Array, directions: Array) -> Array:
 
 
 BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,), _all_by_jets)
-"""By truncated Taylor arithmetic, `continuation.jets`."""
+"""Truncated Taylor arithmetic, `continuation.jets`."""
 
 BY_COMPLEX_STEP = Exact("complex step", _by_complex_step, (SQUIRE_TRAPP,))
 """One complex residual a direction (Squire and Trapp, SIAM Review 40, 1998)."""
 
 
 def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
-    """By the homotopy's own `differential`."""
+    """Return products by the homotopy's own `differential`."""
 
     def function(residual: Residual, u: Array, directions: Array) -> Array:
         y, lam = u[:-1], float(u[-1])
@@ -120,40 +118,39 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
 
 
 DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
-"""Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
-is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
+"""Steps relative to a component's size (or 1): eps^(1/3), usually best, and others, since origin and units are
+arbitrary.
+"""
 
 
 CHANCE = float(np.finfo(float).eps) ** (2.0 / 3.0)
-"""Two differences that agree better do so by chance, as where all is linear: that is the accuracy of the best one."""
+"""Best accuracy of a difference: closer agreement is chance."""
 
 
 def sizes(u: Array) -> Array:
-    """What the steps of differences are measured by: a component's size, or 1."""
+    """Return units of difference steps: sizes of the components, or 1."""
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 
 def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[list[Array], Array]:
-    """Central differences along w at all steps, and how much each changes from one step to the next: (steps - 1, N).
+    """Central differences along w at all steps, and their relative changes: (steps - 1, N).
 
-    The change is beside its own size, or that of its `rows`, shape (N,), the sizes of differences in other directions:
-    of an equation that does not change along w noise would choose the step.
+    `rows`, shape (N,): Least size of a change's unit; else noise chooses the step of equations constant along w.
     """
 
     def at(h: float) -> Array:
         ahead, behind = u + h * w, u - h * w
-        # A copy of the first: a residual may return the same array every time.
+        # A residual may reuse its array.
         try:
             change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
         except (ArithmeticError, ValueError):
-            # Outside the domain; shorter steps stay inside.
+            # Outside the domain.
             return np.full(u.size - 1, np.nan)
         return np.asarray(change / (2.0 * h), dtype=float)
 
     with np.errstate(all="ignore"):
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
-        # Two zeros agree where an equation does not depend on w, and not where it only does not see so short a step, as
-        # one in single precision does.
+        # In single precision short steps show no change: such zeros do not agree.
         seen = (np.array(found) != 0.0).any(axis=0)
         changes = []
         for one, other in pairwise(found):
@@ -166,10 +163,7 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
 
 def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
-    """The central difference of a residual along w, and its step.
-
-    Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
-    the equations, each beside its own size.
+    """Return the central difference along w with the least mean change, and its step.
 
     `u`, `w` of shape (N + 1,).
     """
@@ -179,17 +173,17 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
 
 
 def _best(changes: Array) -> Any:
-    """The step behind the smallest change along the last axis; of several, the one nearest to the usual step."""
+    """The step after the least change."""
     order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
     return order[np.argmin(changes[..., order], axis=-1)] + 1
 
 
 @frozen(eq=False)
 class ByDifferences:
-    """Central differences, about eight to ten digits.
+    """Central differences, eight to ten digits.
 
-    `u0`, of shape (N + 1,): Where the steps were found. `steps`, of shape (N + 1,): Of each component, beside its size.
-    `usual`, of shape (N,): How much each equation changes there, for a move of all components by their sizes.
+    `u0`, shape (N + 1,): Where `steps`, shape (N + 1,), relative to sizes, were chosen. `usual`, shape (N,): Change of
+    each equation as all components move by their sizes.
     """
 
     u0: Array
@@ -200,23 +194,23 @@ class ByDifferences:
     references: tuple[str, ...] = ()
 
     def over(self, noise: Array) -> ByDifferences:
-        """The same over steps in which noise of the equations, shape (N,), and curvature count about alike."""
+        """Return differences whose steps balance noise, shape (N,), and curvature."""
         known = self.usual > 0.0
         least = float(np.cbrt((noise[known] / self.usual[known]).max(initial=0.0)))
         return evolve(self, steps=np.maximum(self.steps, min(least, float(DIFFERENCE_STEPS[0]))))
 
     @property
     def even(self) -> Array:
-        """Steps may differ by orders of magnitude."""
+        """Steps differ by orders of magnitude."""
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
-        """The steps at u, as round-off leaves them."""
+        """Return the steps at u, rounded."""
         reach = self.steps * np.maximum(sizes(self.u0), np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """Two residuals a direction."""
+        """Evaluate two residuals a direction."""
         found = []
         for w in directions * self.scale(u):
             ahead, behind = u + w, u - w
@@ -225,21 +219,21 @@ class ByDifferences:
         return np.stack(found, axis=1)
 
     def whole(self, residual: Residual, u: Array) -> Array:
-        """All of H'(u), column by column."""
+        """Return H'(u), column by column."""
         return self(residual, u, np.eye(u.size)) / self.scale(u)
 
 
 def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
-    """Differences with steps found at `u0`, shape (N + 1,): each component has the one that suits its equations best.
+    """Return differences with the best step for each component at `u0`.
 
     Parameters
     ----------
     residual : callable
     u0 : ndarray, shape (N + 1,)
     groups : ndarray of int, shape (N + 1,), optional
-        Components of one group are moved together; by default each by itself.
+        Move together. Default: each alone.
     rows : sparse array, shape (N + 1, N), optional
-        Of ones: the equations in which a component stands, no two of one group in the same. By default all.
+        Ones for each component's equations. Default: all.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     groups = np.arange(u0.size) if groups is None else groups

@@ -1,4 +1,4 @@
-"""Predictors: from the points and tangents so far, a curve that runs ahead of the path."""
+"""Predictors: curves that extrapolate the path from its points and tangents."""
 
 from continuation.predictors.base import Knot, Prediction, Predictor, SupportsSegment
 from continuation.predictors.polynomial import Hermite, Polynomial, Secant, Tangent

@@ -1,4 +1,4 @@
-"""What a predictor is."""
+"""Protocols of predictors and predictions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.point.segment import Curve, Segment
 
 @frozen(eq=False)
 class Knot:
-    """A past point of the path: what a predictor may remember."""
+    """A past point of the path."""
 
     arclength: float
     u: Array
@@ -23,50 +23,50 @@ class Knot:
 
 
 class Prediction(Protocol):
-    """A curve that starts at the current point; made once a point, asked once an attempt."""
+    """A curve from the current point; made once a point, called once an attempt."""
 
     @property
     def reach(self) -> float:
-        """The longest step for which the prediction is trusted; inf where the predictor cannot tell."""
+        """Longest trusted step; inf if unknown."""
         ...
 
     def __call__(self, h: float) -> Array:
-        """The predicted point at step length h > 0, shape (N + 1,)."""
+        """Return the point at step length h > 0, shape (N + 1,)."""
         ...
 
 
 @runtime_checkable
 class SupportsSegment(Curve, Protocol):
-    """A prediction accurate enough to be the path between its ends: dense output, and where events are looked for."""
+    """A prediction accurate enough to be the path between its ends."""
 
     def segment(self, h: float, end: Array) -> Segment:
-        """The path from the current point to the corrected one, `end`, at step length h.
+        """Return the path from the current to the corrected point.
 
         Parameters
         ----------
         h : float
         end : ndarray, shape (N + 1,)
+            Corrected point.
         """
         ...
 
 
 class Predictor(Protocol):
-    """A way to predict the next point.
+    """Predicts the next point.
 
     Attributes
     ----------
     memory : int
-        How many past knots it uses, the current one included.
+        Number of knots used, with the current one.
     order : int
-        The local error is O(h^(order + 1)); where it depends on the problem, the least, and the prediction's own
-        `order` is the one that holds.
+        Local error O(h^(order + 1)); the least, if the prediction has its own `order`.
     interior_fraction : float, optional
-        How much of the way to the boundary of its domain a prediction may go; 0.9 where the predictor does not say.
+        Part of the distance to the boundary that it may use; default 0.9.
     """
 
     @property
     def memory(self) -> int:
-        """Knots used."""
+        """Number of knots used."""
         ...
 
     @property
@@ -75,25 +75,23 @@ class Predictor(Protocol):
         ...
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Prediction:
-        """The prediction from `point`; `history` holds at most `memory` knots, the current one last.
+        """Return the prediction from `point`.
 
         Parameters
         ----------
         evaluator : Evaluator
-            Of the homotopy; it counts what is asked.
         point : Linearization
-            The current point, with its factorisation and tangent.
+            Current point, with factorisation and tangent.
         history : sequence of Knot
+            At most `memory` knots, the current one last.
         """
         ...
 
 
 def history_in_pseudo_arclength(point: Linearization, history: Sequence[Knot]) -> list[tuple[float, Array, Array]]:
-    """The history in the pseudo-arclength of the current point, newest first: (sigma, u, du/dsigma).
+    """Return the history, newest first: (sigma, u, du/dsigma), sigma = border . (u - point.u).
 
-    sigma = border . (u - point.u) measures all knots alike, though each was reached in a metric of its own. Knots from
-    where the path had turned through a right angle, or from where sigma does not fall, are left out with all before
-    them.
+    Knots before a right-angle turn, or where sigma stops decreasing, are dropped.
     """
     border = point.border
     knots = [(0.0, point.u, point.tangent)]

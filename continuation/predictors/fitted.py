@@ -1,4 +1,4 @@
-"""Coefficients of a path's series where its residual is followed by no jet: of points of the path on either side."""
+"""Series coefficients without jets: a fit to nearby points of the path."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from continuation.metric import norm
 from continuation.point.linearization import Linearization
 
 FITTED_ORDER = 11
-"""Of a fit: with the points that it takes, powers of s magnify round-off by 1e4; by 1e8 with twice as many."""
+"""Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
 
 CHORD = Contraction(iterations=30, ratio=HALVING)
-"""With the factorisation at hand; the range is shortened where it does not converge."""
+"""With the current factorisation; divergence shortens the range."""
 
 FOUND_BESIDE = 1e-8
-"""The last increment of a point beside its distance: next to round-off, whatever the factorisation."""
+"""Last increment relative to the point's distance: near round-off."""
 
 NOISE_SEEN = 8.0
-"""What noise makes of the largest of many increments, in what it makes of one point: each is a difference of two."""
+"""Largest of many increments, in units of a point's noise; each is a difference of two."""
 
 ROUNDS = 40
-"""Changes of the range, by four or to half of what the fit says: 4^-40 of a range is none."""
+"""Limit of range changes; 4^-40 of a range is nothing."""
 
 
 def fitted(
@@ -38,11 +38,9 @@ def fitted(
     reach: Callable[[Array], float],
     accuracy: float,
 ) -> Array:
-    """Coefficients of the path at a point, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
+    """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
-    The polynomial in the pseudo-arclength that has the point's tangent and goes through points of the path, found by
-    Newton's method with the point's factorisation. It lies as near to the path as any in its range, which is chosen to
-    be about that in which it is used.
+    The polynomial has the point's tangent and interpolates points of the path, found by chord steps.
 
     Parameters
     ----------
@@ -50,17 +48,16 @@ def fitted(
     point : Linearization
     order : int
     first : float
-        The range that is tried first.
+        First range tried.
     reach : callable
-        How far a series is of use.
+        Range in which a series is accurate.
     accuracy : float
-        In the metric, for that use. Noise in H leaves points of the path uncertain, and the highest of k powers doubles
-        that k times: with noise the order is lower.
+        In the metric; noise, doubled by each power, lowers the order.
 
     Raises
     ------
     EvaluationError
-        If there is no range in which the path is found.
+        If no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)
@@ -75,7 +72,7 @@ def fitted(
             barrier, r = r, 0.25 * r
             continue
         last, far = found, reach(found)
-        # With noise the longest range will do: in shorter ones it is noise that says how far the series is of use.
+        # In short ranges noise would limit the series.
         following = 0.5 * r if blur else min(0.5 * far, 0.5 * barrier)
         if (r <= 4.0 * far) if blur else (0.25 * far <= r <= far or 0.5 * following <= r <= following):
             break
@@ -86,8 +83,7 @@ def fitted(
 
 
 def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, blur: float) -> Array | None:
-    """The polynomial through points at Chebyshev's nodes within r, known to a blur; None where one is not found."""
-    count = order - order % 2  # an even number: none of them is the point itself
+    count = order - order % 2  # even: the point is no node
     nodes = np.cos((np.arange(count) + 0.5) * (np.pi / count))
     bends = np.empty((count, point.u.size))
     bend = np.zeros_like(point.u)

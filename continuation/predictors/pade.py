@@ -1,4 +1,4 @@
-"""Vector Pade approximants with one denominator: what a truncated series says beyond its circle of convergence."""
+"""Vector Pade approximants with one denominator: series beyond their radius of convergence."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ from continuation.point.segment import SeriesSegment
 from continuation.tolerance import Tolerance
 
 DEGREES = 6
-"""How many successive orders are compared."""
+"""Successive orders compared."""
 
 LONGEST_RANGE = 8.0
-"""The longest range looked at, in ranges of the series."""
+"""In ranges of the series."""
 
 RANGES_LOOKED_AT, BEFORE_POLE = 25, 0.95
-"""Places on the way out at which approximants are compared, each a tenth farther than the one before; and how much of
-the way to a pole is looked at."""
+"""Samples of the agreement, a tenth apart; part of the way to a pole that is sampled."""
 
 NUMERICAL_RANK, REAL = 1e-14, 1e-8
-"""Singular values, relative, that are round-off; and the imaginary part of a real root: half of the digits."""
+"""Relative round-off of singular values, and of a real root's imaginary part."""
 
 HUGE = 1e150
 """The square of a larger number overflows."""
@@ -32,8 +31,7 @@ HUGE = 1e150
 class Pade:
     """The rational curve sum_j p_j s^j / sum_i d_i s^i.
 
-    `numerator` of shape (L + 1, N + 1). `denominator`, of shape (m + 1,): Ascending, the first one 1. `order`: Of the
-    series that it continues, L + m. `reach`: How far it is trusted.
+    `numerator`: shape (L + 1, N + 1). `denominator`: shape (m + 1,), ascending, first 1. `order`: L + m.
     """
 
     numerator: Array
@@ -42,19 +40,19 @@ class Pade:
     reach: float
 
     def __call__(self, h: float) -> Array:
-        """The point at pseudo-arclength h."""
+        """Return the point at pseudo-arclength h."""
         top = h ** np.arange(len(self.numerator)) @ self.numerator
         point: Array = top / float(h ** np.arange(len(self.denominator)) @ self.denominator)
         return point
 
     def derivative(self, h: float) -> Array:
-        """du/ds at h, by the quotient rule."""
+        """Return du/ds at h."""
         bottom = float(h ** np.arange(len(self.denominator)) @ self.denominator)
         slope: Array = (_slope(self.numerator, h) - self(h) * float(_slope(self.denominator, h))) / bottom
         return slope
 
     def segment(self, h: float, end: Array) -> SeriesSegment:
-        """The path up to the corrected point at pseudo-arclength h."""
+        """Return the path up to the corrected point at h."""
         return SeriesSegment(self, h, end - self(h), self.order + 1)
 
 
@@ -65,12 +63,10 @@ def _slope(coefficients: Array, h: float) -> Array:
 
 
 def approximant(coefficients: Array, weights: Array) -> Pade:
-    """The approximant of degrees (K - K // 2, K // 2) of a series of order K, of reach 0.
+    """Return the approximant of degrees (K - K // 2, K // 2) of a series of order K, with reach 0.
 
-    The denominator makes the coefficients K - m + 1..K of its product with the series vanish, in least squares over the
-    components (simultaneous, or type II, Pade approximation; Baker and Graves-Morris, Section 8.1), measured in
-    the metric. The series is first written in an orthonormal basis of its own terms, so the least-squares problem has
-    order m whatever N is; and scaled to a radius of convergence of 1, so that it is well conditioned.
+    Coefficients K - m + 1..K of denominator times series vanish in least squares (simultaneous, or type II,
+    approximation; Baker and Graves-Morris, Section 8.1).
     """
     order = len(coefficients) - 1
     m = order // 2
@@ -85,20 +81,18 @@ def approximant(coefficients: Array, weights: Array) -> Pade:
     right = np.concatenate([terms[j] for j in rows])
     d = np.concatenate(([1.0], np.linalg.lstsq(matrix, -right, rcond=NUMERICAL_RANK)[0]))
     numerator = np.array([d[: j + 1] @ scaled[j::-1][: m + 1] for j in range(order - m + 1)])
-    # Undo the scaling: s = radius * t.
+    # Undo the scaling s = radius * t.
     back = radius ** -np.arange(order + 1.0)
     return Pade(numerator * back[: order - m + 1, None], d * back[: m + 1], order, 0.0)
 
 
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Pade | None:
-    """The approximant with the longest range among the highest orders; None if none reaches beyond the series.
+    """Return the approximant with the longest range, or None.
 
-    The range is where two successive orders agree, short of the first pole. A pole that appears at one order and not
-    at the next is an artefact (a Froissart doublet), so an order that it spoils gives way to a lower one; a pole of
-    the path's own stays, and ends the range of all of them.
+    In its range successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet); a
+    pole of the path limits all.
     """
     order = len(series) - 1
-    # Terms whose squares overflow have no sizes.
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() > HUGE:
         return None
     shapes = [approximant(series[: k + 1], weights) for k in range(order, max(order - DEGREES, 2), -1)]
@@ -113,7 +107,6 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
 
 
 def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, weights: Array) -> float:
-    """How far two approximants agree; looked for on the way out, so that no gap in between is jumped over."""
     measure = Tolerance(relative=accuracy).measure
     end = min(LONGEST_RANGE * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0
@@ -127,7 +120,7 @@ def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, w
 
 
 def first_pole(denominator: Array) -> float:
-    """The smallest positive real root of the denominator; inf where there is none."""
+    """Return the denominator's smallest positive real root, or inf."""
     trimmed = np.trim_zeros(denominator, "b")
     if len(trimmed) < 2:
         return float("inf")

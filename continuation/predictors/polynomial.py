@@ -1,4 +1,4 @@
-"""Predictors that pass a polynomial through past points and tangents: no evaluation of the homotopy."""
+"""Polynomial predictors through past points and tangents, without evaluations."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from continuation.predictors.base import Knot, history_in_pseudo_arclength
 
 @frozen(eq=False)
 class Interpolant:
-    """Newton's form of the polynomial through the current point (h = 0) and past data, with coincident nodes."""
+    """Newton form of a polynomial through the current point (h = 0) and past data."""
 
     nodes: Sequence[float]
     coefficients: Sequence[Array]
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
-        """Horner's scheme on the divided differences."""
+        """Evaluate by Horner's scheme."""
         value: Array = self.coefficients[-1].copy()
         for node, coefficient in zip(self.nodes[-2::-1], self.coefficients[-2::-1]):
             dscal(h - node, value)
@@ -70,7 +70,7 @@ class Line:
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
-        """The point at h."""
+        """Return the point at h."""
         point = multiple(h, self.v)
         point += self.u
         return point
@@ -84,7 +84,7 @@ class Tangent:
     order: int = field(default=1, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
-        """The tangent line."""
+        """Return the tangent line."""
         return Line(point.u, point.tangent)
 
 
@@ -96,7 +96,7 @@ class Secant:
     order: int = field(default=1, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
-        """The secant line, with unit speed in the metric of the point."""
+        """Return the secant line, with unit speed in the point's metric."""
         knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
@@ -106,21 +106,17 @@ class Secant:
 
 @frozen
 class Hermite:
-    """The cubic through the last two points and their tangents; Euler's step at the start.
-
-    The parameter is the pseudo-arclength of the current point. Order 3, no cost beyond the tangents that the engine
-    has anyway.
-    """
+    """The cubic through the last two points and tangents; Euler's step at the start. Order 3, at no extra cost."""
 
     memory: int = field(default=2, init=False)
     order: int = field(default=3, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
-        """The Hermite cubic, read ahead of the current point."""
+        """Return the Hermite cubic."""
         knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
-        # The divided differences of `interpolate`, written out: every step makes one.
+        # `interpolate`, written out for speed.
         (_, u, v), (sigma, past, slope) = knots[:2]
         chord = (past - u) / sigma
         square = (chord - v) / sigma
@@ -129,22 +125,21 @@ class Hermite:
 
 
 MOST_POINTS = 50
-"""A predictor of more past points would be slower than the step: its divided differences take their square."""
+"""More points would be slower than the step: time is their square."""
 
 
 @frozen
 class Polynomial:
     """A polynomial of up to `degree` through past points, with the current tangent.
 
-    The degree actually used is the one whose last two terms at the length of the previous step fall off (a high
-    degree on a rough history is worse than none), so the order varies with the path.
+    It ends before Newton terms that do not decrease: high degrees fail on rough histories.
     """
 
     degree: int = field(default=4, validator=integer(2, MOST_POINTS))
 
     @property
     def memory(self) -> int:
-        """One knot a degree: the tangent counts as one condition."""
+        """The tangent counts as one condition."""
         return self.degree
 
     @property
@@ -153,7 +148,7 @@ class Polynomial:
         return self.degree
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
-        """The interpolant of the chosen degree."""
+        """Return the interpolant of the chosen degree."""
         knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
@@ -164,7 +159,7 @@ class Polynomial:
 
 
 def _falling(full: Interpolant, step: float, weights: Array) -> int:
-    """How many Newton terms to keep: up to the first that is not smaller than the one before it."""
+    """Number of Newton terms before one that does not decrease."""
     factor, previous = 1.0, math.inf
     for k, coefficient in enumerate(full.coefficients):
         if k:

@@ -1,7 +1,6 @@
-"""The Taylor predictor: the path's own power series, every coefficient from one factorisation.
+"""Taylor predictor: the path's power series from one factorisation.
 
-The asymptotic numerical method (Cochelin, Computers & Structures 53, 1994) in the pseudo-arclength of the current
-metric: u(s) with border . (u(s) - u(0)) = s, border = W tangent.
+Asymptotic numerical method (Cochelin, Computers & Structures 53, 1994) in pseudo-arclength.
 """
 
 from __future__ import annotations
@@ -29,29 +28,29 @@ from continuation.predictors.pade import Pade, best
 from continuation.tolerance import Tolerance
 
 ORDERS = (8, 30)
-"""Bounds of the orders that the cost model chooses from: beyond 30 round-off in the last terms eats the gain."""
+"""Bounds of the chosen order: beyond 30 round-off removes the gain."""
 
 LARGEST_ORDER = 100
-"""That may be asked for: a series takes the square of its order, and from about 60 on it gains nothing anywhere."""
+"""The cost is its square; from about 60 on it gains nothing."""
 
 LONGEST_STEP = 100.0
-"""In the length of the metric: a polynomial path has no last terms that would limit it."""
+"""In the metric: a polynomial path has no last terms."""
 
 
 @frozen(eq=False)
 class Series:
-    """The truncated series, and the length for which it is trusted."""
+    """A truncated series and its trusted range."""
 
     coefficients: Array
     reach: float
 
     @property
     def order(self) -> int:
-        """The order of the last term."""
+        """Order of the last term."""
         return len(self.coefficients) - 1
 
     def __call__(self, h: float) -> Array:
-        """The point at pseudo-arclength h, by Horner's rule."""
+        """Return the point at pseudo-arclength h, by Horner's rule."""
         value: Array = self.coefficients[-1].copy()
         for coefficient in self.coefficients[-2::-1]:
             value *= h
@@ -59,11 +58,11 @@ class Series:
         return value
 
     def segment(self, h: float, end: Array) -> SeriesSegment:
-        """The path up to the corrected point at pseudo-arclength h."""
+        """Return the path up to the corrected point at h."""
         return SeriesSegment(self, h, end - self(h), len(self.coefficients))
 
     def derivative(self, h: float) -> Array:
-        """du/ds at pseudo-arclength h."""
+        """Return du/ds at h."""
         order = len(self.coefficients) - 1
         value: Array = order * self.coefficients[-1]
         for k in range(order - 1, 0, -1):
@@ -73,12 +72,10 @@ class Series:
 
 
 def best_order(n: int, accuracy: float) -> int:
-    """The order that minimises work for a length of path: (f + K) solves a step, a step proportional to accuracy^(1/K).
+    """Return the order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f is what a factorisation and the rest of a step cost in solves; 4 + n/60 is a compromise between dense matrices of
-    order n, where it grows, and the n times smaller systems of plug-ins, where it does not: the order chosen takes at
-    most a third more time than the best one measured (docs, "choosing"). Setting the derivative of (f + K) exp(L/K),
-    L = -ln accuracy, to zero gives K^2 = L (K + f).
+    f = 4 + n/60 is a compromise, at most a third slower than the best (docs, "choosing"). The least (f + K) exp(L/K), L
+    = -ln accuracy, is at K^2 = L (K + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -87,10 +84,7 @@ def best_order(n: int, accuracy: float) -> int:
 
 
 def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
-    """The step at which the last two terms reach `accuracy`, relative to the point's components (a mixed measure).
-
-    Two terms, since one may vanish by symmetry; the shorter answer counts.
-    """
+    """Return the step at which one of the last two terms reaches `accuracy`; one may vanish by symmetry."""
     measure = Tolerance(relative=accuracy).measure
     order = len(coefficients) - 1
     reach = LONGEST_STEP
@@ -103,20 +97,19 @@ def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
 
 @frozen
 class Taylor:
-    """Series prediction of any order, with the plug-in's own coefficients or those of `continuation.jets`.
+    """Series prediction of any order, by the plug-in or `continuation.jets`.
 
     Parameters
     ----------
     order : int, optional
-        Chosen by `best_order` where not given.
+        Default: `best_order`.
     accuracy : float
-        Size of the last terms, relative to the components of the point, at the end of a step. The corrector's first
-        increment brings an error of this size to its square, so that it need not be the tolerance of the trace; the
-        dense output between points has about this accuracy times 2^-order in the middle of a step.
+        Size of the last terms at a step's end, in the metric. The corrector squares it; dense output has it times
+        2^-order in mid-step.
     safety : float
         Factor on the reach.
     rational : bool
-        Pade approximants with a common denominator: a larger range, ended before a pole.
+        Pade approximants: a larger range, ended before a pole.
     """
 
     order_wanted: int | None = field(default=None, validator=optional(integer(2, LARGEST_ORDER)), alias="order")
@@ -125,27 +118,27 @@ class Taylor:
     rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
-    """How much of the way to the boundary of a domain it may go: its error is far below the distance that is left."""
+    """Its error is far below the remaining distance."""
 
     @property
     def references(self) -> tuple[str, ...]:
-        """The series method and, for rational curves, their theory."""
+        """Series method, and theory of rational curves."""
         return (COCHELIN, BAKER_GRAVES_MORRIS) if self.rational else (COCHELIN,)
 
     @property
     def order(self) -> int:
-        """The order given, or the least that is chosen; `Series.order` is the one that was."""
+        """The given or least order; `Series.order` is the actual one."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
-        """The coefficients at the point, with the factorisation at hand."""
+        """Return the series at the point."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
         coefficients = self._exact(evaluator, point, order) if evaluator.followed else None
         if coefficients is None:
             evaluator.followed = False
             evaluator.counts.notes.add("series through points of the path, since jets do not follow the residual")
             lately = [knot.arclength for knot in history[-2:]]
-            # One is the metric's unit: about how far a path goes.
+            # The metric's unit: a path's length.
             first = 0.5 * (max(lately) - min(lately)) or 1.0
             coefficients = fitted(evaluator, point, order, first, partial(self._reach, point), self.accuracy)
         series = Series(coefficients, self.safety * self._reach(point, coefficients))
@@ -165,7 +158,7 @@ class Taylor:
 
 
 def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
-    """Coefficients of the path at a point, shape (order + 1, N + 1); None where jets do not follow the residual."""
+    """Return path coefficients, shape (order + 1, N + 1); None if jets fail."""
     homotopy = evaluator.homotopy
     if offers(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)

@@ -1,1 +1,1 @@
-"""One step: settings, start, state, the attempt, its acceptance, and the loop."""
+"""One step: settings, start, state, attempt, acceptance and loop."""

@@ -1,8 +1,4 @@
-"""What makes an arc count: orientation, connectedness; then where the path ends on it, and the events on it.
-
-A further check of a user's own is a `Guard`. One of the library belongs into `Examiner.examine`, between the crossing
-of branches and the end, and answers with a `Rejection`.
-"""
+"""Decide whether an arc counts, where the path ends on it, and which events it has."""
 
 from __future__ import annotations
 
@@ -31,16 +27,17 @@ from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
-"""What is said of a point where several branches cross at once."""
+"""Marks a point where several branches cross."""
 
 LEAST_STEP_SHARE = 2.0**-8
-"""Of the step that the controller asked for: down to that an arc is made shorter on which a census of eigenvalues finds
-more than the events do. What then crosses has another reason, as a pole of H_y, or a symmetry."""
+"""Least part of the controller's step to which an arc shrinks while eigenvalue count and events disagree. A later
+crossing has another cause: a pole of H_y or a symmetry.
+"""
 
 
 @frozen(eq=False)
 class Accepted:
-    """An accepted arc after examination: how it ends, the events on it, and what is part of the state after it."""
+    """An accepted arc with its end and events."""
 
     ending: ArcEnd
     attempt: Arrival
@@ -53,7 +50,7 @@ class Accepted:
 
 @frozen(eq=False)
 class Examiner:
-    """What an examination needs."""
+    """Examines arcs."""
 
     solver: PathSolver
     settings: Settings
@@ -68,18 +65,17 @@ class Examiner:
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
     ) -> Accepted | Rejected:
-        """The arc from `point` to where the attempt arrived, or why it does not count.
+        """Return the arc to the arrival, or why it does not count.
 
         Parameters
         ----------
         point : Linearization
         state : State
-            At `point`.
         attempt : Arrival
         prediction : Prediction
-            That of the attempt: where it is good enough it is the path between the two points.
+            The path between the points, if accurate.
         landed : bool
-            Whether the attempt was one to land on the target, so that the path ends with it.
+            Whether the attempt aimed at the target.
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
@@ -88,7 +84,7 @@ class Examiner:
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
             if self.pieces is not None:
-                # What lies behind a kink is no path: the arc ends there before anything else is looked at.
+                # Beyond a kink there is no path.
                 kink = first_zero(self.solver, self.pieces, state.signs, arc)
             if kink is not None:
                 arrival, landed = kink[0], False
@@ -100,10 +96,10 @@ class Examiner:
             ending = self.target.ending_of_arc(arc, state, landed)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:
-                # A singular end by itself makes H' lose its rank there.
+                # A singular end loses rank by itself.
                 flipped = False
             elif index is not None:
-                # Where the path ends on the arc, that end is looked at: it may lie on another branch than the arc does.
+                # The end of the path may lie on another branch than the arc's end.
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
@@ -153,7 +149,6 @@ class Examiner:
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
-        """That of an arc which was cut at a kink: the target, if that is the same point, else the kink."""
         if ending.at is not EndsAt.NOTHING:
             return ending
         target = self.settings.target
@@ -165,7 +160,6 @@ class Examiner:
     def _located(
         self, i: int, at: Linearization, begin: Linearization, state: State, end: Linearization
     ) -> LocatedEvent:
-        """The i-th event, found at a point of the arc from `begin` to `end`."""
         event = self.settings.events[i]
         return LocatedEvent(
             name=event.name,
@@ -183,12 +177,12 @@ class Examiner:
 
 
 def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
-    """Whether a point lies on an arc no farther than its end, which may be before the arc's own."""
+    """Whether a point of the arc lies not beyond `end`."""
     return position(arc, at.u) <= position(arc, end.u)
 
 
 def _across(point: Linearization, attempt: Arrival, prediction: Prediction) -> float:
-    """How far the prediction of a landing was off, across the path: at a fixed parameter it is corrected along, too."""
+    """Error of a landing's prediction across the path."""
     off = attempt.point.u - prediction(attempt.h)
     return norm(point.weights, off - point.tangent * dot(point.border, off))
 

@@ -1,4 +1,4 @@
-"""One step: from a point of the path to the next that counts, or to the reason why there is none."""
+"""One step: from a point to the next accepted point."""
 
 from __future__ import annotations
 
@@ -45,21 +45,21 @@ from continuation.step.verdict import (
 )
 
 SINGULAR_STRETCH = 1.19
-"""A step that ends in a branch point finds no factors there, and halves of it would only creep up to the place: the
-next one is so much longer than the controller asks for. Measured on 720 traces of lines over branch points at round
-values: without it 648 attempts are rejected and 9 traces stick; with 1.1 .. 1.5 it is 132 .. 144, and none does."""
+"""Factor of the next step after a singular factorisation: halves would creep up to the branch point. Without it 720
+traces had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none.
+"""
 
 NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
 """After so many attempts at one step it is asked whether noise in H has grown, and by what it must have, so that an end
 comes to it: two measurements of one noise differ by less."""
 
 TINY = 1e-300
-"""A monitor that is next to nothing, and has a sign."""
+"""A monitor value of zero with a sign."""
 
 
 @frozen(eq=False)
 class Moved:
-    """A step that counts: the point after it, its record, the state, the events on it, and the verdict if it ends."""
+    """An accepted step; `verdict` if the path ends there."""
 
     point: Linearization
     step: Step
@@ -70,7 +70,7 @@ class Moved:
 
 @frozen(eq=False)
 class Stopped:
-    """No step: the verdict, and the limit of the path where that was found."""
+    """No step: the verdict, and the path's limit if found."""
 
     verdict: Verdict
     end: Array | None = None
@@ -78,7 +78,7 @@ class Stopped:
 
 @frozen(eq=False)
 class Advance:
-    """What a step is made with.
+    """Makes the steps of one path.
 
     Attributes
     ----------
@@ -86,9 +86,8 @@ class Advance:
     settings : Settings
     recorder : StepRecorder
     spent : callable
-        Which limit of the budget is reached, as text.
+        Names the exhausted limit of the budget, or "".
     pieces : Pieces or None
-        Of a piecewise smooth homotopy.
     """
 
     solver: PathSolver
@@ -104,7 +103,7 @@ class Advance:
 
     @extent.default
     def _extent(self) -> SupportsExtent | None:
-        # Asked once: a look for the methods of a Protocol takes as long as a residual.
+        # Asked once, since isinstance is slow.
         return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
 
     @stepper.default
@@ -124,7 +123,7 @@ class Advance:
         return Examiner(self.solver, self.settings, self.target, self.pieces)
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:
-        """The next accepted point, or why there is none."""
+        """Return the next accepted point, or why there is none."""
         settings, controller = self.settings, self.settings.controller
         try:
             prediction = settings.predictor.prepare(self.solver.evaluator, point, state.history)
@@ -138,13 +137,13 @@ class Advance:
         if self.extent is not None:
             h = min(h, self.extent.longest)
         if math.isinf(h):
-            # A controller made for series with a predictor that has no range: begin with the size of the point.
+            # Neither controller nor predictor has a range: begin with the point's size.
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(
             point, prediction, h, controller.bounds.maximum, state.last_failed_landing
         )
         if landing is not None:
-            # The controller judges this one too: a long correction says that the path is not what was predicted.
+            # A long correction discredits a landing too.
             if (
                 isinstance(landing, Arrival)
                 and controller.update(memory, self._measures(landing, prediction, 0)).accept
@@ -152,7 +151,7 @@ class Advance:
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
-                # What was seen before the target would lie in a longer step, too, where less shows it.
+                # A longer step contains the same obstacle, less visibly.
                 h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
@@ -184,7 +183,7 @@ class Advance:
                 return Stopped(verdict)
 
     def _noisier(self, point: Linearization, state: State, u: Array) -> State | None:
-        """The state with the noise of H at u, where that is more than was known; None where it is not."""
+        """The state with the noise of H at u; None unless it has grown."""
         evaluator, known = self.solver.evaluator, state.noise if state.noise.size else np.zeros(u.size - 1)
         try:
             evaluator.measure_noise(u, point.tangent, evaluator.residual(u))
@@ -193,7 +192,7 @@ class Advance:
             least = min(max(CLEAR_OF_NOISE * point.blur(noise), state.tolerance), COARSEST)
         except EvaluationError:
             grown = False
-        # What the evaluator knows is what the state says: a trace that is resumed knows no more.
+        # Keep evaluator and state equal, for resumed traces.
         evaluator.noisy(noise if grown else known)
         if not grown:
             return None
@@ -206,10 +205,10 @@ class Advance:
         if self.target.endgame_is_due(point, state):
             limit, state = self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
-            # It is one of the piece beyond its border.
+            # The limit lies beyond the border of this piece.
             limit = None
         if limit is not None and point.orientation == 0 and between(self.solver, point, limit.u):
-            # No determinant's sign says that it lies on another branch.
+            # Without determinants: eigenvalues show that the limit is on another branch.
             limit = None
         return limit, state
 
@@ -223,7 +222,6 @@ class Advance:
         )
 
     def _weights(self, arrival: Linearization, state: State) -> Array:
-        """The metric where a step arrived."""
         if self.extent is not None:
             return self.extent.grown(arrival.weights, state.origin.u, arrival.u)
         return self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights)
@@ -237,7 +235,6 @@ class Advance:
         h: float,
         rejected: tuple[Rejected, ...],
     ) -> Moved:
-        """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
         monitor, infinity = divergence(
@@ -245,7 +242,6 @@ class Advance:
         )
         moved = arrival.with_weights(self._weights(arrival, state))
         if self.extent is not None:
-            # The same step in the new metric: the path has become longer, not the step.
             h *= norm(moved.weights, arrival.tangent) / norm(arrival.weights, arrival.tangent)
         angle = attempt.angle if ending.whole else angle_between(point, arrival)
         step = self.recorder.record(
@@ -266,7 +262,7 @@ class Advance:
             weights=point.weights,
         )
         knot = Knot(step.arclength, moved.u, moved.tangent)
-        # Every field by name: `evolve` would cost more than all the rest of this.
+        # `evolve` is too slow here.
         state = State(
             history=(*state.history, knot)[-max(self.settings.predictor.memory, 1) :],
             weights=moved.weights,
@@ -297,7 +293,6 @@ class Advance:
     def _behind(
         self, pieces: Pieces, crossing: Crossing, onward: Linearization, kink: Linearization, state: State
     ) -> tuple[Linearization, State]:
-        """The same point on the next piece: its tangent, its factors, and no history."""
         self.solver.evaluator.bind(pieces.piece(crossing.signs))
         point = onward.with_weights(kink.weights)
         state = evolve(
@@ -313,7 +308,7 @@ class Advance:
         return point, state
 
     def _monitor_behind(self, event: Event, point: Linearization, before: float) -> float:
-        """An event's monitor behind a kink; where a component stands still there, the sign that it had before."""
+        """The monitor behind a kink; a zero tangent component keeps its sign."""
         g = event.monitor(point.u, point.tangent)
         moves = isinstance(event, TurningPoint) and abs(g) * math.sqrt(point.weights[event.component]) > STILL
         return g if moves or not isinstance(event, TurningPoint) else math.copysign(min(abs(before), TINY), before)

@@ -1,4 +1,4 @@
-"""The homotopy's `max_step` and `finish` as the engine calls them: what they return is checked, and named if wrong."""
+"""Checked calls of a homotopy's `max_step`, `observe` and `finish`."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ from continuation.step.stepper import LOW_ORDER_FRACTION
 
 
 def max_step_of(homotopy: Any) -> MaxStep | None:
-    """The homotopy's `max_step`; None where its path has no boundary.
+    """Return the homotopy's `max_step`, or None.
 
-    The function returned raises TypeError or ValueError if the homotopy's gives anything but a number for a finite
-    direction: with NaN every comparison fails, and a step is shortened for ever.
+    TypeError or ValueError unless it gives numbers: NaN would shorten steps forever.
     """
     if not offers(homotopy, SupportsMaxStep):
         return None
@@ -37,7 +36,7 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
         if math.isnan(h):
             if finite(v):
                 raise complain(ValueError, "max_step", "a number, at least 0, or inf", found)
-            # A prediction that overflows is no fault of the homotopy's; no part of it is inside.
+            # An overflowing prediction: no part of it is inside.
             return 0.0
         return h
 
@@ -45,10 +44,9 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
 
 
 def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] | None:
-    """The homotopy's `observe`, whose answers are checked; None where it has none.
+    """Return the homotopy's `observe`, or None.
 
-    The function returned raises TypeError unless that one gives a mapping of names to real numbers, and ValueError if
-    the names are not those of its first answer: they are columns of an archive.
+    TypeError unless it maps names to numbers; ValueError if the names change: they are archive columns.
     """
     if not offers(homotopy, SupportsObserve):
         return None
@@ -73,10 +71,9 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 def finish_of(
     homotopy: Any, given: Callable[[Array, float], Array | None] | None
 ) -> Callable[[Array, float], Array | None] | None:
-    """The finish that was given, else the homotopy's own; None where there is neither.
+    """Return the given finish, else the homotopy's, or None.
 
-    The function returned raises ValueError if that one gives neither None nor as many finite numbers as there
-    are unknowns. Whether H vanishes there is `checked_end`'s to say.
+    ValueError unless it gives None or N finite numbers.
     """
     own = homotopy.finish if offers(homotopy, SupportsFinish) else None
     finish = own if given is None else given
@@ -96,15 +93,14 @@ def finish_of(
 
 
 FALSE_END = 1e-3
-"""Of the terms of an equation: what H may be at an end that a `finish` found. A certificate of the problem may allow
-for much, and an end that is none misses by about all that its terms are."""
+"""Largest residual at a `finish`'s end, relative to the equation's terms; at a false end it is about 1."""
 
 
 def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | None) -> Array:
-    """The end that a `finish` found, (y, lam) at the target or where the path is, if H vanishes there.
+    """Return the end (y, lam) found by a `finish`, if H vanishes there.
 
-    An equation is taken to hold where it is small among its own terms, or no worse than at the last point of the path,
-    put at the end's parameter: terms that vanish themselves, as products x_i w_i do, tell nothing.
+    Each equation must be small relative to its terms, or as small as at the last point with the end's parameter, since
+    terms such as x_i w_i may vanish.
 
     Parameters
     ----------
@@ -134,6 +130,6 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
 
 
 def interior_fraction(predictor: Predictor) -> float:
-    """How much of the way to the boundary of its domain a prediction may go: what the predictor says, else 0.9."""
+    """Part of the distance to the boundary that a prediction may use: the predictor's, else 0.9."""
     fraction = getattr(predictor, "interior_fraction", LOW_ORDER_FRACTION)
     return float(fraction)

@@ -1,12 +1,9 @@
-"""What lies on an arc before it counts: the eigenvalues of H' along it, and the branch point where one changes sign.
+"""Eigenvalues of H' along an arc, and the branch point where one changes sign.
 
-Let M_a be the bordered matrix factored at the beginning of an arc, M(t) that at its point t, and z(t) the eigenvalues
-of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if no real z falls to less than 1/SPAN
-from one look to the next, none grows by more than SPAN, and of three looks in a row z at the first and the last add up
-to at most SPAN times that between them, where of a parabola that touches zero it is four times: no branch crosses it,
-and both its ends lie on one branch. An arc *crosses* a branch if one real z(t) goes through zero at a simple branch
-point s about as 1 - t / s does, or at a degenerate one as a power of that (`degenerate_point`), and no other comes to
-zero. Any other arc is too long, or no part of the path.
+Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at t. The arc is
+*regular* if no real z changes by more than SPAN between samples, nor the outer of three samples add up to more than
+SPAN times the middle one: then no branch crosses it. It *crosses* a branch if one z vanishes like 1 - t / s at a branch
+point s (a power of it at a degenerate one) and no other z comes near zero. Other arcs are too long or off the path.
 """
 
 from __future__ import annotations
@@ -33,50 +30,54 @@ from continuation.step.degenerate import SIMPLE_ORDER, Z_ROUND_OFF, BranchPointO
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""How far a real eigenvalue of M_a^-1 M(t) may change from one look to the next on an arc that counts as regular. Two
-crossings that are passed at once leave no sign; but of a parabola that touches zero between three looks the values at
-the first and the last add up to four times the one between them, or more."""
+"""Largest ratio of a real eigenvalue at two samples. For a parabola that touches zero the outer of three samples
+add up to four times the middle one or more.
+"""
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
-"""The same for eigenvalues of I - M_a^-1 M(t)."""
+"""The same limits for I - M_a^-1 M(t)."""
 
 TOLD = 0.25
-"""The least change that is told."""
+"""Least reported change of an eigenvalue."""
 
 ONWARD = 0.1
-"""A look so far behind the end of an arc, in its lengths, along which H' comes nearer to singular. If it becomes more
-regular there by more than that part, it was singular on the arc, as the branch sees it on which the arc ends."""
+"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths. A greater recovery of H' there shows a
+singular point on the arc.
+"""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
-"""Where on an arc the eigenvalues are told: on a cubic, and on a series, whose steps reach over more."""
+"""Sample parameters on a cubic, and on a series' longer arc."""
 
 NEAR_ARC = 2e-2
-"""How far from the arc a branch point on it may lie, in its lengths: five times what an arc may be off the path."""
+"""Largest distance of a branch point from its arc, in arc lengths: five times an arc's error."""
 
 ON_PATH = 8 * float(np.finfo(float).eps)
-"""Of the rows of H' over the arc: so little of H is round-off, also where all that H is made of vanishes at the point.
-At true crossings at most 3e-16 was seen; with 1e-13 curves 2e-6 apart were said to cross."""
+"""Largest round-off residual relative to the rows of H'. True crossings had at most 3e-16; 1e-13 joined curves 2e-6
+apart.
+"""
 
 AHEAD = 3.0
-"""So far ahead, in arcs, a branch point that is found is believed: the next arc has it on its first two thirds."""
+"""Branch points farther ahead, in arc lengths, are ignored; the next arc sees them."""
 
 NEAR_CROSSING = 0.1
-"""An arc does not end so near to a crossing, in its lengths: the factors there have a part ten times too small, and the
-next arc would begin with that."""
+"""Least distance of an arc's end from a crossing, in arc lengths; nearer, the next factors are nearly singular."""
 
 STEP_BACK = 0.7
-"""The factor of a step that arrived so near to a crossing, and the largest of one that is to end behind it."""
+"""Factor of a step that ended near a crossing; largest factor of one that is to end behind it."""
 
 BEST = 4.0 / 3.0
-"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart:
-here the first is least beside the second."""
+"""Best step over a crossing, relative to its distance: balances the cubic's error x^4 and the
+branches' distance x - 1.
+"""
 
 SMALLEST = 2.0**-6
-"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row; and
-the least factor of a step, since a place next to the beginning may be round-off, and would end the path at once."""
+"""Least part of an arc searched for pairs of crossings, and least factor of a step, since crossings near the beginning
+may be round-off.
+"""
 
 AT_END = 1e-6
-"""Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
+"""A crossing this near to the arc's end, in arc lengths, is at the end: half of its digits are known."""
+
 
 
 @frozen(eq=False)
@@ -86,10 +87,9 @@ class Crossed:
     Attributes
     ----------
     point : Linearization
-        Of the path; the factorisation is that of the arc's beginning.
+        With the arc's first factorisation.
     rays : ndarray, shape (4, N + 1), or None
-        The directions of the branches that meet there, of unit length in the metric, each pointing away from it: back,
-        onward, and both of the other branch. None where H' loses several ranks at once: they are not known then.
+        Unit vectors back, onward, and along the other branch; None if H' loses several ranks.
     """
 
     point: Linearization
@@ -99,29 +99,28 @@ class Crossed:
 def on_arc(
     solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
 ) -> Crossed | Rejected | None:
-    """The branch point on an arc; None where none is; or why the arc does not count, and which step to try.
+    """Return the branch point on an arc, None, or a rejection.
 
     Parameters
     ----------
     solver : PathSolver
     arc : Arc
     attempt : Arrival
-        Where the arc, or the one of which it is a part, ends.
+        End of the arc, or of a longer one.
     prediction : Prediction
-        Of the arc.
     flipped : bool
-        Whether the determinant's sign changes from its beginning to its end.
+        Whether the determinant's sign changes on the arc.
     ends : bool
-        Whether the path ends where the arc does: what lies beyond does not count.
+        Whether the path ends with the arc.
     index : int
-        Of the step: each looks at H' with another first vector.
+        Of the step; varies the start vectors.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()
     if isinstance(seen, Rejected) and not flipped and looks.blurred():
         return None
     if seen is None and flipped and _differential(solver, arc.b.u) is None:
-        # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
+        # The sign alone shows a branch point, or an arc off the path.
         seen = looks.simple(arc.segment.at(0.5))
         looks.told.clear()
     if isinstance(seen, BranchPointOnArc):
@@ -130,7 +129,7 @@ def on_arc(
 
 
 def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
-    """Whether H' has an eigenvalue of another sign at u than at a point."""
+    """Whether H' at u has an eigenvalue of another sign."""
     apply, start = _differential(solver, u), generic_vector(u.size)
     if apply is None:
         return False
@@ -139,7 +138,6 @@ def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
 
 
 def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | None:
-    """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
     try:
         return solver.evaluator.differential(u)
     except EvaluationError:
@@ -148,10 +146,9 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 
 @define(eq=False)
 class _Looks:
-    """Looks at H' along one arc.
+    """Samples of the eigenvalues of H' along one arc.
 
-    `told`: By place, the real 1 - z that are not as on a regular arc, in order. `along`: The sum of the eigenvectors of
-    the last look that told any: the next one begins with these, and cannot overlook where their eigenvalues have gone.
+    `told`: Large changes 1 - z by parameter. `along`: Sum of their last eigenvectors, for start vectors.
     """
 
     solver: PathSolver
@@ -169,12 +166,12 @@ class _Looks:
         return np.zeros(self.arc.a.u.size)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """What is told at a point, which lies about at t; nothing where H' is not to be had."""
+        """The large changes 1 - z at u, near parameter t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []
         whole, first = generic_vector(size), (self.index + len(self.told)) % size
-        # Each look with another first vector: one in a thousand has next to no part along an eigenvector.
+        # A start vector may have no part along an eigenvector.
         start = np.concatenate((whole[first:], whole[:first]))
         start = start / math.sqrt(dot(start, start)) + self.along
         values, vectors = changes(self.arc.a, apply, self._border(t), TOLD, LOWEST, start, accuracy)
@@ -183,7 +180,6 @@ class _Looks:
         return values
 
     def _border(self, t: float) -> Array:
-        """The arc's tangent at t, in the dual metric."""
         tangent, weights = self.arc.segment.derivative(t), self.arc.a.weights
         border: Array = weights * tangent / norm(weights, tangent)
         return border
@@ -199,11 +195,10 @@ class _Looks:
         for t in HALF if cubic else EIGHTHS:
             told[t] = there = self.look(self._point(t) if t < 1.0 else arc.b.u, t)
             left.append(1.0 - max([0.0, *there]))
-            # Where the path ends with the arc, only what lies on it counts.
             least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
                 found = self._branch_point(t, t / there[-1])
-                # What comes near to singular at the end, and goes straight, may do so behind it.
+                # At the arc's end z may vanish farther on.
                 if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
                     return self.rejected(Rejection.ORIENTATION, max(before, shorter))
@@ -214,7 +209,7 @@ class _Looks:
                 t = near[0]
                 return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
-                # What a series is made of is seen on it already.
+                # A series has enough samples.
                 onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return self.rejected(Rejection.ORIENTATION, 0.5)
@@ -224,11 +219,7 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Looks nearer to the beginning of an arc along which H' becomes more regular; their places.
-
-        A pair of crossings there leaves the eigenvalue larger than SPAN farther on: each half of the arc is looked at
-        as a whole one would be, until it is not larger any more.
-        """
+        """Sample toward the beginning while a pair of crossings makes an eigenvalue grow; return the parameters."""
         t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
             t *= 0.5
@@ -247,12 +238,12 @@ class _Looks:
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
         if self.flipped != (s < 1.0 and seen.odd):
-            # Over a crossing the arc's end is on the other branch, or before it beyond another one.
+            # The arc ends on another branch.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not (seen.alone and all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items())):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
-            # Another eigenvalue may fall so far, and no farther, where the arc is to end behind this crossing.
+            # The arc must end before another eigenvalue vanishes.
             behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
             step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
             return self.rejected(Rejection.CROSSINGS, min(step, STEP_BACK))
@@ -264,16 +255,12 @@ class _Looks:
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
-        """An arc that does not count; the next attempt goes a factor of its length, which may be part of a step."""
         attempt = self.attempt
         factor = max(factor * self.arc.length / attempt.h, SMALLEST)
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether no z can be told: within the tolerance of the arc's beginning, where all are one, some are not.
-
-        So it is on the way to a pole, where components vanish beside the others.
-        """
+        """Whether z is noise already at the arc's beginning, as near poles."""
         a = self.arc.a
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
@@ -309,12 +296,10 @@ class _Looks:
         return max(multiplicity(self.arc.a, apply, self._border(t), 1.0 / told[-1]), 1)
 
     def _rows(self) -> Array:
-        """What the rows of H' are made of over the arc."""
         a, b = self.arc.a, self.arc.b
         return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
-        """Whether H at a point is no more than round-off."""
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 

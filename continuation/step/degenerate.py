@@ -1,8 +1,7 @@
-"""Degenerate branch points: where branches touch, more than two cross, or H' loses several ranks at once.
+"""Degenerate branch points: branches touch, more than two cross, or H' loses several ranks.
 
-There z, the real eigenvalue of M_a^-1 M along an arc, goes like (1 - t / s)^m with m > 1, or several eigenvalues vanish
-together, of which a Krylov space shows one. z over its slope has a simple zero at s whatever m is, and the slope 1 / m
-there: the secant method finds both. The path goes straight on, as it does along a branch that symmetry keeps.
+The eigenvalue z of M_a^-1 M behaves like (1 - t / s)^m with m > 1, or several vanish together. The secant method finds
+s and m, since z / z' has a simple zero at s with slope 1 / m. The path goes straight on.
 """
 
 from __future__ import annotations
@@ -25,18 +24,16 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
 SECANTS_OF_Z = 20
-"""Of the secant method; four or five are usual."""
+"""Limit of secant steps; four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""The step of the slope of z, of the way that is left; the order that is assumed first, so that a double zero is not
-met at once; and the order of a zero beyond which it is no simple one."""
+"""Relative difference step for z'; order assumed first (2 would hit a double zero); largest order of a simple zero."""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""What round-off in H may make of z where it is said to vanish: more, and nothing is known of it; and what round-off in
-the products that tell z does."""
+"""Largest useful round-off of z; round-off of the products."""
 
 FARTHEST = 3.0
-"""So far ahead, in arcs, it is looked for."""
+"""Search limit, in arc lengths."""
 
 
 @frozen(eq=False)
@@ -77,20 +74,18 @@ def degenerate_point(
     solver : PathSolver
     arc : Arc
     prediction : Prediction
-        Of the arc.
     t : float
-        Where on the arc z has fallen.
+        Where z has fallen.
     z_at : callable
-        From a place on the arc and a point there to z; NaN where it is not told.
+        Maps parameter and point to z or NaN.
     lost : int
-        How many eigenvalues are like z at t.
+        Number of eigenvalues like z.
 
     Returns
     -------
     u : ndarray, shape (N + 1,)
-        The point, as near as round-off in H allows.
     order : float
-        Of the zero of z, about.
+        Approximate order of the zero of z.
     """
 
     def beside(place: float) -> float:
@@ -109,12 +104,11 @@ def degenerate_point(
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
         if ahead <= 0.0 > z:
-            # Far behind the point: it lies about where a straight line from 1 at the arc's beginning is zero.
+            # Far behind the point: extrapolate linearly from z = 1.
             ahead = 0.5 * (t + t / (1.0 - z))
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        # A smooth z has a zero of the first order at least.
         order = max((ahead - t) / (beyond - left), 1.0)
         # From here on the path: beside a degenerate point a place on it may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
@@ -124,7 +118,7 @@ def degenerate_point(
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                # Where M_a is itself nearly singular its round-off is what is left of z.
+                # M_a is nearly singular: the rest of z is round-off.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
             if before:
                 order = max((t - before) / (left - last), 1.0)
@@ -132,13 +126,13 @@ def degenerate_point(
             if not 0.0 < t < FARTHEST:
                 return None
     except ArithmeticError:
-        # No value there, or two looks of the secant method that are one.
+        # z is NaN, or secant points coincide.
         pass
     return None
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """The pair of z at a place and z over its slope there, by a difference towards the beginning; 0 if that is none."""
+    """The pair of z and z / z' at t; 0 without slope."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
@@ -146,10 +140,7 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """What round-off in H makes of z: its change as far beside the path as H stays round-off; 0 if that is too much.
-
-    Near a degenerate point that is far, since H' has nearly lost its rank.
-    """
+    """Effect of round-off in H on z; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)

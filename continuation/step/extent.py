@@ -1,9 +1,8 @@
-"""How far a path goes before it turns: the first scale of each component, and the first step.
+"""Extent: how far each component goes before the path turns; gives the first scales and step.
 
-Nothing here depends on units or on where zero is. The nonlinearity of H along the tangent v is measured, as Deuflhard's
-affine covariant theory does (Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1): at u + h v the simplified
-Newton corrections d and e are computed; |d_i| / (h |v_i|), in the median over the components, says how far the path has
-turned, and |e| / |d| how far the equations have changed. Both grow like h.
+Independent of units and origin: simplified Newton corrections d, e at u + h v, v the tangent, measure nonlinearity
+(Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). |d_i| / (h |v_i|), in the median, is the
+path's turn, |e| / |d| the equations' change.
 """
 
 from __future__ import annotations
@@ -21,50 +20,50 @@ from continuation.evaluation.noise import ENDLESS, allowed_along
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
-"""The nonlinearity at the extent. Between 0.1 and 0.5 factorisations on twelve problems differ by a tenth."""
+"""Nonlinearity at the extent; 0.1 to 0.5 change factorisations on twelve problems by a tenth."""
 
 AROUND = 1.001
-"""The search ends within this factor of TURN; from there the nonlinearity grows like a power of the length. The extent
-is then known to about the square of that: where the search began depends on where zero is, and where it ends must not.
-With 1.05 shifts changed the extent by a hundredth, and factorisations on Bratu's problem by a factor of two."""
+"""Accuracy factor of the search for TURN. With 1.05 shifts of the origin changed factorisations on Bratu's problem
+twofold.
+"""
 
 POWERS = 0.5, 4.0
-"""Between these that power is looked for: one is usual, two where the path is symmetric about its start."""
+"""Bounds of the nonlinearity's power of length: usually one, two for symmetric paths."""
 
 FIRST_STEP = 0.3
-"""The first step, in extents: it turns by about a third of TURN, where the controllers aim at 0.4 radians."""
+"""First step, in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
 
 SEARCH_START = 1e-3
-"""Where the search begins, in ways to the target: far enough inside that the first turn is not jumped over."""
+"""First length tried, relative to the target's distance: before the first turn."""
 
 LENGTHS_TRIED = 40
-"""At most so many lengths are tried; five are usual."""
+"""Limit of lengths; five are usual."""
 
 GROWTH = 30.0
-"""The next length is at most so many times the one before: the nonlinearity of a straight beginning says nothing."""
+"""Largest growth of the length in one try, since a straight beginning predicts nothing."""
 
 STRAIGHT_LENGTH = 1e30
-"""A path without a target that is straight to this length, relative to its start, has no scale."""
+"""A path straight to this length, relative to its start, has no scale."""
 
 STANDSTILL = 1e-60
-"""A component that moves by no more than this part of the one that moves most, whatever their units, stands still."""
+"""A component stands still below this part of the largest motion, in any units."""
 
 STILL_PIECEWISE = 1e-13
-"""The same on a piece of a piecewise smooth map, where components do stand still but for the last digits of others;
-units thirteen orders apart are no longer told from that."""
+"""STANDSTILL on pieces, where components stand still to round-off of others."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
-refinement changes by more than the second are."""
+"""A tangent component is round-off if below the first, relatively, and refinement changes it by more
+than the second.
+"""
 
 UNCERTAIN = 100.0
-"""Corrections up to so many times what round-off makes of them, in two samples of its signs, say nothing."""
+"""Corrections below this multiple of their sampled round-off are ignored."""
 
 SWEEPS = 10
 """Of Sinkhorn's iteration: units are known to a small factor then, which is all that a metric needs."""
 
 OTHER_UNITS = 1e4
-"""The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
+"""A larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -76,31 +75,29 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """How far each component goes while the path turns by about TURN, or to a nearer target; and its noise.
+    """Return how far each component goes until the path turns or reaches the target; and its noise.
 
     Parameters
     ----------
     evaluator : Evaluator
     point : Linearization
-        At the start, in whatever metric.
+        The start, in any metric.
     target : float or None
     residual : ndarray, shape (N,)
-        H at the point: a start need not lie on the path to the last digit.
+        H at the point.
     farthest : float
-        How far along the tangent is far where there is no target: a path of straight pieces has no other scale. Finite
-        for these alone.
+        Length for straight pieces without target.
     room : float
-        How far along the tangent the path ends on a value that was asked for, if it is straight.
+        Distance to an end value.
     sizes : ndarray, shape (N + 1,), optional
-        How large the components are, about: what moves by less than their round-off then stands still.
+        Sizes of the components.
 
     Returns
     -------
     extent : ndarray, shape (N + 1,)
-        Positive. A component that does not move, or by round-off alone, is given the median of the others, in their
-        sizes if these are known.
+        Positive; the median for components that stand still.
     blur : ndarray, shape (N + 1,)
-        What noise in H, and in the last places of u, makes of each component: |H'^-1| times the noise.
+        |H'^-1| times the noise.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -116,11 +113,10 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
+    # The shortest length that changes a component by its size is safest.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # Zero has no last place: terms that vanish there, as those of a structure at rest do, have no noise, and have it
-    # where the search begins.
+    # At zero terms show no noise: measure it ahead.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -128,8 +124,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Across the path: first with that component held which is known best beside its motion; one that stands still holds
-    # nothing, even where no noise is seen in it.
+    # Across the path: hold the component with least relative noise.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
@@ -142,7 +137,7 @@ def initial_extent(
         try:
             d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)))
         except Exception:
-            # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
+            # H is probed beyond its domain.
             d, turned = off, np.inf
         # From a fold the parameter moves by the correction alone.
         turned = max(turned, TURN * abs((h * v[-1] + d[-1]) / gap))
@@ -160,7 +155,7 @@ def initial_extent(
             low = found = h
             off = d
             if h > STRAIGHT_LENGTH:
-                # Nothing but the start's own size is left to measure by.
+                # Only the start's size is left as a scale.
                 found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
                 break
         h *= min(max(rest, 0.1), GROWTH)
@@ -206,10 +201,9 @@ def _inverse(sums: Array) -> Array:
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """By what the size of components that stand still is multiplied, so that H is about linear that far from the path.
+    """Factor for the sizes of components that stand still, until H is about linear at that distance.
 
-    Sizes of others say nothing of their units. Where the path is a symmetric trunk, branches leave in these components:
-    measured by ever so much too much, what is round-off of others is a branch's whole length.
+    Too large a size would make a branch of a symmetric trunk as short as round-off.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -221,17 +215,15 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
             turned = np.inf
         if turned <= OTHER_UNITS:
             break
-        # The terms that matter are of second order or of third; the root suits the latter.
+        # Leading terms have order two or three; the root suits three.
         h *= max(np.sqrt(TURN / turned), TURN / GROWTH)
     return h
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
-    """The tangent, with zeros for components that are round-off.
+    """The tangent, with zeros for round-off.
 
-    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells, with H' at a point that H
-    does not tell from this one: a few units in the last places away, and as far along the path as H stays round-off. It
-    replaces round-off, that of H' too, and what the path has next to a fold, and leaves what is known.
+    A tiny component may have another unit; refinement with H' at an indistinguishable point decides.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -244,7 +236,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     try:
         apply = evaluator.differential(beside)
     except EvaluationError:
-        # At the edge of a domain.
+        # Outside the domain.
         apply = evaluator.differential(point.u)
     if apply is None:
         return v
@@ -253,7 +245,6 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
 
 
 def _across(v: Array, z: Array) -> Array:
-    """A correction without its part along v, in the median over the components that move."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * v
     return across
@@ -267,7 +258,7 @@ def _largest(samples: list[Array]) -> Array:
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
 ) -> tuple[Array, float]:
-    """The correction at u + h v, without its part along v, and how nonlinear the path is so far."""
+    """The correction at u + h v across v, and the nonlinearity."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -280,7 +271,7 @@ def _nonlinearity(
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
-        # Unknowns that all move alike turn against the parameter alone.
+        # Unknowns that move alike turn against the parameter only.
         turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0

@@ -1,4 +1,4 @@
-"""A check of one's own that every arc must pass before it counts."""
+"""User-defined checks of arcs."""
 
 from __future__ import annotations
 
@@ -9,32 +9,30 @@ from continuation.point.arc import Arc
 
 
 class Guard(Protocol):
-    """Says why an arc does not count; any function of an arc will do. A step that is refused is tried again, shorter.
+    """A function that says why an arc does not count; the step is then shortened.
 
-    It is asked last, of the part of the arc that counts: after the tracer's own looks at what lies between the two
-    points and at what crosses there, and up to the target, the kink or the event where the path ends. An end that no
-    arc reaches, by `finish` or the endgame, is not asked about.
+    Guards run last, on the part of the arc up to the path's end; they do not see ends by `finish` or the endgame.
     """
 
     def __call__(self, arc: Arc, /) -> str | None:
-        """Whether the path from one point to the next counts.
+        """Return why the arc does not count.
 
         Parameters
         ----------
         arc : Arc
-            `arc.a` and `arc.b`, the two points, have `u`, `y`, `lam`, `tangent` and the metric's `weights`;
-            `arc.samples` are points between them with tangents, at no evaluation of H.
+            Ends `arc.a`, `arc.b` have `u`, `y`, `lam`, `tangent`, `weights`; `arc.samples` are points and tangents
+            between.
 
         Returns
         -------
         str or None
-            Nothing where it counts; else why it does not, as words for the message.
+            None if it counts; else the reason.
         """
         ...
 
 
 def objection(guard: Guard, arc: Arc) -> str:
-    """What a guard has against an arc; "" for nothing; `TypeError` if it answers with anything else."""
+    """Return the guard's answer, "" for None; `TypeError` for a wrong type."""
     answer: Any = guard(arc)
     if answer is None or isinstance(answer, str):
         return answer or ""

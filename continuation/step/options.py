@@ -1,8 +1,4 @@
-"""The options of a path: the one list of their names, types, meanings and defaults, for every function that takes them.
-
-`PartOptions` say how a path is traced, `Options` add where it goes and how far. `trace`, `Tracer`, `resume`,
-`trace_many`, charts and the LCP solver take their `**options` from here.
-"""
+"""The options of a path, for every function with `**options`."""
 
 from __future__ import annotations
 
@@ -29,32 +25,31 @@ from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance
 
 Finish = Callable[[Array, float], Array | None]
-"""A way to end: (y, lam) to the end y, or None to go on."""
+"""Maps (y, lam) to the end y, or None to continue."""
 
 
 class PartOptions(TypedDict, total=False):
-    """How a path is traced: its parts, and what is looked for on it.
+    """How to trace a path.
 
     Parameters
     ----------
     preset : Preset, default DEFAULT
-        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: a predictor, a corrector and a controller.
+        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: the next three parts.
     predictor : Predictor, default None
-        In place of the preset's, like the next two.
+        Replaces the preset's, like the next two.
     corrector : Corrector, default None
     controller : Controller, default None
     metric : Metric, default None
-        In which arclength is measured. By default the homotopy's own, else `Automatic`.
+        For arclength. Default: the homotopy's, else `Automatic`.
     events : sequence of Event, default ()
-        Added to the homotopy's own; turning points and branch points are watched for unasked.
+        Watched besides the homotopy's, turning points and branch points.
     guards : sequence of Guard, default ()
-        Functions of an arc that say why it does not count, or None: checks of your own. A step that one refuses is
-        tried again, shorter; no archive holds them.
+        Functions of an arc that return why it does not count, or None; refused steps are shortened. Not archived.
     check_jacobian : bool, default False
-        Compare the Jacobian with the residual at the start; a wrong one is a ValueError that says where.
+        Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True
-        Watch for turning points and branch points. Without it the path is only followed, at two thirds of the cost: a
-        step over a branch point is refused. For searches that trace paths for their ends.
+        Watch turning points and branch points. False saves a third of the cost, for searches of ends; steps over branch
+        points are refused.
     """
 
     preset: Preset
@@ -74,26 +69,24 @@ class Options(PartOptions, total=False):
     Parameters
     ----------
     tolerance : float or Tolerance, default 1e-8
-        When a correction is small enough; a number is both the absolute and the relative part.
+        Largest correction; a number is its relative part.
     budget : Budget, default Budget()
-        Limits on steps, factorisations and seconds; 10,000 steps if nothing is said.
+        Limits of steps, factorisations and seconds; default 10,000 steps.
     target : float or None, default "homotopy"
-        The parameter value to end at; None for a curve followed for its own sake. By default the homotopy's own
-        target, and 0 where it has none.
+        Final parameter value; None for none. Default: the homotopy's, else 0.
     direction : int, default 0
-        Sign of the parameter's first movement; 0 means towards the target.
+        Sign of the parameter's first movement; 0: towards the target.
     start : tuple of (u, v) or (y, lam), or Path, default None
-        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in; a
-        guess of y at a parameter value, which is corrected as the homotopy's own start is; or go on from the last point
-        of a path.
+        Replaces the homotopy's start: point ``(y, lam)`` and direction; or a guess of y at a parameter value; or a path
+        to continue.
     finish : callable, default None
-        ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
+        Maps ``(y, lam)`` to the end y or None, after each step; replaces the homotopy's. Not archived.
     max_step : float, default None
-        No step is longer, in arclength: for a picture with many points, or as the resolution of the path. Bends that
-        are narrower than half of it may lie between two looks (docs/guarantee.md).
+        Largest step in arclength, the resolution of pictures and path: bends narrower than half of it may be missed
+        (docs/guarantee.md).
     box : mapping or None, default "homotopy"
-        The path ends where it leaves it. From ``"lam"``, the number or the name of an unknown, or ``"y"`` for all
-        unknowns, to (low, high), one of them perhaps None. By default the homotopy's own, if it has one; None for none.
+        The path ends where it leaves the box: ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to (low,
+        high), None for open. Default: the homotopy's, if any.
     """
 
     tolerance: float | Tolerance
@@ -125,15 +118,15 @@ DEFAULTS: Options = {
     "max_step": None,
     "box": "homotopy",
 }
-"""What is taken where nothing is said."""
+"""Defaults."""
 
 OPTIONS = tuple(Options.__annotations__)
 PART_OPTIONS = tuple(PartOptions.__annotations__)
-"""Their names."""
+"""Names of the options."""
 
 
 class Part(NamedTuple):
-    """What an argument must offer to be taken for one."""
+    """Attributes required of an argument."""
 
     attributes: tuple[str, ...]
     kind: str
@@ -152,10 +145,9 @@ EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap
 
 
 def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: Mapping[str, str] | None = None) -> None:
-    """Refuse options that do not exist, or that are not the caller's to set.
+    """Refuse unknown options, and `owned` ones with the reason.
 
-    `names`: The options given. `known`: The options that there are. `owned`: Options that there are, but not here, and
-    why not. Raises `TypeError` naming the option, and the one that it is nearest to.
+    `TypeError` gives the nearest of the `known` options.
     """
     for name in names:
         if owned and name in owned:
@@ -167,12 +159,12 @@ def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: M
 
 
 def checked(options: Mapping[str, Any]) -> Options:
-    """The options with the defaults of those that are not given.
+    """Return the options with defaults.
 
-    Raises `TypeError, ValueError` naming the option, what was expected and what was found.
+    `TypeError, ValueError` give the option, the expected and the found value.
     """
     check_names(options)
-    # The names are those of the TypedDict: that was checked a line above.
+    # `check_names` has checked the names.
     asked: Options = {**DEFAULTS, **options}  # type: ignore[typeddict-item]
     if not isinstance(asked["preset"], Preset):
         raise complain(TypeError, "preset", "FAST, DEFAULT, CONSERVATIVE, SERIES or another Preset", asked["preset"])
@@ -201,19 +193,19 @@ def checked(options: Mapping[str, Any]) -> Options:
 
 
 def check_run(observers: Any, state: Any) -> None:
-    """Raise TypeError unless these are observers, and a state or None."""
+    """Raise TypeError for bad observers or state."""
     each("observers", observers, OBSERVER)
     if state is not None and not isinstance(state, State):
         raise complain(TypeError, "state", "the state of a tracer, or None", state)
 
 
 def names_homotopy(target: Any) -> bool:
-    """Whether the target, or the box, asked for is the homotopy's own."""
+    """Return whether a target or box is "homotopy"."""
     return isinstance(target, str) and target == "homotopy"
 
 
 def checked_target(target: Any) -> float | None:
-    """A target as a float or None; TypeError or ValueError for anything else."""
+    """Return a target as float or None; TypeError or ValueError otherwise."""
     if target is None:
         return None
     if not is_number(target) or not math.isfinite(target):
@@ -234,7 +226,7 @@ Documented = TypeVar("Documented", bound=Callable[..., Any])
 
 
 def documented(function: Documented) -> Documented:
-    """Put the list of options where the docstring says ``{options}``, or ``{parts}`` for the `PartOptions` alone."""
+    """Replace ``{options}`` in the docstring, and ``{parts}`` by the `PartOptions`."""
     text = inspect.getdoc(function)
     if text is not None:
         parts, others = (_parameters(options) for options in (PartOptions, Options))
@@ -243,5 +235,4 @@ def documented(function: Documented) -> Documented:
 
 
 def _parameters(options: Any) -> str:
-    """The entries of a TypedDict's list of parameters."""
     return (inspect.getdoc(options) or "").partition("----------\n")[2] + "\n"

@@ -1,4 +1,4 @@
-"""Named choices of parts, each with the trade that it makes."""
+"""Named choices of parts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from continuation.predictors import Hermite, Predictor, Taylor
 
 @frozen
 class Preset:
-    """A predictor, a corrector and a controller that suit each other."""
+    """Predictor, corrector and controller that suit each other."""
 
     name: str
     trade: str

@@ -1,4 +1,4 @@
-"""Progress of a trace on stderr: a live line on a terminal (by tqdm where there is one), else a line now and then."""
+"""Progress on stderr: a live line on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ LIVE_SECONDS = 0.1
 """Between updates of a live line."""
 
 PLAIN_SECONDS = 10.0
-"""Between lines where there is no terminal, so that a log stays short."""
+"""Between lines without a terminal."""
 
 
 class Progress:
-    """An observer that shows steps, the parameter, the step length, and how the path ended.
+    """Shows steps, parameter, step length and ending.
 
-    `stream`: stderr by default. `label`: What is traced; begins every line.
+    `stream`: stderr by default. `label`: Begins every line.
     """
 
     def __init__(self, stream: TextIO | None = None, label: str = "path") -> None:
@@ -31,7 +31,7 @@ class Progress:
         self._width = 0
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """Show the step, unless one was shown a moment ago."""
+        """Show the step, at intervals."""
         now = time.monotonic()
         if now - self._shown < (LIVE_SECONDS if self._live else PLAIN_SECONDS):
             return
@@ -43,10 +43,10 @@ class Progress:
         self._show(step.index, text)
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Nothing: turning points are counted with the next step."""
+        """Do nothing: steps show the turning points."""
 
     def end(self, tracer: Tracer) -> None:
-        """Show the last point and the status, and leave the line."""
+        """Show the last point and the status."""
         path = tracer.path
         steps, lam = (path.endpoint.index, f"lam = {path.endpoint.lam:.4g}") if path.steps else (0, "no point")
         self._show(steps, f"{lam}, {path.status.name} in {path.seconds:.2f} s", last=True)
@@ -65,14 +65,13 @@ class Progress:
         if not self._live:
             self.stream.write(f"{line}\n")
         else:
-            # Blanks wipe what a longer line before has left.
+            # Blanks erase a longer line.
             self.stream.write(f"\r{line:<{self._width}}" + ("\n" if last else ""))
             self._width = len(line)
         self.stream.flush()
 
 
 def _tqdm(stream: TextIO, label: str) -> Any:
-    """A bar without a total, since nobody knows how long a path is; None without tqdm."""
     try:
         from tqdm import tqdm
     except ImportError:
@@ -81,7 +80,7 @@ def _tqdm(stream: TextIO, label: str) -> Any:
 
 
 class SweepProgress:
-    """Shows how many paths of a sweep are done: ``trace_many(..., progress=SweepProgress())``.
+    """Shows the number of finished paths: ``trace_many(..., progress=SweepProgress())``.
 
     Parameters
     ----------
@@ -94,7 +93,7 @@ class SweepProgress:
         self._live, self._begun, self._shown = self.stream.isatty(), time.monotonic(), -PLAIN_SECONDS
 
     def __call__(self, done: int, total: int) -> None:
-        """Show it, unless it was shown a moment ago.
+        """Show the count, at intervals.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""The record of a step, `continuation.path.Step`: made here and nowhere else during a trace."""
+"""Records of steps, made only here during a trace."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Observe = Callable[[Array, float], Mapping[str, float]]
 
 
 def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
-    """What is stored with each point: the homotopy's own scalars, and those of events that have some.
+    """Return the function that gives a point's stored scalars: the homotopy's and the events'.
 
-    `events`: As they watch the path. Raises `ValueError` later, where two have a scalar of one name.
+    It raises `ValueError` if two have one name.
     """
     own = observe_of(homotopy)
     others = [event.observe for event in events if hasattr(event, "observe")]
@@ -46,10 +46,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
 
 @frozen(eq=False)
 class StepRecorder:
-    """What every record is made with.
-
-    `observe`: The homotopy's extra scalars at a point.
-    """
+    """Makes records; `observe` gives extra scalars."""
 
     evaluator: Evaluator
     observe: Observe | None
@@ -64,10 +61,9 @@ class StepRecorder:
         tangent: Array | None = None,
         **how: Any,
     ) -> Step:
-        """The record of a point.
+        """Return the record of a point.
 
-        `kind`: One of `Kind`. `residual_norm`: Evaluated here where it is not known. `tangent`: The point's own, unless
-        given. `**how`: How the point was reached: the other fields of `Step`.
+        `residual_norm`: Computed if NaN. `tangent`: Default: the point's. `**how`: Other fields of `Step`.
         """
         return Step(
             index=index,
@@ -83,13 +79,13 @@ class StepRecorder:
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:
-        """Located events with the homotopy's extra scalars."""
+        """Return events with extra scalars."""
         if self.observe is None:
             return events
         return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]
 
     def end(self, point: Linearization, state: State, u: Array) -> Step:
-        """The record of an end that was found otherwise than by a step, from the last point on the path."""
+        """Return the record of an end that no step reached."""
         chord = u - point.u
         length = norm(point.weights, chord)
         end = evolve(point, u=u, tangent=chord / length if length > 0.0 else point.tangent)

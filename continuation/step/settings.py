@@ -1,4 +1,4 @@
-"""What was asked for, completed from the homotopy: everything that decides a path, except homotopy and start."""
+"""Settings: everything that decides a path, except homotopy and start."""
 
 from __future__ import annotations
 
@@ -29,23 +29,20 @@ from continuation.tolerance import Tolerance, as_tolerance
 
 @frozen(eq=False)
 class Settings:
-    """Everything that decides how a path is traced, except the homotopy and the start.
+    """Everything that decides a path, except homotopy and start.
 
     Attributes
     ----------
     predictor, corrector, controller, metric
-        The parts.
     events : tuple of Event
-        The homotopy's own and the caller's, with turning points of the parameter and branch points added where
-        nobody asks for them.
+        The homotopy's, the caller's, turning points and branch points.
     guards : tuple of Guard
-        Checks of arcs that the caller adds.
     tolerance : Tolerance
     budget : Budget
     target : float or None
     direction : int
     examine : bool
-        Whether turning points and branch points are looked for.
+        Whether to watch turning points and branch points.
     """
 
     predictor: Predictor
@@ -62,22 +59,22 @@ class Settings:
 
     @property
     def branch_index(self) -> int | None:
-        """Which of the events stands for branch points; None where they are not watched for."""
+        """Index of the branch point event, or None."""
         return self._index_of(BranchPoint)
 
     @property
     def kink_index(self) -> int | None:
-        """Which of the events stands for kinks; None for smooth homotopies."""
+        """Index of the kink event, or None."""
         return self._index_of(KinkPoint)
 
     @property
     def stops(self) -> list[tuple[int, float]]:
-        """Components and their values at which the path ends: the target, the faces of a box, other such events."""
+        """Components and values that end the path."""
         ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal > 0]
         return [*([] if self.target is None else [(-1, self.target)]), *((e.component, e.value) for e in ends)]
 
     def room(self, u: Array, v: Array) -> float:
-        """How far along a direction, without a target, the nearest value lies on which the path ends; inf without one.
+        """Distance along v to the nearest value that ends a path without target, or inf.
 
         Parameters
         ----------
@@ -90,14 +87,11 @@ class Settings:
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
-        """The same with events that know the homotopy, where they have to: those with a method `bound`.
-
-        What is kept for resuming does not know it; what watches a path does.
+        """Bind events with a method `bound` to the homotopy; archives keep unbound ones.
 
         Parameters
         ----------
         evaluator : Evaluator
-            Of the homotopy.
         """
         known = (event.bound(evaluator) if hasattr(event, "bound") else event for event in self.events)
         return evolve(self, events=tuple(known))
@@ -111,8 +105,8 @@ def complete_settings(
 ) -> Settings:
     """Complete checked options from the homotopy.
 
-    `start`: Where the path begins, (y, lam); asked for where there is a box. `observers`: Those with `events` have them
-    watched for. Raises `TypeError, ValueError` where the homotopy's own metric, events or target are none.
+    `start`: Returns (y, lam), for blocks or a box. `observers`: Their `events` are watched. `TypeError, ValueError` for
+    a homotopy's bad metric, events or target.
     """
     preset, target = asked["preset"], asked["target"]
     own = homotopy.metric if offers(homotopy, SupportsMetric) else None
@@ -134,7 +128,6 @@ def complete_settings(
 
 
 def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
-    """The homotopy's blocks, checked; None where it names none."""
     if not offers(homotopy, SupportsBlocks):
         return None
     blocks = np.asarray(homotopy.blocks)
@@ -144,7 +137,6 @@ def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
 
 
 def _capped(controller: Any, longest: float | None) -> Any:
-    """The controller with a ceiling of its steps that is no higher than was asked for."""
     if longest is None or longest >= controller.bounds.maximum:
         return controller
     bounds: Bounds = controller.bounds
@@ -158,14 +150,13 @@ def _capped(controller: Any, longest: float | None) -> Any:
 def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:
     box: Any = asked["box"]
     if names_homotopy(box):
-        # A box of its own is for those who say nothing of where the path ends.
+        # A caller's target or events replace the homotopy's own box.
         said = asked["events"] or not names_homotopy(asked["target"])
         box = None if said else getattr(homotopy, "box", None)
     return () if box is None else faces(box, Labels.of(homotopy), start())
 
 
 def _first(*candidates: Any) -> Any:
-    """The first that is not None."""
     return next(candidate for candidate in candidates if candidate is not None)
 
 

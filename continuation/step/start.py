@@ -1,4 +1,4 @@
-"""The first point: brought onto the path, found regular, and given its direction."""
+"""The first point: corrected, checked, oriented."""
 
 from __future__ import annotations
 
@@ -23,47 +23,47 @@ from continuation.step.extent import FIRST_STEP, initial_extent
 
 
 class StartError(ArithmeticError):
-    """The trace cannot begin: the start is no point of a path."""
+    """The start is no point of a path."""
 
 
 class SingularStartError(StartError):
-    """The path has no direction at the start: the Jacobian has no full rank there."""
+    """The Jacobian has no full rank at the start, so the path has no direction."""
 
 
 CORRECTING = BorderedNewton(max_iterations=20)
-"""A start is brought onto the path once: patience costs nothing that counts."""
+"""One correction a path: many iterations are cheap."""
 
 STEEP = 1e-8
-"""The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
+"""Least parameter component of a tangent with border e_{N+1}: half of the digits."""
 
 CLEAR_OF_NOISE = 4.0
-"""The tolerance, in what noise makes of a correction: two standard deviations of a difference of two. With half of it
-CONSERVATIVE does not meet it in single precision."""
+"""Tolerance in units of a correction's noise: two standard deviations of a difference. With half CONSERVATIVE fails in
+single precision.
+"""
 
 COARSEST = 0.1
-"""The tolerance where noise leaves no digit: a start that is known to less is found to be none by what comes next."""
+"""Tolerance if noise leaves no digit; later checks refute a worse start."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
-"""From a guess Newton's increments may grow before they shrink: a start that it brings to the path is a start."""
+"""From a guess increments may first grow."""
 
 NEARBY = 1.0
-"""A start that has no point of the path at its parameter may be brought to one at most an extent away: what is farther
-has nothing to do with what was given."""
+"""Largest correction, in extents, of a start off its parameter."""
 
 SAME_KERNEL = 1e-6
-"""Two borders give the same kernel where no component differs by more, relative to itself: six digits are right."""
+"""Largest relative difference of one kernel by two borders: six digits."""
 
 ALIGNED = 1.0 - 1e-6
-"""The cosine between kernels found with two borders that are one: an angle of 1e-3, far from that of two at random."""
+"""Least cosine of one kernel by two borders: an angle of 1e-3."""
 
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
 ) -> tuple[Linearization, float]:
-    """The start on the path, with the tangent that leads to the target, and a first step length.
+    """Return the start on the path, with tangent, and a first step length.
 
-    `direction`: Sign wanted of the tangent's parameter component; 0 lets the target decide (and +1 where there is
-    none). Raises `StartError` or SingularStartError: the one is a wrong point, the other a wrong problem.
+    `direction`: Sign of the tangent's parameter component; 0: towards the target, else +1. `StartError`: wrong point;
+    SingularStartError: wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.zeros_like(u)
@@ -86,9 +86,9 @@ def first_point(
 
 
 def at_parameter(solver: PathSolver, u: Array) -> Array:
-    """The point of the path at the parameter value of a guess.
+    """Return the point of the path at a guess's parameter value.
 
-    Raises `StartError` if Newton's method does not come to one.
+    `StartError` if Newton's method fails.
     """
     evaluator = solver.evaluator
     unit = np.zeros_like(u)
@@ -109,10 +109,9 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """The start in the metric of the trace, and how far each component goes before the path turns.
+    """Return the start in the trace's metric, and its extent.
 
-    Where H has noise beside the round-off of the point, the solver's tolerance is raised to what that leaves of the
-    usual component. A component that has more is measured by no less than what its own noise is seen with.
+    Noise of H raises the tolerance, and the extents of noisier components.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
@@ -129,7 +128,6 @@ def measured(
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
-    """Correct the start, at its parameter value if that works, else along the shortest way."""
     for border in (unit, point.border):
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
         if correction.converged and (border is unit or correction.distance <= NEARBY):
@@ -141,18 +139,16 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
 
 
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
-    """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank to working precision.
+    """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank.
 
-    With the border e_{N+1} the matrix is singular at a turning point too, so a bad answer there is asked again with a
-    border in general position. A kernel that then depends on the border has more than one dimension.
+    Border e_{N+1} fails at turning points too; a kernel that depends on random borders has more than one dimension.
     """
     ones = np.ones_like(u)
     try:
         point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
-        # Units alone may make the parameter look small. A border with a part of one size in each component's direction
-        # has none; where it gives the same kernel the first border was good too.
+        # Units may make the parameter component small. A border without units that gives the same kernel confirms it.
         v = point.tangent
         border = np.divide(1.0, v, out=np.zeros_like(v), where=v != 0.0)
         again = linearize(evaluator, u, ones, border / norm(ones, border))
@@ -175,7 +171,6 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
 
 
 def _well_conditioned(point: Linearization) -> bool:
-    """Whether a solve in general position stays moderate: a near-singular matrix gives itself away."""
     r = generic_vector(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)
@@ -183,12 +178,12 @@ def _well_conditioned(point: Linearization) -> bool:
 
 
 def is_guess(start: Any) -> bool:
-    """Whether a start is a guess of y at a parameter value, and no point with a direction."""
+    """Return whether a start is (y, lam)."""
     return isinstance(start, tuple | list) and len(start) == 2 and np.ndim(start[1]) == 0 and np.ndim(start[0]) == 1
 
 
 def guessed(start: Any) -> Array:
-    """A start (y, lam) as one vector; ValueError if it is no such thing."""
+    """Return a start (y, lam) as one vector; ValueError otherwise."""
     y, lam = (real_vector("start", part) for part in start)
     u: Array = np.append(y, lam)
     if not np.isfinite(u).all():
@@ -197,9 +192,9 @@ def guessed(start: Any) -> Array:
 
 
 def arriving(path: Path) -> tuple[Array, Array]:
-    """The last point of a path and its tangent; where that is not known the chord from the point before.
+    """Return a path's last point and tangent, or the chord from the point before.
 
-    Raises `ValueError` if the path has no point to go on from.
+    `ValueError` without such a point.
     """
     before, last = [None, *path.steps[-2:]][-2:] if len(path.steps) else (None, None)
     if last is None:
@@ -211,7 +206,7 @@ def arriving(path: Path) -> tuple[Array, Array]:
 
 
 def point_and_direction(start: Any) -> tuple[Array, Array]:
-    """Copies of the two vectors of a start; ValueError if it is no pair of a finite point and a direction."""
+    """Return copies of a start's finite point and direction; ValueError otherwise."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
         raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}; a guess is (y, lam)")
@@ -226,9 +221,9 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
 def point_from_tangent(
     solver: PathSolver, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
 ) -> tuple[Linearization, float]:
-    """Begin at a given point in a given direction; the determinant sign there becomes the orientation.
+    """Begin at a point in a direction; its determinant sign is the orientation.
 
-    Raises `ValueError` if `start` is no pair (u, v) of vectors of the right size, or v vanishes.
+    `ValueError` unless `start` is a pair (u, v) of the right size, v nonzero.
     """
     evaluator, (u, v) = solver.evaluator, point_and_direction(start)
     if u.size != size:

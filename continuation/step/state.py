@@ -1,4 +1,4 @@
-"""Everything a trace carries from one step to the next, as arrays and numbers that an archive can hold."""
+"""The state of a trace between steps, for archives."""
 
 from __future__ import annotations
 
@@ -11,42 +11,41 @@ from continuation.predictors import Knot
 
 @frozen(eq=False)
 class State:
-    """The stepper's state at an accepted point; with the settings it determines the rest of the path, bit for bit.
+    """State at an accepted point; with the settings it determines the rest of the path, bit for bit.
 
     Attributes
     ----------
     history : tuple of Knot
-        The current point last, with as many before it as the predictor remembers.
+        The predictor's knots, the current point last.
     weights : ndarray, shape (N + 1,)
-        The metric at the point.
+        Metric.
     anchor : tuple of two ndarrays, shape (N + 1,)
-        Where the factorisation at hand was made, and with which border.
+        Point and border of the factorisation.
     orientation : int
-        The determinant sign that the tangent is to have.
+        Determinant sign of the tangent.
     h : float
-        The step length to try next.
+        Next step length.
     controller : tuple of float
-        The controller's state.
     monitors : tuple of float
-        Values of the events' monitors at the point; 0 where an event was found on it.
+        Of the events; 0 if found at the point.
     occurrences : tuple of int
-        How often each event has been located.
+        Of the events.
     origin : Knot
-        The start, and `origin_weights` the metric there: for recognising a closed curve.
+        The start, with metric `origin_weights`.
     divergence_monitor : tuple of float
-        For recognising divergence: see `continuation.ends.divergence`.
+        See `continuation.ends.divergence`.
     last_failed_landing : float
-        The parameter value at which landing was last tried in vain; inf if never.
+        Parameter value, or inf.
     last_failed_endgame : float
-        The parameter value at which the endgame was last tried in vain; inf if never.
+        Parameter value, or inf.
     index : int
-        Of the step that led here.
+        Of the last step.
     signs : tuple of int
-        The piece on which the path goes on, where the homotopy has pieces.
+        The piece ahead.
     noise : ndarray, shape (N,), or (0,) where there is none
-        What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
+        Of each equation.
     tolerance : float
-        The relative tolerance that noise allows; 0 where it was not raised.
+        Raised for noise, else 0.
     """
 
     history: tuple[Knot, ...]

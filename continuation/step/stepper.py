@@ -1,4 +1,4 @@
-"""One attempt at a step: predict, correct, linearize, and measure how far the path turned."""
+"""One attempt at a step."""
 
 from __future__ import annotations
 
@@ -17,23 +17,22 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 
 LOW_ORDER_FRACTION = 0.9
-"""How much of the way to the boundary a prediction may go: the usual fraction of interior methods (Wright, Primal-Dual
-Interior-Point Methods, 1997), for a prediction whose error may be as large as its distance to the boundary."""
+"""Part of the distance to the boundary that a prediction may use: usual in interior methods (Wright, Primal-Dual
+Interior-Point Methods, 1997).
+"""
 
 SHORTENINGS, SHORTEST = 60, 0.1
-"""How often a curved prediction is cut on its way to the boundary, and the least factor of a cut: sixty of these are
-shorter than any floor."""
+"""Limit of cuts at a boundary, and least factor: sixty go below any least step."""
 
 TANGENT = 1e-6
-"""How accurate a step's tangent has to be, in units of the relative tolerance: refining further buys nothing."""
+"""Accuracy of the tangent, in tolerances; more is useless."""
 
 
 @frozen(eq=False)
 class Arrival:
-    """An attempt that arrived on the path.
+    """An attempt that arrived.
 
-    `h`: Its step length. `point`: Where it arrived; the tangent is oriented by angle for now. `angle`: Between the
-    tangents, radians.
+    `point`: Its tangent is oriented by angle for now. `angle`: Between the tangents, radians.
     """
 
     h: float
@@ -47,14 +46,14 @@ Attempt: TypeAlias = Arrival | Rejected
 
 @frozen(eq=False)
 class Stepper:
-    """The parts that an attempt needs."""
+    """Makes attempts."""
 
     solver: PathSolver
     corrector: Corrector
     fraction: float
 
     def shortened(self, point: Linearization, prediction: Prediction, h: float) -> float:
-        """The step, cut until the predicted point of an interior homotopy is well inside."""
+        """Return the step, cut until the prediction is well inside the domain."""
         max_step = self.solver.max_step
         if max_step is None:
             return h
@@ -62,12 +61,12 @@ class Stepper:
             room = self.fraction * max_step(point.u, prediction(h) - point.u)
             if room >= 1.0:
                 return h
-            # For a straight prediction this is exact; a curved one may need another turn of the loop.
+            # Curved predictions may need more cuts.
             h *= max(room, SHORTEST)
         return h
 
     def attempt(self, point: Linearization, prediction: Prediction, h: float) -> Attempt:
-        """A regular attempt with step length h."""
+        """Try a step of length h."""
         try:
             predicted = prediction(h)
         except EvaluationError as error:
@@ -82,7 +81,7 @@ class Stepper:
         reason = None
         if dot(border, correction.u - point.u) <= 0.0:
             reason = Rejection.BACKWARDS
-        # Whatever the controller looks at: a correction longer than the step has left the path that was predicted.
+        # For any controller: such a correction left the predicted path.
         elif correction.distance > h:
             reason = Rejection.TOO_FAR
         elif solver.max_step is not None and not solver.max_step(point.u, correction.u - point.u) > 1.0:
@@ -92,7 +91,7 @@ class Stepper:
         return self.arrive(point, border, h, correction)
 
     def arrive(self, point: Linearization, border: Array, h: float, correction: Correction) -> Attempt:
-        """Linearize at the corrected point and measure the angle."""
+        """Linearize at the corrected point."""
         evaluator, weights, anchor = self.solver.evaluator, point.weights, correction.anchor
         try:
             if anchor is not None:
@@ -102,6 +101,5 @@ class Stepper:
                 arrival = linearize(evaluator, correction.u, weights, border)
         except EvaluationError as error:
             return Rejected(h, error.rejection, str(error), correction.contraction)
-        # Both are of unit length in this metric.
         cosine = inner(weights, point.tangent, arrival.tangent)
         return Arrival(h, correction, arrival, math.acos(min(max(cosine, -1.0), 1.0)))

@@ -1,4 +1,4 @@
-"""The loop: an iterator of accepted steps. `continuation.trace` drives it."""
+"""The loop: an iterator of accepted steps."""
 
 from __future__ import annotations
 
@@ -49,10 +49,10 @@ from continuation.step.verdict import (
 
 
 class Observer(Protocol):
-    """Something that watches a trace: an archive, a progress bar, a plot. It may not change the trace."""
+    """Watches a trace, without influence: an archive, a progress bar, a plot."""
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """An accepted step; `tracer.state` is the state after it.
+        """Receive an accepted step; `tracer.state` is the state after it.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class Observer(Protocol):
         ...
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """A located event, before the step that holds it.
+        """Receive a located event, before its step.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Observer(Protocol):
         ...
 
     def end(self, tracer: Tracer) -> None:
-        """The end; `tracer.path` is complete.
+        """Receive the end; `tracer.path` is complete.
 
         Parameters
         ----------
@@ -83,34 +83,30 @@ class Observer(Protocol):
 
 @documented
 class Tracer:
-    """One path as an iterable of its steps: ``for step in Tracer(homotopy)`` traces it, and the loop may be left.
+    """One path as an iterable of steps: ``for step in Tracer(homotopy)``; the loop may be left.
 
-    Iterating again goes on after the last step handed out, with the clock and the budget where they were; a path that
-    has ended yields nothing more. Observers are told of the end each time that a loop is left; an archive then closes.
+    A second loop continues, with clock and budget. Observers see the end whenever a loop is left.
 
     Parameters
     ----------
     homotopy : Homotopy
-        `start` and `residual`; every other capability is found by its presence.
+        Has `start`, `residual` and optional capabilities.
     observers : sequence of Observer, default ()
-        Watch the trace: an archive, a progress bar, a plot.
     state : State, default None
-        Resume from here: the steps that follow are bit for bit those of an uninterrupted trace.
+        Resume from here, bit for bit.
     {options}
 
     Attributes
     ----------
     settings : Settings
-        The parts, the events, the tolerance, the budget and the target, completed and checked.
+        The completed options.
     path : Path
-        All that was found so far.
     state : State or None
-        What the next step needs.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument; an unknown option with the one that it is nearest to.
+        For bad input; for an unknown option, with the nearest one.
     """
 
     def __init__(
@@ -148,22 +144,22 @@ class Tracer:
 
     @property
     def seconds(self) -> float:
-        """Of wall-clock time since the first step was asked for; the time after a loop that was left does not count."""
+        """Wall-clock seconds inside loops."""
         return self.path.seconds if self._clock is None else time.perf_counter() - self._clock
 
     @property
     def references(self) -> tuple[str, ...]:
-        """BibTeX of the homotopy, of the parts, and of what served in the homotopy's stead, as far as used by now."""
+        """BibTeX of homotopy, parts and substitute methods used so far."""
         parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
     def __iter__(self) -> Iterator[Step]:
-        """Trace: yields each accepted step, the start first, and ends when the path has a status.
+        """Yield accepted steps, the start first.
 
         Raises
         ------
         RuntimeError
-            If another loop over this tracer has not ended.
+            Inside another loop over this tracer.
         Interrupted
             After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
@@ -180,30 +176,30 @@ class Tracer:
                 self._end(INTERRUPTED)
             raise Interrupted(self.path) from interrupt
         except BaseException as error:
-            # Whoever stops iterating, or an exception of the plug-in's own, leaves a consistent path.
+            # Leave a consistent path.
             if self.path.status is Status.TRACING:
                 self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
             raise
 
     @one_thread
     def run(self) -> Path:
-        """Trace to the end of the path.
+        """Trace to the end.
 
         Raises
         ------
         Interrupted
             After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
-        deque(self, maxlen=0)  # in C, so that Ctrl-C is met within the tracer, which knows what to do
+        deque(self, maxlen=0)  # in C, so that Ctrl-C arrives inside the tracer
         return self.path
 
     def give_up(self, reason: str) -> None:
-        """Say why the loop over the steps will be left now; the path's message, also in archives, has the reason.
+        """Give the reason for leaving the loop, for message and archives.
 
         Parameters
         ----------
         reason : str
-            A sentence without its full stop.
+            A sentence without full stop.
         """
         self._reason = reason
 
@@ -236,7 +232,6 @@ class Tracer:
         return self.settings.budget.spent(self.counts, self.seconds, arclength)
 
     def _beginning(self) -> Array:
-        """Where the path begins, or nearly so."""
         if self._start is not None:
             return point_and_direction(self._start)[0]
         if self.state is not None:
@@ -280,14 +275,13 @@ class Tracer:
             noise=np.zeros(0) if self._evaluator.noise is None else self._evaluator.noise,
             tolerance=self._solver.tolerance.relative,
         )
-        # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
+        # State last: interrupted before, a resumed trace begins again.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
         if self._start is None and (verdict := start_on_target(point.lam, settings.target)) is not None:
             self._end(verdict)
         return point
 
     def _restored(self, state: State) -> Linearization:
-        """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
         self._evaluator.noisy(state.noise)
         self._solver.noisy(state.tolerance)
@@ -305,28 +299,26 @@ class Tracer:
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
         path.seconds, self._clock, path.references = self.seconds, None, self.references
-        # Each of them, whatever another one raises: an archive closes.
+        # All observers: archives must close.
         with ExitStack() as telling:
             for observer in reversed(self.observers):
                 telling.callback(observer.end, self)
 
     def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
-        """Add a step, with the events before it, to the path, the state and the observers: all or, if cut off, none."""
         self.path.events.extend(events)
         self.path.steps.append(step)
         self.state = state
         for observer in self.observers:
             for event in events:
-                # An event on which the path ends is the step itself: observers see it once.
+                # The step shows its own event.
                 if not event.ends_step:
                     observer.event(self, event)
             observer.step(self, step)
 
     def _next(self, point: Linearization) -> Linearization | None:
-        """The point after one step, or None where the path has ended."""
         state = self.state
         assert state is not None
-        # Overflow is looked for where it counts: by a step that is not finite.
+        # Steps that are not finite show overflow.
         with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict

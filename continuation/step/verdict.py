@@ -1,8 +1,4 @@
-"""Why a path ends: every status of a trace is given here, with its sentence and what is particular to the path.
-
-The functions stand in the order in which a trace asks: at the start, before a step, at a failed attempt, after a step.
-Each gives a `Verdict`, or None where the path goes on.
-"""
+"""Why a path ends: functions in the order of their calls return a `Verdict`, or None to continue."""
 
 from __future__ import annotations
 
@@ -26,8 +22,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars`: What is said of this path beyond the status' sentence. `limit`: Where the end is singular.
-    `rejected`: The failed attempts at the last point. `error`: A bound of what the end is off, where it is regular.
+    `particulars`: After the status' sentence. `limit`: A singular end. `rejected`: Last failures. `error`: Bound for a
+    regular end.
     """
 
     status: Status
@@ -45,17 +41,17 @@ INTERRUPTED = Verdict(Status.INTERRUPTED)
 
 
 def abandoned(reason: str) -> Verdict:
-    """Whoever asks for the steps has asked for no more."""
+    """The caller left the loop."""
     return Verdict(Status.ABANDONED, f"Given up: {reason}." if reason else "")
 
 
 def raised(error: BaseException) -> Verdict:
-    """An exception of the plug-in's own, or of an observer."""
+    """A plug-in or observer raised."""
     return Verdict(Status.RAISED, f"It says: {sentence(error)}")
 
 
 def sentence(error: BaseException) -> str:
-    """An exception in one line, also one whose text cannot be had."""
+    """Return an exception in one line."""
     try:
         text = str(error)
     except Exception as within:
@@ -75,10 +71,7 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
 
 
 def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts.
-
-    What asymptote is in sight is said, but it has not been followed far enough to be an end.
-    """
+    """The budget is exhausted at `limit`; an asymptote in sight is mentioned."""
     limit = limit or ("" if state is None else beyond_horizon(state.here.u))
     if not limit:
         return None
@@ -88,12 +81,12 @@ def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...]
 
 
 def predictor_failed(error: EvaluationError) -> Verdict:
-    """The predictor has no curve to offer."""
+    """The predictor failed."""
     return Verdict(Status.PREDICTOR_FAILED, f"It says: {error}.")
 
 
 def singular_end(limit: SingularLimit) -> Verdict:
-    """A limit that no step can reach was found on the target."""
+    """A limit on the target, out of reach of steps."""
     w = limit.winding_number
     power = f"|lam - target|^(1/{w})" if w > 1 else "lam - target"
     found = f"There it is a power series in {power}; error of the limit about {limit.error:.1g}."
@@ -101,13 +94,13 @@ def singular_end(limit: SingularLimit) -> Verdict:
 
 
 def finished(residual_norm: float) -> Verdict:
-    """The homotopy's own finish found the end; what H is there is said."""
+    """The homotopy's finish found the end."""
     found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
     return Verdict(Status.REACHED_TARGET, found)
 
 
 def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
-    """The step length to try next is below its floor: the last attempt's reason decides which end that is."""
+    """The step is below its minimum; the last rejection decides the status."""
     if h >= minimum:
         return None
     last = rejected[-1]
@@ -118,10 +111,9 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
 
 
 def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
-    """An accepted arc ends the path: by where it ends, else because the path runs off to infinity.
+    """An accepted arc ends the path.
 
-    `infinity`: How the path runs off to infinity, in words; empty if it does not. `event`: Name of the last event on
-    the arc, if there is one.
+    `infinity`: How it diverges, or "". `event`: Name of the arc's last event.
     """
     if end.limit is not None:
         return singular_end(end.limit)
@@ -137,7 +129,7 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
 
 
 def behind_kink(kink: Crossing, solver: PathSolver, origin: Knot) -> Verdict | None:
-    """The path ends in a kink: it began there, no branch leaves it, or which one does could not be told."""
+    """The path ends in a kink: its start, a dead end, or unresolved."""
     if kink.onward is not None:
         return Verdict(Status.CLOSED) if same_ray(solver, origin, kink.onward) else None
     where = f"Switches that vanish there: {', '.join(map(str, kink.switches))}."
