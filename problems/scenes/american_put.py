@@ -55,15 +55,14 @@ def AmericanPut(
 ) -> Scene:  # fmt: skip
     """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
 
-    The Black-Scholes equation in log(price): second-order differences, Crank-Nicolson after four implicit half steps
-    (Rannacher). Steps grow linearly from expiry; equal ones have a lower order (Forsyth and Vetzal). Each starts from
-    the preceding active set.
+    Second-order differences discretise the Black-Scholes equation in log(price); Crank-Nicolson follows four implicit
+    half steps (Rannacher). Steps grow linearly from expiry; equal ones have a lower order (Forsyth and Vetzal).
 
     Parameters
     ----------
     spot, strike : float
     rate, volatility, maturity : float
-        In years.
+        With years as time unit.
     n, steps : int
         Grid points; time steps.
     width : float
@@ -103,9 +102,9 @@ def AmericanPut(
             well = bool(found.success) and found.x is not None
             if not well:
                 break
-            # Round to the strike's digits, which far values lack.
+            # Round to the strike's digits, which tiny far values lack.
             values[1:-1] = (strike + payoff[1:-1] + found.x) - strike
-            # The boundary falls with the time left.
+            # The boundary falls with the time left; the first steps are too coarse to show it.
             edges.append(min(edge(found.x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 

@@ -54,7 +54,7 @@ def Arch(
         return {"thrust": thrust, "spare moment": spare, "stands": float(spare >= 0.0)}
 
     def exact() -> Quantities:
-        """Unknown near the limit, which depends on the number of stones."""
+        """Near the limit the number of stones decides: nothing is known."""
         ratio = thickness / radius
         return {"stands": float(ratio > 0.1075)} if abs(ratio - 0.1075) > 0.002 and stones >= 20 else {}
 

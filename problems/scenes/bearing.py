@@ -95,7 +95,6 @@ def Bearing(
 
 
 def _peak(p: Array) -> float:
-    """Maximum of a parabola through three values."""
     k = min(max(int(np.argmax(p)), 1), p.size - 2)
     a, b, c = p[k - 1 : k + 2]
     bend = a - 2.0 * b + c

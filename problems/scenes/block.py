@@ -36,7 +36,6 @@ def Block(
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996).
     """
     A, _, _ = time_step([(mass, 1.0, 0.0, 0.0)], [(0, -1, 0.0, 0.0, 0.0, 1.0)], friction)
-    # Speed after a frictionless step.
     free = speed + step * push / mass
     q = free_motion(np.array([-step * gravity, free]))
     n = 4 if friction else 1

@@ -35,7 +35,6 @@ def Box(
     half, inertia, weight = 0.5 * width, mass * (width**2 + height**2) / 12.0, mass * gravity
     corners = [(0, -1, side, 0.0, 0.0, 1.0) for side in (-half, half)]
     A, J, inverse = time_step([(mass, inertia, 0.0, 0.5 * height)], corners, friction)
-    # Velocity after a step without floor.
     free = step * inverse * np.array([push, -mass * gravity, -0.5 * push * height])
 
     def answer(solution: Any) -> Quantities:
@@ -48,7 +47,7 @@ def Box(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Known at rest only."""
+        """Only a box at rest has a closed form."""
         moment = push * height / width
         if abs(push) >= friction * weight or abs(moment) >= 0.5 * weight:
             return {}

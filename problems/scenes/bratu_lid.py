@@ -68,7 +68,7 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
         return NormalMap(layer, layer.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=lid, target=max(load, 3.6))
 
     def named(fold: float, kink: float, z: Array) -> Quantities:
-        # The lid's force z - lid balances the load: second-order edge.
+        # The lid's force z - lid balances the load and locates the edge to second order.
         force = np.maximum(z - lid, 0.0) * weight * 2.0 * n
         edge = 0.5 - float(force.sum()) / (load * exp(lid))
         return {"fold": fold, "turning kink": kink, "contact from": edge}
@@ -80,7 +80,7 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
         return named(folds[0] if folds else np.nan, kinks[0] if kinks else np.nan, z)
 
     def exact() -> Quantities:
-        """Elementary: u' = 0 at the contact's edge."""
+        """Closed form: u' = 0 at the contact's edge."""
         turn = float(brentq(lambda z: z * np.tanh(z) - 1.0, 1.0, 1.5, xtol=1e-15))
         reach = acosh(exp(0.5 * lid))
         return {

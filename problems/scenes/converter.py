@@ -27,7 +27,7 @@ def Converter(
     Parameters
     ----------
     voltage, load : float
-        Input, V; Ohm.
+        V (input); Ohm.
     duty : float
         Fraction of the period with closed switch.
     period, inductance, capacity : float
@@ -41,7 +41,7 @@ def Converter(
     """
     closed = np.clip(duty * n - np.arange(n), 0.0, 1.0)
     one, before, h = np.eye(n), np.roll(np.eye(n), -1, axis=1), period / n
-    # Periodic differences, means; currents to voltages.
+    # Periodic differences and means; map from coil currents to capacitor voltages.
     difference, mean = one - before, 0.5 * (one + before)
     voltages = np.linalg.solve(capacity / h * difference + mean / load, mean)
 
@@ -54,7 +54,7 @@ def Converter(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Constant capacitor voltage (large capacity)."""
+        """Holds for a constant capacitor voltage (large capacity)."""
         K = 2.0 * inductance / (load * period)
         ratio = duty if 1.0 - duty <= K else 2.0 / (1.0 + (1.0 + 4.0 * K / duty**2) ** 0.5)
         return {"output": ratio * voltage}

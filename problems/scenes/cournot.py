@@ -44,7 +44,7 @@ def Cournot(
         return {"quantities": sold, "price": price, "profits": (price - cost) * sold}
 
     def exact() -> Quantities:
-        """Cheapest producers enter first; unknown if capacity binds."""
+        """Cheapest producers enter first; a binding capacity has no closed form."""
         price = float(min(intercept, ((intercept + np.cumsum(np.sort(cost))) / (np.arange(n) + 2.0)).min()))
         sold = np.maximum(price - cost, 0.0) / slope
         return {} if (sold > capacity).any() else {"quantities": sold, "price": price}

@@ -29,7 +29,7 @@ class RachfordRice:
         return [10.0 ** (a - b / (temperature + c)) * (101.325 / 760.0 / self.pressure) - 1.0 for a, b, c in ANTOINE]
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """-sum z_i (K_i - 1) / (1 + x (K_i - 1)), shape (1,)."""
+        """Value, shape (1,)."""
         return -sum(z * k / (1.0 + x * k) for z, k in zip(self.feed, self.volatilities(lam)))
 
 
@@ -37,12 +37,12 @@ class RachfordRice:
 def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature: Positive = 95.0) -> Scene:
     """Benzene and toluene in a drum: which part is vapour at each temperature?
 
-    The vapour fraction lies in [0, 1]; its path over temperature has kinks at the bubble point and the dew point.
+    The vapour fraction, in [0, 1], has kinks at the bubble point and the dew point.
 
     Parameters
     ----------
     benzene : float
-        Mole fraction of the feed; the rest is toluene.
+        Mole fraction; the rest is toluene.
     pressure : float
         kPa.
     temperature : float
@@ -66,7 +66,7 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
         return NormalMap(balance, x0=np.zeros(1), lam0=cold, lower=0.0, upper=1.0, target=warm)
 
     def phases(bubble: float, dew: float, part: float) -> Quantities:
-        """Absent phases have their incipient composition."""
+        """An absent phase gets its incipient composition."""
         k = np.array(balance.volatilities(temperature))
         liquid = np.array([z / (1.0 + part * ki) for z, ki in zip(balance.feed, k)])
         vapour = liquid * (1.0 + k)

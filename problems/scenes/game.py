@@ -16,7 +16,7 @@ from problems.scenes.scene import Kind, Point, Quantities, Rival, Scene, Unknown
 
 
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
-    """Convert a finite matrix to tuples, which compare."""
+    """Convert a finite matrix to tuples, which can be compared."""
     matrix = real_array(name, value)
     if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
         raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
@@ -38,7 +38,7 @@ def Game(
 ) -> Scene:
     """Two players choose at the same time: which mixed strategies are best against each other?
 
-    Small games: all equilibria, testing all faces exactly. Larger ones: equilibria on paths.
+    Small games: an exact test of all faces finds all equilibria. Larger ones: paths find some.
 
     Parameters
     ----------

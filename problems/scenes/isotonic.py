@@ -60,7 +60,7 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
 
 
 def _pooled(data: Array) -> Array:
-    """The rising curve nearest to the data, by pooling adjacent violators."""
+    """Pool adjacent violators."""
     blocks: list[tuple[float, int]] = []
     for value in data.tolist():
         total, size = value, 1

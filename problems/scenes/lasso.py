@@ -89,7 +89,7 @@ def Lasso(
 
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
-        # Splitting signs would double the unknowns and be singular.
+        # Splitting signs would double the unknowns and make the problem singular.
         unknowns=(Unknown("coefficients", features, "which features matter, and how much"),),
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),

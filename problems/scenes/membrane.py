@@ -45,13 +45,13 @@ def Membrane(
         return MixedLCP(A, np.zeros(n), np.where(r < 1.0, np.sqrt(np.maximum(1.0 - r**2, 0.0)), -np.inf))
 
     def answer(solution: Any) -> Quantities:
-        """The rim's force gives the contact radius to second order."""
+        """The rim's force gives the contact to second order."""
         flux = (radius - 0.5 * h) * solution.x[-1] / h
         a = sqrt(0.5 * flux * (sqrt(flux * flux + 4.0) - flux))
         return {"contact radius": a, "force": 2.0 * pi * tension * flux}
 
     def exact() -> Quantities:
-        """Tangent logarithm: a^2 (1 - log(a / R)) = 1."""
+        """The free membrane is a logarithm tangent to the ball: a^2 (1 - log(a / R)) = 1."""
         a = float(brentq(lambda a: a * a * (1.0 - log(a / radius)) - 1.0, 1e-6, 1.0, xtol=1e-15))
         return {"contact radius": a, "force": 2.0 * pi * tension * a * a / sqrt(1.0 - a * a)}
 

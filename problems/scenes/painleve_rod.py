@@ -43,7 +43,7 @@ def PainleveRod(
     Painleve, C. R. Acad. Sci. Paris 121 (1895); Stewart, SIAM Review 42 (2000), section 3.
     """
     c, s = cos(angle), sin(angle)
-    # Acceleration per force times mass (-.8480762 by default), and without force.
+    # a: mass times acceleration per force (-.8480762 by default); b: acceleration without force.
     a, b = 1.0 + 3.0 * c * (c - friction * s), half_length * spin**2 * s - gravity
 
     def solved() -> Path:
@@ -62,7 +62,7 @@ def PainleveRod(
         return {"a": a, "acceleration without force": b, "critical spin": critical, "forces": forces}
 
     def exact() -> Quantities:
-        """Lift-off if b >= 0; positive force if a x = -mass b."""
+        """The rod lifts off if b >= 0; a positive force a x = -mass b presses it down."""
         pressed = -mass * b / a
         return {"forces": np.array([0.0] * (b >= 0.0) + [pressed] * (pressed > 0.0))}
 

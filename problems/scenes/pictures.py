@@ -1,4 +1,4 @@
-"""Pictures as data: axes methods to call, in order, and axes settings."""
+"""Pictures as data."""
 
 from __future__ import annotations
 
@@ -68,14 +68,14 @@ def mark(method: str, *arguments: Any, **options: Any) -> Mark:
 
 
 def arrow(start: tuple[float, float], along: tuple[float, float], k: int, label: str = "") -> list[Mark]:
-    """An arrow in data units and colour k, labelled in the legend; zero length draws none."""
+    """An arrow in data units; zero length draws only its legend."""
     style = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.008, "color": COLOURS[k], "zorder": 3}
     drawn = [mark("quiver", *start, *along, **style)] if np.hypot(*along) > 0.0 else []
     return [*drawn, mark("plot", [], [], color=COLOURS[k], label=label)]
 
 
 def rectangle(place: Array, width: float, height: float, **style: Any) -> Mark:
-    """A rectangle centred at (x, y) and turned by an angle; `style` goes to ``axes.fill``."""
+    """A rectangle at (x, y), turned by an angle."""
     x, y, angle = place
     corners = 0.5 * np.array([[-width, width, width, -width], [-height, -height, height, height]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

@@ -50,8 +50,7 @@ def Pile(
 ) -> Scene:  # fmt: skip
     """Boxes with gaps between them fall on each other, the lowest one sliding: where do they come to rest?
 
-    Stewart and Trinkle's time steps include the gaps: none is negative after a step, and no step gains energy. Impacts
-    are inelastic.
+    Stewart and Trinkle's time steps keep gaps nonnegative and gain no energy. Impacts are inelastic.
 
     Parameters
     ----------
@@ -71,7 +70,6 @@ def Pile(
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996); Anitescu and Potra, Nonlinear Dynamics 14 (1997).
     """
     half, inertia, k = 0.5 * side, mass * side**2 / 6.0, np.arange(boxes)
-    # Initial (x, y, angle) and velocities.
     start = np.stack([0.0 * k, (k + 0.5) * side + (k + 1) * gap, 0.0 * k], axis=1), np.outer(k == 0, [speed, 0.0, 0.0])
 
     def touching(places: Array) -> tuple[list[Contact], Array]:
@@ -117,7 +115,7 @@ def Pile(
         return Fall(where, fast, energies, np.array(gaps), well)
 
     def answer(solution: Any) -> Quantities:
-        """The first two should be zero."""
+        """Energy gain and penetration should be zero."""
         return {
             "energy gained": max(float(np.diff(solution.energies).max()), 0.0),
             "deepest penetration": max(-float(solution.gaps.min()), 0.0),

@@ -19,10 +19,9 @@ Contact = tuple[int, int, float, float, float, float]
 def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: float) -> tuple[Array, Array, Array]:
     """Stewart and Trinkle's LCP matrix with Coulomb friction, J, and inverse masses.
 
-    Unknowns, each for all contacts: normal impulses, tangential impulses to the right and left, slip velocities. In the
-    plane two tangents represent the friction cone exactly. The matrix is copositive, so Lemke's method always finds a
-    solution; three unknowns a contact (Pfeiffer and Glocker) lose that. J maps body velocities to alternating normal
-    and tangential ones.
+    Unknowns, for all contacts: normal impulses, tangential impulses right and left, slip velocities. Two tangents
+    represent the plane friction cone exactly. The matrix is copositive, so Lemke's method always finds a solution;
+    three unknowns a contact (Pfeiffer and Glocker) lose that. J yields alternating normal and tangential velocities.
 
     References
     ----------

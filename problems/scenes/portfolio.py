@@ -20,7 +20,7 @@ from problems.scenes.scene import Kind, NotNegative, Numbers, Quantities, Scene,
 def critical_line(mean: Array, covariance: Array) -> Path:
     """Critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance.
 
-    The path is in (weights, budget multiplier).
+    A point is (weights, budget multiplier).
 
     References
     ----------
@@ -47,7 +47,7 @@ def Portfolio(
 ) -> Scene:  # fmt: skip
     """Money to be divided among assets, none sold short: how much into each?
 
-    min variance / 2 - tolerance * mean.
+    Minimise variance / 2 - tolerance * mean.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ def Portfolio(
     correlation : float
         Of any two assets.
     tolerance : float
-        Of risk: variance accepted per unit of return.
+        Risk tolerance: variance per unit of return.
     cap : float
-        Largest weight of an asset.
+        Largest weight.
 
     References
     ----------
@@ -91,7 +91,6 @@ def Portfolio(
         return {"weights": np.maximum(gain + float(nu.min()), 0.0) / s}
 
     def drawn(solution: Any) -> Picture:
-        """The frontier ignores the cap."""
         line, found = critical_line(m, covariance), answer(solution)
 
         def shown(weights: Array, style: str, label: str) -> Any:

@@ -19,18 +19,16 @@ def Puck(
 ) -> Scene:  # fmt: skip
     """A puck on a rough plane that moves in three dimensions: how does friction bend and slow its motion?
 
-    A pyramid replaces Coulomb's cone. It weakens the force against the motion by up to cos(pi / edges), a second-order
-    error in 1 / edges, and bends the motion to first order.
+    A pyramid replaces Coulomb's cone: friction against the motion is too small by a factor of cos(pi / edges) at worst,
+    second order in 1 / edges; friction across it is first order.
 
     Parameters
     ----------
     mass, gravity, step : float
         kg, m/s^2, s.
     friction : float
-    speed : float
-        m/s, before the step.
-    heading : float
-        Degrees from the first edge.
+    speed, heading : float
+        Before the step: m/s, degrees from the first edge.
     edges : int
         Of the pyramid.
 
@@ -39,7 +37,6 @@ def Puck(
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996).
     """
     angle, towards = 2.0 * np.pi * np.arange(edges) / edges, np.deg2rad(heading)
-    # Edges; initial velocity.
     D, before = np.stack([np.cos(angle), np.sin(angle)]), speed * np.array([np.cos(towards), np.sin(towards)])
 
     def problem() -> LCP:
@@ -57,7 +54,7 @@ def Puck(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Round cone: friction opposes the motion."""
+        """Unlike the pyramid, a round cone opposes the motion."""
         loss = friction * gravity * step
         if loss >= speed:
             return {"speed": 0.0, "friction against motion": mass * speed}

@@ -10,7 +10,7 @@ from continuation.arguments.plugins import SCENES, Factory, Plugin
 
 
 def available() -> dict[str, Plugin]:
-    """All registered names, sorted; imports no scene.
+    """All registered names, without importing scenes.
 
     Returns
     -------
@@ -34,7 +34,7 @@ def find(name: str) -> Factory:
     Raises
     ------
     PluginError
-        If the name is unknown or cannot be loaded.
+        If it is unknown or does not load.
     """
     return plugins.find(name, SCENES)
 
@@ -58,6 +58,6 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
     PluginError
         As `find`.
     TypeError, ValueError
-        For an unknown parameter or an invalid value.
+        For invalid parameters.
     """
     return plugins.called(name, find(name), values)

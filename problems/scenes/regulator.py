@@ -22,17 +22,15 @@ def Regulator(
 ) -> Scene:  # fmt: skip
     """A cart is brought to rest by a drive of limited force: which force now, for every distance it starts from?
 
-    The best forces over a horizon are piecewise affine in the initial state: their path has a kink where a force
-    reaches or leaves its limit.
+    The best forces are piecewise affine in the initial state: their path has a kink where a force reaches or leaves its
+    limit.
 
     Parameters
     ----------
     distance : float
-        Initial distance (m) of the resting cart, where the force is reported.
-    limit : float
-        N.
-    mass, step : float
-        kg, s.
+        m, from rest, where the force is reported.
+    limit, mass, step : float
+        N, kg, s.
     weight : float
         Of squared force relative to squared distance.
     horizon : int
@@ -42,7 +40,7 @@ def Regulator(
     ----------
     Bemporad, Morari, Dua and Pistikopoulos, Automatica 38 (2002).
     """
-    # x' = F x + G u; state weights; the last weight is the unlimited value function.
+    # x' = F x + G u; Q weighs states; `last`, the value without limits, weighs the final state.
     F, G = np.array([[1.0, step], [0.0, 1.0]]), np.array([[0.5 * step**2], [step]]) / mass
     Q = np.diag([1.0, 0.0])
     last = solve_discrete_are(F, G, Q, np.array([[weight]]))

@@ -1,4 +1,4 @@
-"""Other packages' and textbook methods for the same problems, used if installed."""
+"""Other packages' and textbook methods, used if installed."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from problems.lcp.reference import ReferenceResult, lemke
 from problems.scenes.scene import Point, Rival, conditions
 
 TOLERANCE = 1e-10
-"""Tolerance of interior-point methods, which they reach on well-scaled problems."""
+"""For interior-point methods, which reach it on well-scaled problems."""
 
 SWEEPS = 200_000
-"""Limit for projected Gauss-Seidel: some seconds on the charts' problems."""
+"""Limit for projected Gauss-Seidel: some seconds on charts."""
 
 
 Found = tuple[Array, int]
@@ -28,7 +28,7 @@ Found = tuple[Array, int]
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Found]) -> Rival:
-    """Make a rival that solves ``scene.problem()``."""
+    """A rival for ``scene.problem()``."""
     return Rival(name, module, lambda scene: scene.answer(Point(method(scene.problem())[0])))
 
 
@@ -98,7 +98,7 @@ def _gauss_seidel(problem: Any) -> Found:
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
     """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program or bounded problem.
 
-    A nonsymmetric problem becomes min x'(A x + q), A x + q >= 0, within bounds; convex if A is monotone.
+    Nonsymmetric problems become min x'(A x + q), A x + q >= 0: convex for monotone A.
     """
     found = conditions(problem)
     if not isinstance(problem, Program):

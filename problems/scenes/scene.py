@@ -1,4 +1,4 @@
-"""Scene: a question with parameters, its smallest problem, known answers, a picture."""
+"""A scene: a question with parameters, its smallest problem, known answers, a picture."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Rival:
     module : str
         Package required beyond scipy, or empty.
     run : callable
-        Maps a scene to some of its answer's quantities.
+        Maps a scene to some of its quantities.
     """
 
     name: str
@@ -88,18 +88,17 @@ class Scene:
     units : mapping
         Unit of each quantity.
     unknowns : tuple of Unknown
-        All unknowns of the problem.
     problem : callable
         ``problem()``: the smallest problem that answers the question: `LCP`, `MixedLCP`, `Program`, or homotopy.
     answer, picture : callable
-        Map the result of `solve` to quantities by name, and to a `Picture`.
+        Map the result of `solve` to quantities, and to a `Picture`.
     exact : callable
-        ``exact()``: quantities with a closed form or a published value, if any.
+        ``exact()``: quantities known in closed form or published.
     solve : callable, optional
-        ``solve()``, if the answer takes time steps, a path, or all equilibria.
+        ``solve()``, for time steps, paths, or all equilibria.
     rivals : tuple of Rival
     parameters : object
-        Frozen, comparable; set by `with_parameters`.
+        Set by `with_parameters`; comparable.
     """
 
     units: Units
@@ -147,7 +146,7 @@ NotNegative = Annotated[float, Kind(NOT_NEGATIVE)]
 Finite = Annotated[float, Kind(FINITE)]
 Seed = Annotated[int, at_least(0)]
 Numbers = Annotated[Sequence[float], Kind(convert=lambda name, value: tuple(finite_vector(name, value).tolist()))]
-"""Tuples of finite numbers, which compare."""
+"""Tuples of finite numbers, which can be compared."""
 
 P = ParamSpec("P")
 
@@ -187,7 +186,7 @@ def solve(scene: Any) -> Any:
     Returns
     -------
     Solution, Path or other
-        From ``scene.solve()`` if defined, else from `problems.lcp.solve`, or `trace` for a homotopy.
+        From ``scene.solve()``, `problems.lcp.solve`, or `trace` (homotopies).
     """
     own = getattr(scene, "solve", None)
     if own is not None:
@@ -217,7 +216,7 @@ def order(problem: Any) -> int:
 
 
 def error(found: Quantities, true: Quantities) -> float:
-    """Largest difference of common quantities, relative to the true one's size (to 1 if that is 0).
+    """Largest difference of common quantities, relative to the true one (absolute if that is 0).
 
     Parameters
     ----------

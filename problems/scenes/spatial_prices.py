@@ -58,7 +58,7 @@ def SpatialPrices(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """One producer, one market."""
+        """Closed form for one producer and one market."""
         flow = max((bids[0] - offers[0] - freight) / (rise + fall), 0.0)
         return {"flows": np.array([[flow]]), "trade": flow} if m == k == 1 else {}
 

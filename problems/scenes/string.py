@@ -32,7 +32,6 @@ def String(
     n : int
         Points from a support (excluded) to the middle.
     """
-    # Grid spacing.
     h = 0.5 * length / n
 
     def problem() -> LCP:

@@ -20,8 +20,8 @@ def Torsion(
 ) -> Scene:  # fmt: skip
     """A square bar of an elastic, perfectly plastic material under a twist: which torque does it bear?
 
-    Prandtl's stress function: -lap u = 2 G twist in the elastic part, u <= yield stress * distance from the surface
-    (Ting; Brezis and Sibony). Second-order differences on an eighth of the section.
+    Prandtl's stress function u satisfies -lap u = 2 G twist where elastic, and u <= yield stress * distance from the
+    surface (Ting; Brezis and Sibony). Second-order differences on an eighth of the section.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def Torsion(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Saint-Venant's torque before yield; nothing closed beyond."""
+        """Saint-Venant's torque holds until the bar yields."""
         elastic = {"torque": 0.14057701495515551 * modulus * twist * side**4, "plastic part": 0.0}
         return {} if 0.6753 * modulus * twist * side > yield_stress else elastic
 

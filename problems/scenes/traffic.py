@@ -46,7 +46,7 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
         return from_qp(sp.diags_array(slope, format="csr"), empty, A_eq=whole.tocsr()[:-1], b_eq=starts, lower=0.0)
 
     def answer(solution: Any) -> Quantities:
-        """At equilibrium the mean time is the quickest."""
+        """At equilibrium the mean time is that of the quickest way."""
         loads = np.maximum(np.asarray(solution.x)[:streets], 0.0)
         minutes = empty + slope * loads
         quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]

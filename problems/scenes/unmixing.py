@@ -68,7 +68,6 @@ def Unmixing(
     return Scene(
         units={"amounts": "", "misfit": ""},
         unknowns=(Unknown("amounts", substances, "how much of each substance"),),
-        # Normal equations.
         problem=lambda: LCP(spectra.T @ spectra, -spectra.T @ measured),
         answer=answer, picture=drawn,
         exact=lambda: {} if noise else {"amounts": amounts, "misfit": 0.0},
