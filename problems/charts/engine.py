@@ -91,12 +91,12 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     found = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
-        # Users choose among presets: time them and compare with other software, also on a sparse system.
+        # Users choose among presets: time and compare them, also on a sparse system.
         whole = name == "presets"
         square = bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size]) if whole else None
         timed = size == "full" or whole
         shown = [square.name, problems[-1].name] if square else []
-        # A series has its own accuracy and is expensive: fewer tolerances.
+        # A series hardly depends on the tolerance and is expensive.
         own = rungs[:: 2 if name == "series" else 1]
         found.append(
             Study(

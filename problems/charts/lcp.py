@@ -83,7 +83,7 @@ def pivots(k: int, n: int) -> Counts:
 
 
 def interior(k: int, n: int) -> Counts:
-    """An interior-point iteration: one factorisation, a predictor solve, a corrector solve."""
+    """One factorisation, predictor and corrector solves per iteration."""
     return Counts(factorizations=k, solves=2 * k, accepted=k)
 
 
