@@ -43,7 +43,7 @@ _ATTACK = 3
 
 _NEWTON_STEPS = 30
 _NEWTON_TOLERANCE = 1e-14
-"""For the start by Newton's method: 4 steps suffice at the published elevators."""
+"""Newton for the start takes 4 steps at published elevators."""
 
 
 @frozen

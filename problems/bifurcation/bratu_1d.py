@@ -1,4 +1,4 @@
-"""Bratu's problem on an interval: banded, one fold."""
+"""Bratu's problem on an interval."""
 
 from __future__ import annotations
 

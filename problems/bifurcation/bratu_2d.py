@@ -1,4 +1,4 @@
-"""Bratu's problem on the unit square: sparse, one fold."""
+"""Bratu's problem on the unit square."""
 
 from __future__ import annotations
 

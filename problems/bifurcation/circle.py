@@ -1,4 +1,4 @@
-"""The unit circle: closed path."""
+"""The unit circle."""
 
 from __future__ import annotations
 

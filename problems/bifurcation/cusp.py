@@ -1,4 +1,4 @@
-"""The cusp: hysteresis with known folds."""
+"""The cusp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exponential-cosine homotopy: a test of path jumping."""
+"""A test of path jumping."""
 
 from __future__ import annotations
 
