@@ -47,23 +47,22 @@ class Rung:
 
 
 def tolerances(*values: float) -> tuple[Rung, ...]:
-    """Vary the trace's tolerance.
+    """Vary the tolerance.
 
     Parameters
     ----------
     *values : float
-        Positive.
     """
     return tuple(Rung("tolerance", value, lambda options, value: {**options, "tolerance": value}) for value in values)
 
 
 def longest_steps(*values: float) -> tuple[Rung, ...]:
-    """Vary the controller's longest step (bounds the first step too).
+    """Vary the controller's longest step, a bound for the first too.
 
     Parameters
     ----------
     *values : float
-        In the metric's arclength.
+        Arclengths.
     """
     return tuple(Rung("longest step", value, _limited) for value in values)
 
@@ -94,10 +93,8 @@ class Truth:
 
     Attributes
     ----------
-    end : ndarray, shape (N + 1,), or None
-        (y, lam)
-    turning_points : ndarray, shape (k, N + 1), or None
-        In path order.
+    end, turning_points : ndarray or None
+        Shapes (N + 1,) and (k, N + 1): (y, lam), in path order.
     within : float
         Relative distance from `end` beyond which an end is wrong.
     """
@@ -137,16 +134,15 @@ class Problem:
 
     Attributes
     ----------
-    name : str
+    name, family : str
+        Problems of a family differ in size or seed.
     subject : Any
         Homotopy, or other input of methods.
     truth : Truth
     options : mapping
         For `continuation.trace`.
     n : int
-        Size; default: the subject's.
-    family : str
-        Shared by problems that differ in size or seed; default: name.
+        Size.
     """
 
     name: str
@@ -193,13 +189,11 @@ class Method:
     ----------
     name : str
     run : callable
-        Maps (problem, rung) to an Answer; exceptions count as failures.
-    laddered : bool
-        Whether to run on every rung.
+        Maps (problem, rung) to an Answer; may raise.
+    laddered, outside : bool
+        Whether to run on every rung; whether others provide the method.
     applies : callable
         Whether it solves a given problem.
-    outside : bool
-        Whether other packages or textbooks provide it.
     """
 
     name: str

@@ -38,17 +38,15 @@ def _names(value: str | Sequence[str]) -> tuple[str, ...]:
 class Lines:
     """Work against an error or the size ``"n"``, both logarithmic: lower is better.
 
-    Errors fall to the right. A panel shows a problem and a kind of work; each method's line shows its failures. For n a
-    panel shows a family, and lines show exponents.
+    Errors fall to the right. A panel shows a problem and kind of work, with numbers of failures; for n, a family with
+    exponents.
 
     Attributes
     ----------
     across : str
         Error name, or ``"n"``.
-    work : str or sequence of str
-        From `WORK`.
-    problems, methods : sequence of str, optional
-        Default: all.
+    work, problems, methods : sequence of str
+        Default: all problems and methods.
     """
 
     across: str
@@ -197,7 +195,6 @@ class Dumbbell:
     ----------
     error, work : str
     problems : sequence of str, optional
-        Default: all.
     every : bool
     """
 

@@ -27,22 +27,18 @@ class Row:
 
     Attributes
     ----------
-    problem, family : str
-    n : int
-    method : str
+    problem, family, method : str
+    n, turns : int
+        Size; turning points found.
     outside : bool
         See `Method`.
-    rung : float
-        Ladder value, or NaN.
+    rung, seconds : float
+        Ladder value or NaN; least processor time.
     failure, message : str
-        One of `Failure`; reason.
+        See `Answer`.
     errors : mapping of str to float
         NaN if not applicable.
     counts : Counts
-    turns : int
-        Turning points found.
-    seconds : float
-        Least processor time of repeats.
     """
 
     problem: str
@@ -64,25 +60,24 @@ class Row:
         return bool(self.failure)
 
     def work(self, name: str) -> float:
-        """Work, bounded below by its least value.
+        """Work, at least its least value.
 
         Parameters
         ----------
         name : str
-            One of `WORK`.
+            From `WORK`.
         """
         measure = WORK[name]
         return max(measure.of(self), measure.least)
 
     def placed(self, error: str, work: str) -> tuple[float, float] | None:
-        """(error, work); None if the run failed or has no error.
+        """(error, work), or None for a failure or without error.
 
         Errors have three digits, since a fourth makes no run better, and are at least `ERROR_FLOOR`.
 
         Parameters
         ----------
         error, work : str
-            Names in `errors` and `WORK`.
         """
         value = self.errors[error]
         if self.failed or not math.isfinite(value):
@@ -116,11 +111,11 @@ class Results:
     ----------
     study, title, ladder : str
     errors : mapping of str to str
-        Name to axis label, most important first.
+        Axis labels, most important first.
     work : sequence of str
     rows : sequence of Row
     provenance : mapping of str to str
-        Versions, machine, BLAS threads.
+        Versions, machine, threads.
     """
 
     study: str
@@ -190,12 +185,11 @@ def read(file: str | PathLike[str]) -> Results:
     Parameters
     ----------
     file : path
-        Written by `write`.
 
     Raises
     ------
     ValueError
-        If the file holds something else.
+        If `write` did not write it.
     """
     try:
         kept = json.loads(File(file).read_text(encoding="utf-8"))
@@ -212,12 +206,11 @@ def excess(results: Results, error: str, work: str) -> Array:
     ----------
     results : Results
     error, work : str
-        Names in `results.errors` and `WORK`.
 
     Raises
     ------
     ValueError
-        For an unknown error or work.
+        For unknown names.
     """
     results.check(error, work)
     placed = [(row.problem, row.placed(error, work)) for row in results.rows]
@@ -236,10 +229,8 @@ def ratios(results: Results, work: str, family: str | None = None) -> dict[str, 
     Parameters
     ----------
     results : Results
-    work : str
-        One of `WORK`.
-    family : str, optional
-        Default: all.
+    work, family : str
+        Default: all families.
     """
     results.check(work=work)
     rows = results.of(family=family)
@@ -258,7 +249,7 @@ def ratios(results: Results, work: str, family: str | None = None) -> dict[str, 
 
 
 def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
-    """(n, mean work of successful runs), by n."""
+    """(n, mean work of successes), by n."""
     rows = [row for row in results.of(family=family, method=method) if not row.failed]
     sizes = sorted({row.n for row in rows})
     return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
@@ -271,7 +262,6 @@ def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
     ----------
     results : Results
     work : str
-        One of `WORK`.
 
     Raises
     ------

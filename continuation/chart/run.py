@@ -32,7 +32,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     ----------
     study : Study
     watch : callable, optional
-        Called with (done, total, row).
+        See `Watch`.
     """
     cases = [
         (problem, method, rung)

@@ -124,20 +124,16 @@ class Study:
 
     Parameters
     ----------
-    name : str
-        For file names.
-    problems : sequence of Problem
-    methods : sequence of Method
-        See `traced`.
-    ladder : sequence of Rung
-        Default: tolerances 1e-4 to 1e-10.
+    name, title : str
+        For files; for figures.
+    problems, methods, ladder : sequence of Problem, Method, Rung
+        Default ladder: tolerances 1e-4 to 1e-10.
     errors, work : sequence of Error, of str
         Most important first; work from `WORK`.
     figures : sequence
         `Lines`, `Profile`, `Dumbbell`.
     tables : mapping of str to callable
         Functions of the results, by title.
-    title : str
     repeats : int
         Timed runs after the first.
     patience : float

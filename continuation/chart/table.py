@@ -23,7 +23,6 @@ class Table:
     ----------
     head : sequence of str
     rows : sequence of sequences
-        Text and numbers.
     """
 
     head: Sequence[str]
@@ -112,7 +111,6 @@ def profile(results: Results, work: str = "factorizations") -> Table:
     ----------
     results : Results
     work : str
-        One of `WORK`.
     """
     lines: list[tuple[Cell, ...]] = [
         (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
@@ -130,7 +128,6 @@ def scaling(results: Results, work: str = "factorizations") -> Table:
     ----------
     results : Results
     work : str
-        One of `WORK`.
     """
     sizes = sorted({row.n for row in results.rows})
     lines: list[tuple[Cell, ...]] = []
