@@ -49,7 +49,7 @@ def plot_components(
         Default: new figure.
     against : {"lam", "arclength"}
     names : sequence of str, optional
-        One per component drawn; default: the homotopy's, or ``y_0``, ``y_1``, ....
+        One per component; default: the homotopy's, or ``y_0``, ``y_1``, ....
     components : iterable of int, optional
         Default: all, or twelve evenly spaced.
     legend : bool
@@ -57,10 +57,8 @@ def plot_components(
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        For invalid `against`, components, names, or an empty path.
+    ImportError, ValueError
+        Without matplotlib; for invalid arguments or an empty path.
     """
     check_path(path)
     drawing = Drawing.of(path)
@@ -112,10 +110,8 @@ def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PR
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        For an empty path or wrong size of x.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or wrong size of x.
     """
     check_path(path)
     places = _places(path, x)
@@ -145,10 +141,8 @@ def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> 
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        For an empty path or wrong size of x.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or wrong size of x.
     """
     check_path(path)
     places = _places(path, x)
@@ -181,10 +175,8 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        For an empty path.
+    ImportError, ValueError
+        Without matplotlib; for an empty path.
     """
     check_path(path)
     axes = axes_or_new(axes)

@@ -47,7 +47,6 @@ def plot_bifurcation(
     Parameters
     ----------
     path : Path or sequence of Path
-        One colour per branch.
     axes : matplotlib Axes, optional
     component : int, optional
         Same as `value`.
@@ -58,7 +57,7 @@ def plot_bifurcation(
         Observed scalar positive, or function of (y, lam) true, on stable (solid) parts; default: from
         `continuation.Stability`.
     names : sequence of str, optional
-        Legend, one per path.
+        One per path.
     legend : bool
 
     Returns
@@ -67,10 +66,8 @@ def plot_bifurcation(
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        For an empty path, or unknown `component`, `value`, `stable`.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or unknown `component`, `value`, `stable`.
     """
     paths = list(path) if isinstance(path, Iterable) else [path]
     if not paths:

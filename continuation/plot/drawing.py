@@ -44,7 +44,7 @@ MOST_COMPONENTS = 12
 Axes = Any
 
 Drawn: TypeAlias = Any
-"""`continuation.Path`, which imports this module."""
+"""A `continuation.Path`."""
 
 
 @frozen(eq=False)
