@@ -48,8 +48,7 @@ DEFAULT = LiteralSettings()
 class LiteralRun:
     """A run of the algorithm.
 
-    `u`, shape (iterations + 1, 3 n + 1): accepted points (x, z1, z2, lambda). `ended_by`: last step, in words.
-    `claims_solution`: whether that step claims a solution.
+    `u`, shape (iterations + 1, 3 n + 1): accepted points (x, z1, z2, lambda). `ended_by`: last step.
     """
 
     u: Array
@@ -88,8 +87,8 @@ def run_literally(
 ) -> LiteralRun:
     """Run Steps 0-5 on the KKT homotopy from x0 > 0 with A x0 + q > 0.
 
-    `problem`: small, as 3 n unknowns are solved densely. `x0`, `z1`, `z2`: shape (n,), positive; z default to ones.
-    Raises `ValueError` for other starts.
+    `problem`: small (dense solves of 3 n unknowns). `x0`, `z1`, `z2`: shape (n,), positive; z default to ones. Raises
+    `ValueError` for other starts.
 
     References
     ----------

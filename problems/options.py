@@ -49,10 +49,10 @@ def check_budget(value: Any) -> None:
 
 
 def real_array(name: str, value: Any) -> Array:
-    """Copy `value` to a float array.
+    """Copy `value` to a float array, or keep a read-only one that owns its row-major floats.
 
-    A read-only array that owns its row-major floats is kept. Integers, floats, booleans and fractions convert. Raises
-    `ValueError` for complex numbers, dates, text, masked entries, ragged rows and numbers beyond 1e308.
+    Integers, floats, booleans and fractions convert. Raises `ValueError` for complex numbers, dates, text, masked
+    entries, ragged rows, numbers beyond 1e308.
     """
     if type(value) is np.ndarray and value.dtype == float:
         own = value.base is None and value.flags.c_contiguous and not value.flags.writeable
@@ -126,7 +126,7 @@ def check_finite(name: str, value: Any) -> None:
 
 
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
-    """Copy `value` to a vector of finite floats, with `size` entries if given, or raise ValueError."""
+    """Copy `value` to a vector of finite floats (of length `size`), or raise ValueError."""
     try:
         vector = real_array(name, value)
     except ValueError as error:

@@ -1,8 +1,7 @@
 """The paper's ten examples, and two counterexamples to its theorems.
 
 Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems". Data are
-as printed, misprints noted; `true_class` and exact solutions come from all principal minors and bases in rational
-arithmetic.
+as printed; `true_class` and exact solutions come from all minors and bases in rational arithmetic.
 """
 
 from __future__ import annotations
@@ -33,24 +32,18 @@ class Example:
 
     Attributes
     ----------
-    number : int
-        1 to 10.
-    label : str
-        LaTeX label.
+    number, printed_iterations : int
+    label, remarks : str
+        LaTeX label; misprints and corrections.
     stated_class, true_class : str
-        Matrix class by the paper; by minors and proofs.
+        By the paper; by minors and proofs.
     A : Array of shape (n, n)
     q, x0, z1, z2 : Array of shape (n,)
-        Data and start; z1 = z2 = e.
-    printed_solution : Array of shape (n,)
-        x as printed.
-    printed_point : Array
-        (x, z1, z2, lambda) as printed.
-    printed_iterations : int
+        Data and start.
+    printed_solution, printed_point : Array
+        x; (x, z1, z2, lambda).
     solutions : tuple of tuple of Fraction
         All exact solutions, the printed one first.
-    remarks : str
-        Misprints and corrections.
     """
 
     number: int
@@ -90,10 +83,8 @@ class Counterexample:
     ----------
     matrix_class : str
     A : Array of shape (n, n)
-    q, x0 : Array of shape (n,)
-        Data and strictly feasible start; z1 = z2 = e.
-    end : Array of shape (n,)
-        x at the KKT path's end, rounded.
+    q, x0, end : Array of shape (n,)
+        Data, strictly feasible start (z1 = z2 = e), x at the KKT path's end.
     refutes, why : str
         False statement; reason.
     """

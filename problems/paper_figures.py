@@ -16,10 +16,7 @@ ZOOM = (0.1, 0.2, 0.5, 0.5)
 
 
 def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: int = 5) -> Any:
-    """Draw one panel per example, lambda from 1 to 0, turning points as open circles.
-
-    `paths`: KKT paths, y = (x, z1, z2). Raises `ImportError` without matplotlib.
-    """
+    """Draw one panel per example, lambda from 1 to 0, from KKT paths y = (x, z1, z2)."""
     require_matplotlib()
     from matplotlib.figure import Figure
 
@@ -67,6 +64,6 @@ def _key(figure: Any, fullest: Any) -> None:
 
 
 def _typeset(matrix_class: str) -> str:
-    """Typeset a class: N-bar with bar, Q0 with index."""
+    """Typeset N-bar with bar, Q0 with index."""
     text = matrix_class.replace("N-bar", r"$\bar{N}$").replace("E0^s", "$E_0^s$")
     return re.sub(r"\b([A-Z])0\b", r"$\1_0$", text)

@@ -83,7 +83,7 @@ def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> No
 
 
 def table(rows: Sequence[Row]) -> str:
-    """Text table: example, class, end, work, iteration counts."""
+    """Text table of examples, ends, work and iterations."""
     head = ("#", "class", "x at the end", "residual", "steps", "factor.", "turns", "paper", "literal", "status")
     return Table(head, [_cells(row) for row in rows]).text()
 
