@@ -1,1 +1,1 @@
-"""Homotopies that come with the engine: complementarity, nonlinear systems, bifurcation problems, the paper."""
+"""Problems for the engine: complementarity, nonlinear, bifurcation, the paper."""

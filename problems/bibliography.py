@@ -1,4 +1,4 @@
-"""BibTeX entries of the bifurcation and nonlinear problems, one constant a source."""
+"""BibTeX entries of bifurcation and nonlinear problems."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hypothesis's entry point: `st.from_type(LCP)` gives problems; a session without `problems.lcp` pays nothing."""
+"""Hypothesis entry point: strategies for problem types, registered on demand."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import sys
 
 
 def register() -> None:
-    """Register the strategies of LCP, MixedLCP and Program if both Hypothesis and the classes are imported.
+    """Register strategies if Hypothesis and the classes are both imported.
 
-    Called from two places, so that the order of the two imports does not matter: Hypothesis calls it through the entry
-    point group `hypothesis` when it is imported, and `problems.lcp` calls it when that is imported.
+    Hypothesis calls this through an entry point, `problems.lcp` at import: either may come first.
     """
     data = sys.modules.get("problems.lcp.data.problem")
     program = sys.modules.get("problems.lcp.data.program")

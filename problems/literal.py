@@ -1,9 +1,8 @@
-"""The paper's own algorithm, Steps 0-5, as printed, for comparison.
+"""The paper's algorithm, Steps 0-5 as printed, for comparison only.
 
-The engine does not use it: its corrector stops after one iteration, its acceptance test, ||H|| <= 1, is absolute, and
-its Step 4 may go on from a point that has failed every test. On example 1 that happens once, at the third point, and
-the algorithm ends at another KKT point. Where the text leaves a number open (a_0, the norms) the choice is noted; with
-these choices the iteration counts on the ten examples are 18, 21, 15, 24, 17, 24, 18, 3289, 27 and 1955.
+It corrects once per step, accepts ||H|| <= 1 absolutely, and Step 4 may continue from a point that failed every test:
+so example 1 ends at another KKT point. The text leaves a_0 and the norms open; with the choices here the ten examples
+take 18, 21, 15, 24, 17, 24, 18, 3289, 27 and 1955 iterations.
 """
 
 from __future__ import annotations
@@ -20,21 +19,18 @@ from problems.lcp.homotopies import KKTHomotopy
 from problems.options import quiet
 
 MAX_ITERATIONS = 10_000
-"""The paper names no limit; example 8 needs 3,289 iterations."""
+"""The paper names no limit; example 8 needs 3,289."""
 
 LITERAL_SOLVED_TO = 1e-3
-"""Natural residual, relative to 1 + max |q|, at which an end counts as a solution: the stopping rule leaves 8e-5 on
-example 7, and a false end is off by 0.1 or more (example 1)."""
+"""Relative natural residual of a solution: 8e-5 on example 7 at the stopping rule, at least 0.1 at a false end."""
 
 
 @frozen
 class LiteralSettings:
-    """Step 0: the numbers of the algorithm.
+    """Step 0: the algorithm's numbers.
 
-    `l0`: The step is a = l0^l, with l = 0 at the start of every iteration; in (0, 1). `eps1`, `eps2`, `eps3`: Stop at
-    lambda <= eps1; Step 4 compares lambda and its change with eps2; Step 3 shortens a down to eps3. `a0`: Step 2
-    shortens a down to a0. The paper gives no value; at 1e-6 it ends earlier on seven of the ten examples, by Step 4 and
-    at a negative lambda.
+    Steps are a = l0^l. The run stops at lambda <= eps1; Step 4 compares lambda and its change with eps2; Steps 3 and 2
+    shorten a to eps3 and a0. The paper gives no a0; 1e-6 ends seven examples early, by Step 4 at a negative lambda.
     """
 
     l0: float = field(default=0.5, validator=FRACTION)
@@ -50,10 +46,9 @@ DEFAULT = LiteralSettings()
 
 @frozen(eq=False)
 class LiteralRun:
-    """What the paper's algorithm did.
+    """A run of the algorithm.
 
-    `u`, of shape (iterations + 1, 3 n + 1): Every accepted point (x, z1, z2, lambda), the start first. `ended_by`: The
-    step that ended it, in words. `claims_solution`: Whether that step says "stop with the solution".
+    `u`, shape (iterations + 1, 3 n + 1): accepted points (x, z1, z2, lambda). `ended_by`: last step.
     """
 
     u: Array
@@ -63,38 +58,37 @@ class LiteralRun:
 
     @property
     def iterations(self) -> int:
-        """How often i was increased, as the paper counts."""
+        """Iterations as the paper counts."""
         return len(self.u) - 1
 
     @property
     def lam(self) -> Array:
-        """The parameter, shape (iterations + 1,)."""
+        """Lambda, shape (iterations + 1,)."""
         return self.u[:, -1]
 
     @property
     def x(self) -> Array:
-        """The x it ends with, shape (n,)."""
+        """Final x, shape (n,)."""
         return self.u[-1, : self.problem.n]
 
     @property
     def residual(self) -> float:
-        """The natural residual of x."""
+        """Natural residual of x."""
         return self.problem.natural_residual(self.x)
 
     @property
     def solved(self) -> bool:
-        """Whether x is a solution, to `LITERAL_SOLVED_TO`, with or without a claim."""
+        """Whether x solves the problem to `LITERAL_SOLVED_TO`."""
         return self.residual <= LITERAL_SOLVED_TO * (1.0 + float(np.abs(self.problem.q).max()))
 
 
 def run_literally(
     problem: LCP, x0: Any, z1: Any = None, z2: Any = None, settings: LiteralSettings = DEFAULT
 ) -> LiteralRun:
-    """Run Steps 0-5 on the KKT homotopy from a strictly feasible start.
+    """Run Steps 0-5 on the KKT homotopy from x0 > 0 with A x0 + q > 0.
 
-    `problem`: Small: the full system of 3 n unknowns is solved densely. `x0`, of shape (n,): x0 > 0 with A x0 + q > 0,
-    which the algorithm presupposes. `z1`, `z2`, of shape (n,): Ones by default. Raises `ValueError` if a vector is not
-    positive or of the wrong length, or if x0 is not strictly feasible.
+    `problem`: small (dense solves of 3 n unknowns). `x0`, `z1`, `z2`: shape (n,), positive; z default to ones. Raises
+    `ValueError` for other starts.
 
     References
     ----------
@@ -123,7 +117,7 @@ def run_literally(
 
 @quiet
 def _iterate(homotopy: KKTHomotopy, u: Array, settings: LiteralSettings, first: bool) -> tuple[Array, int]:
-    """Steps 1 to 3 at one point: the next point, and the step (4 or 5) to go to with it."""
+    """Steps 1 to 3: next point and next step (4 or 5)."""
     tangent = _tangent(homotopy, u, first)
     a = 1.0
     while True:
@@ -141,7 +135,7 @@ def _iterate(homotopy: KKTHomotopy, u: Array, settings: LiteralSettings, first: 
 
 
 def _tangent(homotopy: KKTHomotopy, u: Array, first: bool) -> Array:
-    """Step 1: (s, -1) normalised with s = H_y^{-1} H_lambda, reversed after the start where det H_y <= 0."""
+    """Step 1: (s, -1) normalised, s = H_y^{-1} H_lambda, reversed after the start if det H_y <= 0."""
     H_y, H_lam = homotopy.jacobian(u[:-1], float(u[-1]))
     xi: Array = np.append(np.linalg.solve(H_y, H_lam), -1.0)
     xi /= np.linalg.norm(xi)
@@ -149,7 +143,7 @@ def _tangent(homotopy: KKTHomotopy, u: Array, first: bool) -> Array:
 
 
 def _moore_penrose(homotopy: KKTHomotopy, u: Array) -> Array:
-    """H'(u)^+ H(u), the least-squares solution of least norm."""
+    """H'(u)^+ H(u)."""
     correction: Array = np.linalg.lstsq(
         np.column_stack(homotopy.jacobian(u[:-1], float(u[-1]))), homotopy.residual(u[:-1], float(u[-1])), rcond=None
     )[0]

@@ -1,4 +1,4 @@
-"""Checks of the options of the problems, and the rule that overflow in an evaluation raises no warning."""
+"""Option checks of the problems, and silent overflow."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from continuation.budget import Budget
 from continuation.linear.silence import without_warnings
 
 quiet = without_warnings(over="ignore", invalid="ignore")
-"""Decorates an evaluation whose overflow is to give inf or nan without a warning: the tracer handles these."""
+"""Decorator: overflow gives inf or nan without warnings; the tracer handles them."""
 
 
 positive_integer = integer(1)
@@ -25,35 +25,34 @@ finite = FINITE
 
 
 def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """As `finite`, with None allowed: a path without a target."""
+    """Validate like `finite`; None means no target."""
     if value is not None:
         finite(instance, attribute, value)
 
 
 def check_tolerance(value: Any) -> None:
-    """Raise ValueError unless the argument `tolerance` is a number between 0 and 1."""
+    """Require 0 < tolerance < 1, else ValueError."""
     if not isinstance(value, Real) or isinstance(value, bool) or not 0.0 < float(value) < 1.0:
         raise ValueError(f"tolerance: expected a number between 0 and 1, found {value!r}")
 
 
 def check_seed(value: Any) -> None:
-    """Raise ValueError unless the argument `seed` is an integer, at least 0."""
+    """Require an integer seed >= 0, else ValueError."""
     if not isinstance(value, Integral) or isinstance(value, bool) or value < 0:
         raise ValueError(f"seed: expected an integer, at least 0, found {value!r}")
 
 
 def check_budget(value: Any) -> None:
-    """Raise TypeError unless the argument `budget` is a Budget or None."""
+    """Require a Budget or None, else TypeError."""
     if value is not None and not isinstance(value, Budget):
         raise TypeError(f"budget: expected a Budget, found {value!r}")
 
 
 def real_array(name: str, value: Any) -> Array:
-    """A copy of `value` as an array of floats, if it is made of real numbers that a float can hold.
+    """Copy `value` to a float array, or keep a read-only one that owns its row-major floats.
 
-    What nobody can change, a read-only array that owns its floats by rows, is taken as it is. Integers, floats,
-    booleans, and objects that are real numbers, as fractions are, will do. Raises `ValueError` for anything else:
-    complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
+    Integers, floats, booleans and fractions convert. Raises `ValueError` for complex numbers, dates, text, masked
+    entries, ragged rows, numbers beyond 1e308.
     """
     if type(value) is np.ndarray and value.dtype == float:
         own = value.base is None and value.flags.c_contiguous and not value.flags.writeable
@@ -62,7 +61,7 @@ def real_array(name: str, value: Any) -> Array:
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
-        # By rows, in which sums of products are taken; a matrix of MATLAB comes by columns.
+        # Row-major for products; MATLAB matrices come by columns.
         array = np.array(value, order="C")
         if array.dtype == object:
             if not all(_is_real(entry) for entry in array.flat):
@@ -80,15 +79,13 @@ def real_array(name: str, value: Any) -> Array:
 
 
 def _is_real(entry: Any) -> bool:
-    """Whether an object is a real number: one of Python's tower, or a decimal."""
     return isinstance(entry, (Real, Decimal, np.bool_)) or (isinstance(entry, np.ndarray) and entry.ndim == 0)
 
 
 def sound_sparse(name: str, value: Any) -> Any:
-    """A sparse matrix as CSR of floats, its structure checked: indices outside of the shape would corrupt memory.
+    """Convert a sparse matrix to float CSR; bad indices would corrupt memory.
 
-    Entries that occur more than once add up, as floats. Raises `ValueError` if it holds anything but real numbers, or
-    its indices do not belong to its shape.
+    Duplicates add up. Raises `ValueError` for non-real numbers or indices outside the shape.
     """
     if value.dtype.kind not in "fiub":
         raise ValueError(f"{name}: expected real numbers, found dtype {value.dtype}")
@@ -96,7 +93,7 @@ def sound_sparse(name: str, value: Any) -> Any:
         raise ValueError(f"{name}: expected a matrix, found shape {value.shape}")
     try:
         if value.format in ("csr", "csc", "bsr"):
-            # Of a copy of the outer object: scipy narrows the indices of the one that it checks.
+            # On a copy: scipy narrows the checked object's indices.
             type(value)((value.data, value.indices, value.indptr), shape=value.shape).check_format(full_check=True)
         elif value.format == "coo":
             for indices, length in zip((value.row, value.col), value.shape):
@@ -104,7 +101,7 @@ def sound_sparse(name: str, value: Any) -> Any:
                     raise ValueError("there are not as many indices as entries")
                 if len(indices) and not 0 <= indices.min() <= indices.max() < length:
                     raise ValueError(f"indices {indices.min()} to {indices.max()} where 0 to {length - 1} are possible")
-        # Floats first: duplicates of small integers add up beyond them.
+        # Floats first: sums of small integers overflow.
         matrix = sp.csr_array(value.astype(float))
         matrix.check_format(full_check=True)
         matrix.sum_duplicates()
@@ -115,9 +112,9 @@ def sound_sparse(name: str, value: Any) -> Any:
 
 
 def check_finite(name: str, value: Any) -> None:
-    """A ValueError that says which entry of an array, or sparse matrix, is not finite, if there is one."""
+    """Raise ValueError naming the first nonfinite entry."""
     entries = value if isinstance(value, np.ndarray) else value.data
-    # Numbers whose sum overflows may be finite all the same.
+    # Finite numbers may have an infinite sum.
     if entries.size == 0 or finite_sum(entries.ravel()) or np.isfinite(entries).all():
         return
     at = np.argwhere(~np.isfinite(entries))[0]
@@ -129,7 +126,7 @@ def check_finite(name: str, value: Any) -> None:
 
 
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
-    """A copy of `value` as a vector of finite floats, of the given size if there is one, or ValueError naming it."""
+    """Copy `value` to a vector of finite floats (of length `size`), or raise ValueError."""
     try:
         vector = real_array(name, value)
     except ValueError as error:

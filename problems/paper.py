@@ -1,8 +1,7 @@
-"""The ten examples of the paper, and two counterexamples to its theorems, as data.
+"""The paper's ten examples, and two counterexamples to its theorems.
 
-Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
-Matrices, starts, solutions and iteration counts are typed as printed; misprints are noted beside them. The class in
-`true_class` and the exact solutions were recomputed in rational arithmetic from all principal minors and all bases.
+Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems". Data are
+as printed; `true_class` and exact solutions come from all minors and bases in rational arithmetic.
 """
 
 from __future__ import annotations
@@ -17,41 +16,34 @@ from problems.lcp import LCP
 
 
 def _array(value: object) -> Array:
-    """A read-only float array, so that the data shared by everybody stay what they are."""
+    """A read-only float array: examples are shared."""
     array: Array = np.array(value, dtype=float)
     array.flags.writeable = False
     return array
 
 
 def _exact(*solutions: str) -> tuple[tuple[Fraction, ...], ...]:
-    """Each string is one solution, its components separated by blanks."""
     return tuple(tuple(Fraction(component) for component in solution.split()) for solution in solutions)
 
 
 @frozen(eq=False, kw_only=True)
 class Example:
-    """One numerical example of the paper.
+    """A numerical example.
 
     Attributes
     ----------
-    number : int
-        1 to 10, in the paper's order.
-    label : str
-        The paper's LaTeX label.
+    number, printed_iterations : int
+    label, remarks : str
+        LaTeX label; misprints and corrections.
     stated_class, true_class : str
-        The matrix class as the paper states it, and what the principal minors and short proofs say.
+        By the paper; by minors and proofs.
     A : Array of shape (n, n)
     q, x0, z1, z2 : Array of shape (n,)
-        The data and the paper's start, at which z1 = z2 = e.
-    printed_solution : Array of shape (n,)
-        The solution x that the paper prints, with its digits.
-    printed_point : Array
-        The whole end point (x, z1, z2, lambda) as printed, misprints included.
-    printed_iterations : int
+        Data and start.
+    printed_solution, printed_point : Array
+        x; (x, z1, z2, lambda).
     solutions : tuple of tuple of Fraction
-        All solutions of the LCP, exact for the decimals as printed; the one that the paper prints comes first.
-    remarks : str
-        Misprints and corrections, empty if there are none.
+        All exact solutions, the printed one first.
     """
 
     number: int
@@ -69,12 +61,12 @@ class Example:
 
     @property
     def z1(self) -> Array:
-        """The paper's starting multiplier of x >= 0: all ones, shape (n,)."""
+        """Starting multiplier of x >= 0: ones."""
         return np.ones(self.q.size)
 
     @property
     def z2(self) -> Array:
-        """The paper's starting multiplier of A x + q >= 0: all ones, shape (n,)."""
+        """Starting multiplier of A x + q >= 0: ones."""
         return np.ones(self.q.size)
 
     @property
@@ -85,19 +77,16 @@ class Example:
 
 @frozen(eq=False, kw_only=True)
 class Counterexample:
-    """A strictly feasible LCP without solution, of a class on which the paper says that the path's end is one.
+    """A strictly feasible LCP without solution, in a class for which the paper claims one.
 
     Attributes
     ----------
     matrix_class : str
-        The class of A.
     A : Array of shape (n, n)
-    q, x0 : Array of shape (n,)
-        The data and a strictly feasible start; z1 = z2 = e.
-    end : Array of shape (n,)
-        x at the end of the KKT path, to the digits typed.
+    q, x0, end : Array of shape (n,)
+        Data, strictly feasible start (z1 = z2 = e), x at the KKT path's end.
     refutes, why : str
-        The statement that fails, and the reason.
+        False statement; reason.
     """
 
     matrix_class: str
@@ -265,7 +254,6 @@ EXAMPLES: tuple[Example, ...] = (
         remarks="The path turns twice in lambda. The paper's matrix is not symmetric: -80, -70 against -70, -50.",
     ),
 )  # fmt: skip
-"""The ten examples in the paper's order."""
 
 COUNTEREXAMPLES: tuple[Counterexample, ...] = (
     Counterexample(
@@ -289,4 +277,4 @@ COUNTEREXAMPLES: tuple[Counterexample, ...] = (
         "w = (1, 0), where x_0 w_0 = 2; the proof takes W_q + X_q (A')_qq for a principal minor of A.",
     ),
 )
-"""Two strictly feasible LCPs without solution, whose KKT paths end at stationary points."""
+"""Their KKT paths end at stationary points."""

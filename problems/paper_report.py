@@ -1,4 +1,4 @@
-"""The ten examples traced accurately from the paper's starts, beside its own algorithm: rows, table, archive."""
+"""Ten examples traced accurately, beside the paper's algorithm: table and archive."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from problems.literal import LiteralRun, run_literally
 from problems.paper import Example
 
 SOLVED_TO = 1e-6
-"""Example 7 ends like the square root of lambda, so its pure path is good to about this; the others do far better."""
+"""Example 7 ends like sqrt(lambda), accurate to about this; the others do far better."""
 
 TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
 
 
 @frozen(eq=False)
 class Row:
-    """One example: its accurate path, and the run of the literal algorithm."""
+    """An example's path and literal run."""
 
     example: Example
     path: Path
@@ -37,30 +37,30 @@ class Row:
 
     @property
     def x(self) -> Array:
-        """X at the end of the path, shape (n,)."""
+        """Final x, shape (n,)."""
         return self.path.endpoint.y[: self.example.q.size]
 
     @property
     def residual(self) -> float:
-        """The natural residual there."""
+        """Its natural residual."""
         return certify(self.example.problem, self.x).residual
 
     @property
     def solved(self) -> bool:
-        """Whether x solves the LCP, to `SOLVED_TO`."""
+        """Whether x solves the LCP to `SOLVED_TO`."""
         return certify(self.example.problem, self.x).solves(SOLVED_TO)
 
 
 def trace_example(example: Example, observers: tuple[Observer, ...] = ()) -> Path:
-    """The KKT path from the paper's start, by the engine's default parts."""
+    """Trace the KKT path by default options from the paper's start."""
     return continuation.trace(KKTHomotopy(example.problem, example.x0, example.z1, example.z2), observers=observers)
 
 
 def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> list[Row]:
-    """Trace the examples, write all paths to one new archive, and run the literal algorithm.
+    """Trace all examples and run the literal algorithm.
 
-    `archive`: Must not exist. Besides the paths it holds a group `examples` with A, q and x0 of each. Raises
-    `ArchiveError` if it exists or cannot be written.
+    `archive`: a new file; its group `examples` holds A, q and x0. Raises `ArchiveError` if it exists or cannot be
+    written.
     """
     unknowns = 3 * max(example.q.size for example in examples)
     with PathLog(archive, title=TITLE) as log:
@@ -73,7 +73,7 @@ def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> l
 
 
 def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> None:
-    """A, q and x0 of each example, so that each end can be certified again from the file alone."""
+    """A, q, x0 certify each end from the file alone."""
     with h5py.File(archive, "r+") as file:
         for example in examples:
             group = file.create_group(f"examples/{example.number}")
@@ -83,7 +83,7 @@ def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> No
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The rows as text: example, class, end, work, and the two iteration counts."""
+    """Text table of examples, ends, work and iterations."""
     head = ("#", "class", "x at the end", "residual", "steps", "factor.", "turns", "paper", "literal", "status")
     return Table(head, [_cells(row) for row in rows]).text()
 
@@ -105,7 +105,7 @@ def _cells(row: Row) -> Sequence[Cell]:
 
 
 def remarks(rows: Sequence[Row]) -> list[str]:
-    """Remarks below the table: false claims of the literal algorithm, paths that end before the target."""
+    """Notes on false claims of the literal algorithm and unfinished paths."""
     found = [
         f"* Example {row.example.number}: the algorithm as printed claims to solve it at x = {show(row.literal.x)}, "
         f"where the natural residual is {row.literal.residual:.2g}: it has jumped to another path."
@@ -121,11 +121,10 @@ def remarks(rows: Sequence[Row]) -> list[str]:
 
 
 def _true(literal: LiteralRun) -> bool:
-    """Whether the literal algorithm claims nothing false."""
     return literal.solved or not literal.claims_solution
 
 
 def show(x: Array, digits: int = 7) -> str:
-    """A vector as short text; components that are zero to the accuracy of a path as 0."""
+    """Short text of a vector; components within path accuracy of zero become 0."""
     size = float(np.abs(x).max())
     return "(" + ", ".join("0" if abs(value) <= SOLVED_TO * size else f"{value:.{digits}g}" for value in x) + ")"

@@ -1,4 +1,4 @@
-"""What is registered under a name where a class alone will not do: the homotopies of an LCP, and Brown's function."""
+"""Named homotopies that need a factory: LCP homotopies and Brown's function."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def brown_fixed_point(n: int = 5) -> Differentiable[FixedPointHomotopy]:
     Parameters
     ----------
     n : int
-        Number of equations and unknowns.
+        Equations.
     """
     F = brown(n)
     return Differentiable(FixedPointHomotopy(F, np.zeros(n)), F.jacobian)
 
 
 def _plugin(homotopy: Registered) -> Callable[..., LCPHomotopy]:
-    """The homotopy as an object of an entry point, with options that can be typed."""
+    """Make an entry point with options that can be typed."""
 
     def make(example: int = homotopy.example, file: str = "", q: str = "") -> LCPHomotopy:
         problem, x0 = _problem(example, file, q)
@@ -54,12 +54,12 @@ kmm = _plugin(HOMOTOPIES["kmm"])
 
 
 def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
-    """The LCP of a file, or one of the paper's with its start."""
+    """Read an LCP, or take the paper's with its start."""
     if file:
         try:
             return read_problem(file, q or None), None
         except ValueError as error:
-            # The reader speaks of its own parameter, `path`.
+            # The reader's parameter is `path`.
             raise ValueError(str(error).replace("path:", "file:", 1)) from error
     from problems.paper import EXAMPLES
 

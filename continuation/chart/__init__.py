@@ -1,4 +1,4 @@
-"""Speed against accuracy: studies of problems x methods x a ladder, a table of their runs, and three kinds of picture.
+"""Speed against accuracy: studies of problems x methods x a ladder, with tables and three kinds of picture.
 
 A plug-in author charts a homotopy of their own in ten lines::
 

@@ -1,4 +1,4 @@
-"""What is varied, problems and what is known of them, methods, and what a method answers to a problem."""
+"""Ladders, problems, methods and their answers."""
 
 from __future__ import annotations
 
@@ -16,21 +16,19 @@ from continuation.step.options import Options, check_names
 from continuation.step.presets import CONSERVATIVE, DEFAULT
 from continuation.tracing import trace
 
-# -- what is varied -----------------------------------------------------------------------------------------------
-
 
 @frozen
 class Rung:
-    """One value of the setting that a study varies; a ladder is a sequence of them.
+    """One value of the varied setting.
 
     Attributes
     ----------
     name : str
-        What is varied, as axes and tables call it.
+        Label.
     value : float
         Positive.
     change : callable
-        (options, value) to new options; by default the setting is none of a trace's.
+        Maps (options, value) to options; default: no change.
     """
 
     name: str
@@ -38,7 +36,7 @@ class Rung:
     change: Callable[[dict[str, Any], float], dict[str, Any]] = lambda options, value: options
 
     def apply(self, options: Mapping[str, Any]) -> dict[str, Any]:
-        """The options of a trace with this value set.
+        """Set the value.
 
         Parameters
         ----------
@@ -49,23 +47,22 @@ class Rung:
 
 
 def tolerances(*values: float) -> tuple[Rung, ...]:
-    """The tolerance of the trace.
+    """Vary the tolerance.
 
     Parameters
     ----------
     *values : float
-        Positive.
     """
     return tuple(Rung("tolerance", value, lambda options, value: {**options, "tolerance": value}) for value in values)
 
 
 def longest_steps(*values: float) -> tuple[Rung, ...]:
-    """The longest step that the controller may take, in arclength of the metric; the first step is no longer.
+    """Vary the controller's longest step, a bound for the first too.
 
     Parameters
     ----------
     *values : float
-        Positive.
+        Arclengths.
     """
     return tuple(Rung("longest step", value, _limited) for value in values)
 
@@ -73,17 +70,14 @@ def longest_steps(*values: float) -> tuple[Rung, ...]:
 def _limited(options: dict[str, Any], value: float) -> dict[str, Any]:
     controller = options.get("controller") or options.get("preset", DEFAULT).controller
     bounds = controller.bounds
-    # A first step that the controller leaves open, or one that is shorter, stays.
+    # Keep an open or shorter first step.
     first = bounds.initial if bounds.initial is None else min(bounds.initial, value)
     limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value), initial=first)
     return {**options, "controller": evolve(controller, bounds=limited)}
 
 
-# -- problems, methods, answers -----------------------------------------------------------------------------------
-
-
 class Failure:
-    """How a run failed; the empty text if it did not."""
+    """Kinds of failure; empty on success."""
 
     NONE = ""
     JUMP = "jump"
@@ -95,16 +89,14 @@ class Failure:
 
 @frozen(eq=False)
 class Truth:
-    """What is known of a path; None where it is not known.
+    """Known results of a path.
 
     Attributes
     ----------
-    end : ndarray, shape (N + 1,), or None
-        The end point (y, lam).
-    turning_points : ndarray, shape (k, N + 1), or None
-        In the order of the path.
+    end, turning_points : ndarray or None
+        Shapes (N + 1,) and (k, N + 1): (y, lam), in path order.
     within : float
-        A path whose end is farther from `end` than this, relative to its size, has come to a wrong end.
+        Relative distance from `end` beyond which an end is wrong.
     """
 
     end: Array | None = None
@@ -113,17 +105,17 @@ class Truth:
 
 
 REFERENCE_TOLERANCE = 1e-11
-"""The last Newton increment of a reference: the point after it is exact to round-off."""
+"""Last Newton increment of a reference; the next point is exact to round-off."""
 
 
 def reference(homotopy: Any, **options: Any) -> Truth:
-    """The truth by a trace with short steps, Newton's own corrector and a tolerance near round-off.
+    """Trace a reference: short steps, full Newton, tolerance near round-off.
 
     Parameters
     ----------
     homotopy : Homotopy
     **options
-        As for `continuation.trace`: the target, the direction, the events that end the path.
+        For `continuation.trace`.
 
     Raises
     ------
@@ -138,20 +130,19 @@ def reference(homotopy: Any, **options: Any) -> Truth:
 
 @frozen(eq=False)
 class Problem:
-    """What is solved.
+    """A problem of a study.
 
     Attributes
     ----------
-    name : str
+    name, family : str
+        Problems of a family differ in size or seed.
     subject : Any
-        A homotopy, or what else the methods of the study take.
+        Homotopy, or other input of methods.
     truth : Truth
     options : mapping
-        For `continuation.trace`, with every method: target, direction, events.
+        For `continuation.trace`.
     n : int
-        Size, for scaling; by default the subject's own.
-    family : str
-        Problems of one family differ in size or seed alone; by default the name.
+        Size.
     """
 
     name: str
@@ -168,19 +159,18 @@ class Problem:
 
 @frozen(eq=False)
 class Answer:
-    """The outcome of one run of a method.
+    """Outcome of a run.
 
     Attributes
     ----------
     counts : Counts
     path : Path or None
-        None for methods that trace none.
     end : ndarray or None
-        The point found, (y, lam) for a path.
+        Point found; (y, lam) for a path.
     observed : mapping
-        Named scalars at the end, such as the natural residual.
+        Scalars at the end.
     failure, message : str
-        One of `Failure`, if the method itself knows; why.
+        One of `Failure`; reason.
     """
 
     counts: Counts
@@ -193,20 +183,17 @@ class Answer:
 
 @frozen(eq=False)
 class Method:
-    """A way to solve the problems of a study.
+    """A way to solve problems.
 
     Attributes
     ----------
     name : str
-        At its line.
     run : callable
-        (problem, rung) to an Answer. What it raises is caught and counts as a failure.
-    laddered : bool
-        Whether the ladder concerns it; otherwise it runs once a problem.
+        Maps (problem, rung) to an Answer; may raise.
+    laddered, outside : bool
+        Whether to run on every rung; whether others provide the method.
     applies : callable
-        A problem to whether the method is one for it; by default for all. Where it is none there is no row.
-    outside : bool
-        Whether it is another package's, or the textbooks': pictures have it in grey, beside what is compared with it.
+        Whether it solves a given problem.
     """
 
     name: str
@@ -217,18 +204,18 @@ class Method:
 
 
 def traced(name: str, **options: Unpack[Options]) -> Method:
-    """A method that traces the problem's path.
+    """Trace the problem's path.
 
     Parameters
     ----------
     name : str
     **options
-        As for `continuation.trace`: preset, predictor, corrector, controller, metric, budget.
+        For `continuation.trace`.
 
     Raises
     ------
     TypeError
-        For an unknown option, at once rather than in every run.
+        For an unknown option.
     """
     check_names(options)
     return Method(
@@ -237,7 +224,7 @@ def traced(name: str, **options: Unpack[Options]) -> Method:
 
 
 def answer_of(path: Path) -> Answer:
-    """A traced path as an answer."""
+    """Convert a path to an answer."""
     if not path.steps:
         return Answer(path.counts, path, message=path.message)
     return Answer(path.counts, path, path.endpoint.u, path.endpoint.observed, message=path.message)

@@ -1,4 +1,4 @@
-"""What every picture of a study is made of: panels, colours, ticks, and names beside what they name."""
+"""Panels, colours, ticks and names of study pictures."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ MARKERS = "os^DvPX<>p"
 GREYS = ("0.25", "0.45", "0.6")
 
 LINE = 0.165
-"""Inches from one line of small print to the next."""
+"""Line height of small print, inches."""
 
 Axes = Any
 Figure = Any
 
 
 def some(kind: str, wanted: Sequence[str] | None, known: Sequence[str]) -> Sequence[str]:
-    """The names that are wanted, all by default; an error that names the `kind` if one is not known."""
+    """Return wanted or all names; ValueError for unknown ones."""
     if wanted is None:
         return known
     if not wanted or not set(wanted) <= set(known):
@@ -32,7 +32,6 @@ def some(kind: str, wanted: Sequence[str] | None, known: Sequence[str]) -> Seque
 
 
 def _look(k: int, outside: bool) -> dict[str, Any]:
-    """Colour, marker and style of the k-th line."""
     colours = GREYS if outside else COLOURS
     return {
         "color": colours[k % len(colours)],
@@ -46,13 +45,13 @@ def _look(k: int, outside: bool) -> dict[str, Any]:
 
 
 def looks_of(results: Results, methods: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """By method: the k-th of ours, or of the others."""
+    """Styles by method; ours and outside methods count separately."""
     outside = {row.method: row.outside for row in results.rows}
     return {m: _look([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
 
 
 def panels(count: int, across: int, title: str, height: float = 3.0, width: float = 7.4) -> tuple[Figure, list[Axes]]:
-    """A figure as wide as a page, with `count` panels, `across` of them in a row."""
+    """A page-wide figure with `count` panels, `across` per row."""
     require_matplotlib()
     from matplotlib.figure import Figure as Canvas
 
@@ -67,14 +66,14 @@ def panels(count: int, across: int, title: str, height: float = 3.0, width: floa
 
 
 def tidy(axes: Axes) -> None:
-    """No frame, and a light grid at the decades."""
+    """Remove the frame; add a light grid."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
 
 
 def plain_ticks(axis: Any) -> None:
-    """Plain numbers at 1, 2 and 5 of each decade where the axis spans little; the decades otherwise."""
+    """Label 1, 2, 5 of each decade on short axes."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -85,7 +84,7 @@ def plain_ticks(axis: Any) -> None:
 
 
 def to_round_off(axes: Axes) -> None:
-    """Errors fall to the right, where round-off has a line if it is near."""
+    """Let errors fall to the right; draw round-off if near."""
     least, largest = axes.get_xlim()
     axes.set_xlim(max(largest, 1e3 * least), least)
     if least < 1e3 * ERROR_FLOOR:
@@ -95,19 +94,19 @@ def to_round_off(axes: Axes) -> None:
 
 
 def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None:
-    """Write names (x, y, text, colour) beside the panel, as near to their points as keeps them apart, and tie them."""
+    """Write names (x, y, text, colour) beside the panel, apart, and tie them to their points."""
     if not ends:
         return
     ends = sorted(ends, key=lambda end: end[1])
     to_panel = axes.transData + axes.transAxes.inverted()
     heights = np.array([to_panel.transform((x, y))[1] for x, y, _, _ in ends])
-    # Titles and labels leave three quarters of the figure to its panels.
+    # Panels take three quarters of the figure.
     rows = axes.get_subplotspec().get_gridspec().nrows
     apart = LINE / (0.75 * axes.figure.get_size_inches()[1] / rows) * np.arange(len(ends))
     places = isotonic_regression(heights - apart).x + apart
     places = np.minimum(np.maximum(places, apart), max(1.0, apart[-1]) - apart[::-1])
     for place, (x, y, text, colour) in zip(places, ends):
-        # From the middle of the name's left side.
+        # Tie the middle of the name's left side.
         tie = {"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 4.0, "relpos": (0, 0.5)}
         where: dict[str, Any] = {"textcoords": "axes fraction", "va": "center", "annotation_clip": False}
         axes.annotate(text, (x, y), (1.05, place), fontsize="small", color=colour, arrowprops=tie, **where)

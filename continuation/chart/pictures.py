@@ -1,8 +1,4 @@
-"""Three pictures of a study: lines of work, the fraction solved against work, and ours against the best of the others.
-
-Names are written at what they name, so that no legend is searched. Methods of the study are in colours, outside ones in
-grey.
-"""
+"""Pictures of a study: lines, profiles, dumbbells, with names instead of legends and outside methods in grey."""
 
 from __future__ import annotations
 
@@ -28,10 +24,10 @@ from continuation.chart.panels import (
 from continuation.chart.results import WORK, Results, Row, by_size, exponents, ratios
 
 Line = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
-"""A line of a panel: its name, how it looks, its points."""
+"""Name, style, points."""
 
 Rows = tuple[str, Sequence[Row], str]
-"""A line of a dumbbell: its name, its runs, and what is said of them."""
+"""Name, runs, remark."""
 
 
 def _names(value: str | Sequence[str]) -> tuple[str, ...]:
@@ -42,18 +38,15 @@ def _names(value: str | Sequence[str]) -> tuple[str, ...]:
 class Lines:
     """Work against an error or the size ``"n"``, both logarithmic: lower is better.
 
-    Against an error, which falls to the right and ends at round-off, there is a panel a problem and kind of work, and a
-    line a method; how many of its runs failed is said with its name. Against n there is a panel a family, and a line a
-    method with its exponent.
+    Errors fall to the right. A panel shows a problem and kind of work, with numbers of failures; for n, a family with
+    exponents.
 
     Attributes
     ----------
     across : str
-        One of the results' errors, or ``"n"``.
-    work : str or sequence of str
-        In `WORK`; several stand side by side.
-    problems, methods : sequence of str, optional
-        Which; all by default.
+        Error name, or ``"n"``.
+    work, problems, methods : sequence of str
+        Default: all problems and methods.
     """
 
     across: str
@@ -63,11 +56,11 @@ class Lines:
 
     @property
     def name(self) -> str:
-        """Of the file."""
+        """File name."""
         return "-".join((self.across, *self.work))
 
     def draw(self, results: Results) -> Figure:
-        """The matplotlib figure.
+        """Draw the figure.
 
         Parameters
         ----------
@@ -76,7 +69,7 @@ class Lines:
         Raises
         ------
         ImportError, ValueError
-            Without matplotlib; if the error, the work, a problem or a method is none of the results'.
+            Without matplotlib; for unknown names.
         """
         sizes = self.across == "n"
         for work in self.work:
@@ -130,9 +123,9 @@ class Lines:
 
 @frozen
 class Profile:
-    """The performance profile: the fraction of all runs that a method solves within a factor of the least work.
+    """Performance profile: fraction of runs that a method solves within a factor of the least work.
 
-    At the right edge, where each line has its name, is what it solves at all; on the left what it solves best.
+    Right edge: fraction solved at all; left edge: solved best.
 
     Dolan and More, Benchmarking optimization software with performance profiles, Math. Program. 91, 2002.
 
@@ -146,11 +139,11 @@ class Profile:
 
     @property
     def name(self) -> str:
-        """Of the file."""
+        """File name."""
         return f"profile-{self.work}"
 
     def draw(self, results: Results) -> Figure:
-        """The matplotlib figure.
+        """Draw the figure.
 
         Parameters
         ----------
@@ -164,13 +157,12 @@ class Profile:
         found = ratios(results, self.work)
         figure, (axes,) = panels(1, 1, results.title, height=max(3.2, LINE * len(found) + 1.2))
         everything = np.concatenate(list(found.values()))
-        # To the power of ten at which all that is ever solved is solved.
         widest = 10.0 ** max(1, np.ceil(np.log10(everything[np.isfinite(everything)].max(initial=1.0))))
         ends = []
         for method, look in looks_of(results, results.methods).items():
             values = np.sort(found[method])
             finite = values[np.isfinite(values)]
-            # A step at every ratio, from (1, fraction of best) on; the line goes on to the edge of the panel.
+            # Steps from (1, fraction best) to the edge.
             x = np.concatenate(([1.0], finite, [widest]))
             y = np.concatenate(([np.sum(finite <= 1.0)], np.arange(1, finite.size + 1), [finite.size])) / values.size
             axes.step(x, y, where="post", **{**look, "marker": ""})
@@ -190,22 +182,19 @@ ACCURACY = (
     ("1e-3", 1e-3, "#fdae6b"),
     ("more", math.inf, "#d94801"),
 )
-"""Classes of errors, of three digits each as a reader tells five colours apart, and their colours."""
+"""Error classes of three digits each (readers tell five colours apart), and colours."""
 
 
 @frozen
 class Dumbbell:
-    """A row a problem, from the best outside method to the study's first, sorted by their ratio; errors as colours.
+    """Best outside method against ours, one row per problem, sorted by ratio; colours show errors.
 
-    The best is the quickest that did not fail; where there is a ladder, its last rung counts. With `every`, all methods
-    have a row under the name of the problem, with a point a rung.
+    Best: quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
 
     Attributes
     ----------
     error, work : str
-        Names in the results' errors and `WORK`.
     problems : sequence of str, optional
-        Which; all by default.
     every : bool
     """
 
@@ -216,11 +205,11 @@ class Dumbbell:
 
     @property
     def name(self) -> str:
-        """Of the file."""
+        """File name."""
         return f"{'every' if self.every else 'dumbbell'}-{self.work}"
 
     def draw(self, results: Results) -> Figure:
-        """The matplotlib figure.
+        """Draw the figure.
 
         Parameters
         ----------
@@ -229,7 +218,7 @@ class Dumbbell:
         Raises
         ------
         ImportError, ValueError
-            Without matplotlib; if the error, the work or a problem is none of the results'.
+            Without matplotlib; for unknown names.
         """
         results.check(self.error, self.work)
         problems = some("problems", self.problems, results.problems)
@@ -243,13 +232,13 @@ class Dumbbell:
                 colour = next(colour for _, most, colour in ACCURACY if not row.errors[self.error] > most)
                 axes.plot(*point, "o" if row.outside else "D", color=colour, markersize=7, markeredgecolor="white")
             if len(rows) == 2 and not self.every:
-                # On the side where no line goes.
+                # On the free side.
                 side = -1 if placed[1] < placed[0] else 1
                 where = {"ha": "right" if side < 0 else "left", "va": "center", "fontsize": "x-small", "color": "0.35"}
                 axes.annotate(rows[1].method, placed[1], (7 * side, 0), textcoords="offset points", **where)
             axes.annotate(said, (1.01, -k), xycoords=("axes fraction", "data"), va="center", fontsize="small")
         axes.set_xscale("log")
-        # At either side a name of the best may stand: a letter takes nine thousandths of the panel.
+        # Margins for names: a letter takes .009 of the panel.
         letters = 0 if self.every else max((len(rows[-1].method) for _, rows, _ in lines if rows), default=0)
         beside = min(0.04 + 0.009 * letters, 0.4)
         axes.margins(x=beside / (1.0 - 2.0 * beside))
@@ -260,7 +249,6 @@ class Dumbbell:
         axes.set_xlabel(WORK[self.work].label)
         tidy(axes)
         axes.grid(axis="y", visible=False)
-        # Below the panel: which mark is whose, and what the colours mean.
         marks = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *((name, "s", c) for name, _, c in ACCURACY)]
         handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in marks]
         figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False, fontsize="small",
@@ -268,7 +256,7 @@ class Dumbbell:
         return figure
 
     def _best(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        """(problem, ours and the best outside one, who is quicker), sorted by their ratio."""
+        """(problem, ours and best outside, verdict), sorted by ratio."""
         found = []
         for problem in problems:
             rows = [row for row in results.of(problem=problem) if not row.failed]
@@ -284,7 +272,7 @@ class Dumbbell:
         return [line for _, line in sorted(found, key=lambda pair: pair[0])]
 
     def _all_methods(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        """A line without rows for each problem, then its methods, the quickest first."""
+        """Per problem a heading, then methods, quickest first."""
         lines: list[Rows] = []
         for problem in problems:
             whole = sorted(results.of(problem=problem), key=lambda row: (row.failed, row.work(self.work)))

@@ -1,4 +1,4 @@
-"""What a study found: one row a run, failures included, kept as JSON; and what is read off the rows."""
+"""Results of a study: one row per run, kept as JSON."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 
 ERROR_FLOOR = 1e-13
-"""Errors below this are round-off, and count as equal."""
+"""Errors below this are round-off and count as equal."""
 
 FITTED = 3
-"""Sizes that a fitted exponent needs at least; it is made to the larger half of them, since costs are asymptotic."""
+"""Least number of sizes for an exponent; costs are asymptotic, so the larger half is fitted."""
 
 
 @frozen
@@ -27,22 +27,18 @@ class Row:
 
     Attributes
     ----------
-    problem, family : str
-    n : int
-    method : str
+    problem, family, method : str
+    n, turns : int
+        Size; turning points found.
     outside : bool
-        Whether the method is another package's, or the textbooks'.
-    rung : float
-        The ladder's value; NaN where the ladder does not concern the method.
+        See `Method`.
+    rung, seconds : float
+        Ladder value or NaN; least processor time.
     failure, message : str
-        One of `Failure`; why.
+        See `Answer`.
     errors : mapping of str to float
-        Of the answer, by name; NaN where one does not apply.
+        NaN if not applicable.
     counts : Counts
-    turns : int
-        Turning points found.
-    seconds : float
-        Processor time, the least of the repeated runs.
     """
 
     problem: str
@@ -60,29 +56,28 @@ class Row:
 
     @property
     def failed(self) -> bool:
-        """Whether it has a failure."""
+        """Whether the run failed."""
         return bool(self.failure)
 
     def work(self, name: str) -> float:
-        """One of `WORK` by name, not below its least.
+        """Work, at least its least value.
 
         Parameters
         ----------
         name : str
-            One of `WORK`.
+            From `WORK`.
         """
         measure = WORK[name]
         return max(measure.of(self), measure.least)
 
     def placed(self, error: str, work: str) -> tuple[float, float] | None:
-        """(error, work), the error to three digits and not below `ERROR_FLOOR`; None if it failed or has no error.
+        """(error, work), or None for a failure or without error.
 
-        Errors that differ in the fourth digit say the same: neither run is better for it.
+        Errors have three digits, since a fourth makes no run better, and are at least `ERROR_FLOOR`.
 
         Parameters
         ----------
         error, work : str
-            Names in `errors` and `WORK`.
         """
         value = self.errors[error]
         if self.failed or not math.isfinite(value):
@@ -92,10 +87,7 @@ class Row:
 
 @frozen
 class Work:
-    """A measure of work: what it is, how it is read off a row, and what a run costs at least.
-
-    A run that needs no factorisation at all counts as one, so that logarithms and ratios exist.
-    """
+    """A measure of work; `least` is positive for logarithms and ratios."""
 
     label: str
     of: Callable[[Row], float]
@@ -109,22 +101,21 @@ WORK: Mapping[str, Work] = {
     "steps": Work("accepted steps", lambda row: float(row.counts.accepted)),
     "seconds": Work("processor time (s)", lambda row: row.seconds, 1e-9),
 }
-"""By name."""
 
 
 @frozen
 class Results:
-    """The rows of a study, with what its tables and figures need to know of it.
+    """Rows of a study.
 
     Attributes
     ----------
     study, title, ladder : str
     errors : mapping of str to str
-        Name to axis label, the most telling first.
+        Axis labels, most important first.
     work : sequence of str
     rows : sequence of Row
     provenance : mapping of str to str
-        Versions, machine, BLAS threads.
+        Versions, machine, threads.
     """
 
     study: str
@@ -142,27 +133,27 @@ class Results:
 
     @property
     def families(self) -> list[str]:
-        """As for the problems."""
+        """Names in order of appearance."""
         return list(dict.fromkeys(row.family for row in self.rows))
 
     @property
     def methods(self) -> list[str]:
-        """As for the problems."""
+        """Names in order of appearance."""
         return list(dict.fromkeys(row.method for row in self.rows))
 
     def of(self, **where: object) -> Sequence[Row]:
-        """The rows with the given values.
+        """Select rows.
 
         Parameters
         ----------
         **where
-            By the names of attributes of `Row`; None for any.
+            Values of `Row` attributes; None matches any.
         """
         given = {name: value for name, value in where.items() if value is not None}
         return [row for row in self.rows if all(getattr(row, name) == value for name, value in given.items())]
 
     def check(self, error: str | None = None, work: str | None = None) -> None:
-        """Refuse an error or a work that the results do not have, by a ValueError that names what there is.
+        """Raise ValueError for an unknown error or work.
 
         Parameters
         ----------
@@ -174,7 +165,7 @@ class Results:
 
 
 def write(results: Results, file: str | PathLike[str]) -> File:
-    """Write results as one JSON object, which `read` reads; its ``rows`` make a table of pandas.
+    """Write results as a JSON object; pandas reads its ``rows``.
 
     Parameters
     ----------
@@ -189,17 +180,16 @@ def write(results: Results, file: str | PathLike[str]) -> File:
 
 
 def read(file: str | PathLike[str]) -> Results:
-    """Read the results of a study.
+    """Read results.
 
     Parameters
     ----------
     file : path
-        Written by `write`.
 
     Raises
     ------
     ValueError
-        If the file holds something else.
+        If `write` did not write it.
     """
     try:
         kept = json.loads(File(file).read_text(encoding="utf-8"))
@@ -209,24 +199,18 @@ def read(file: str | PathLike[str]) -> Results:
         raise ValueError(f"file: expected results that `write` wrote, found {file} ({error})") from error
 
 
-# -- what is read off them ----------------------------------------------------------------------------------------
-
-
 def excess(results: Results, error: str, work: str) -> Array:
-    """For each row, how many times the work of the best run of its problem that is at least as accurate.
-
-    It is 1 where no run is better, and infinite for failures.
+    """Each row's work over the least work of equally or more accurate runs of its problem; infinite for failures.
 
     Parameters
     ----------
     results : Results
     error, work : str
-        Names in `results.errors` and `WORK`.
 
     Raises
     ------
     ValueError
-        If the error or the work is none of the results'.
+        For unknown names.
     """
     results.check(error, work)
     placed = [(row.problem, row.placed(error, work)) for row in results.rows]
@@ -238,17 +222,15 @@ def excess(results: Results, error: str, work: str) -> Array:
 
 
 def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
-    """For each method, a number a problem and rung: its work over the least of all methods; infinite where it failed.
+    """Work over the least of all methods, per method, problem and rung; infinite for failures.
 
-    Methods without a rung take part in each.
+    Methods without rung count for every rung.
 
     Parameters
     ----------
     results : Results
-    work : str
-        One of `WORK`.
-    family : str, optional
-        Only its problems; all by default.
+    work, family : str
+        Default: all families.
     """
     results.check(work=work)
     rows = results.of(family=family)
@@ -261,33 +243,30 @@ def ratios(results: Results, work: str, family: str | None = None) -> dict[str, 
     cases = list(dict.fromkeys((problem, rung) for problem, rung, _ in cost))
     table = np.array([[cost.get((*case, method), math.inf) for case in cases] for method in results.methods])
     least = table.min(axis=0)
-    # Where all failed the least is infinite, and the quotient is to be.
+    # Avoid inf / inf where all failed.
     least[np.isinf(least)] = 1.0
     return dict(zip(results.methods, table / least))
 
 
 def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
-    """(n, mean work) of the runs that succeeded, by n."""
+    """(n, mean work of successes), by n."""
     rows = [row for row in results.of(family=family, method=method) if not row.failed]
     sizes = sorted({row.n for row in rows})
     return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
 
 
 def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
-    """The exponent p of work ~ n^p for each (family, method), by least squares on logarithms; NaN below `FITTED` sizes.
-
-    A size with several runs counts with their mean; failures are left out.
+    """Exponent p of work ~ n^p by (family, method), least squares on logarithms of means; NaN below `FITTED` sizes.
 
     Parameters
     ----------
     results : Results
     work : str
-        One of `WORK`.
 
     Raises
     ------
     ValueError
-        If the work is none of the results'.
+        For an unknown work.
     """
     results.check(work=work)
     found = {}

@@ -1,4 +1,4 @@
-"""Running a study: every problem, method and rung, judged once, timed several times, and written to files."""
+"""Run, judge, time and save studies."""
 
 from __future__ import annotations
 
@@ -18,22 +18,21 @@ from continuation.path import Path
 from continuation.status import Status
 
 Watch = Callable[[int, int, Row], None]
-"""Called after every run: (runs done, runs in all, row)."""
+"""Called after each run with (done, total, row)."""
 
 
 @one_thread
 def run(study: Study, watch: Watch | None = None) -> Results:
     """Run a study.
 
-    The first run of a kind warms up, is judged and gives the counts, which are the same for all runs; the time, of the
-    processor, is the shortest of the runs after it. BLAS is on one thread unless the environment says how many. What a
-    method raises becomes a row with the failure `exception`.
+    The first run warms up and is judged; the time is the least processor time of later ones, with one BLAS thread
+    unless the environment says otherwise. Exceptions become failures.
 
     Parameters
     ----------
     study : Study
     watch : callable, optional
-        Called with every row.
+        See `Watch`.
     """
     cases = [
         (problem, method, rung)
@@ -60,7 +59,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
 
 
 def _spent(rows: list[Row], problem: Problem, method: Method) -> Row | None:
-    """A run of the method that was out of budget on this problem or a smaller one of its family."""
+    """Budget failure on this or a smaller problem of the family."""
     beyond = (
         row
         for row in rows
@@ -97,21 +96,18 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
 
 
 def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]:
-    # Processor time of this process, BLAS on one thread: independent of other load.
+    # Processor time with one BLAS thread is independent of other load.
     begin = time.process_time()
     try:
         answer = method.run(problem, rung)
-    except Exception as error:  # An exception of one method is a failure in the results; the others still run.
+    except Exception as error:  # Other methods still run.
         sentence = f"{type(error).__name__}: {error}"
         answer = Answer(counts=Counts(), failure=Failure.EXCEPTION, message=sentence)
     return answer, time.process_time() - begin
 
 
 def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
-    """(failure, message) of an answer; the failure is empty where none is seen.
-
-    A path with the right end but the wrong number of turning points has jumped, or left out a loop.
-    """
+    """(failure, message); a right end with wrong turning points means a jump or a missed loop."""
     if answer.failure:
         return answer.failure, answer.message
     if answer.path is not None and (found := _of_path(problem, answer.path)) is not None:
@@ -138,16 +134,16 @@ def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
 
 
 def tables(study: Study, results: Results) -> dict[str, Table]:
-    """The summary by method, the study's own tables and the runs that failed, by title."""
+    """Tables by title: summary, the study's own, failures."""
     own = {title: make(results) for title, make in study.tables.items()}
     failed = runs(results, failures_only=True)
     return {"Methods": summary(results), **own, **({"Failures": failed} if failed.rows else {})}
 
 
 def report(study: Study, results: Results, folder: File) -> list[File]:
-    """Write ``NAME.json`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
+    """Write ``NAME.json`` and ``NAME-FIGURE.png`` to an existing folder; return the files.
 
-    The folder exists. Returned are the files; without matplotlib there are no figures among them.
+    They replace existing ones; without matplotlib there are no figures.
     """
     files = [write(results, folder / f"{study.name}.json")]
     for figure in study.figures:

@@ -1,4 +1,4 @@
-"""A study: methods on problems at the values of one setting, with the errors to measure and the pictures to draw."""
+"""Studies: methods on problems along a ladder."""
 
 from __future__ import annotations
 
@@ -23,24 +23,20 @@ from continuation.point.linearization import linearize
 from continuation.tolerance import Tolerance
 
 Size = Literal["smoke", "moderate", "full"]
-"""Of a ready study, which is a function (size, compare) to studies: for tests, for a few minutes on two cores, for
-reports; `compare` asks for outside solvers where they are installed."""
-
-# -- errors -------------------------------------------------------------------------------------------------------
+"""Size of a ready study: for tests, for minutes on two cores, for reports. A ready study maps (size, compare) to
+studies; `compare` adds installed outside solvers."""
 
 
 @frozen
 class Error:
-    """A measure of the error of an answer; all of them are relative.
+    """A relative error measure.
 
     Attributes
     ----------
-    name : str
-        A column's.
-    label : str
-        An axis's.
+    name, label : str
+        Of a column; of an axis.
     measure : callable
-        (problem, answer) to a number >= 0, or NaN where it does not apply.
+        Maps (problem, answer) to a number >= 0, or NaN.
     """
 
     name: str
@@ -49,7 +45,7 @@ class Error:
 
 
 def distance(found: Array, true: Array) -> float:
-    """The largest difference of components, relative to 1 plus the largest true one."""
+    """Largest component difference over 1 + largest true component."""
     return float(np.abs(found - true).max() / (1.0 + np.abs(true).max()))
 
 
@@ -66,14 +62,11 @@ def _turning_points(problem: Problem, answer: Answer) -> float:
 
 
 BETWEEN = (0.25, 0.5, 0.75)
-"""Where in each step the dense output is compared with the curve."""
+"""Step fractions at which dense output is compared."""
 
 
 def _curve_distance(problem: Problem, answer: Answer) -> float:
-    """The largest distance of the points, and of the dense output between them, from the nearest points of the curve.
-
-    These are found along the normal, by Newton's method to round-off; NaN where that fails.
-    """
+    """Largest distance of dense output from the curve, by Newton along the normal, else NaN."""
     path = answer.path
     if path is None or len(path) < 2:
         return math.nan
@@ -97,14 +90,14 @@ def _curve_distance(problem: Problem, answer: Answer) -> float:
 
 
 def observed(name: str, label: str) -> Error:
-    """A scalar that the homotopy (its `observe`) or the method reports at the end and that is zero at a solution.
+    """An observed scalar that vanishes at solutions, as error.
 
     Parameters
     ----------
     name : str
-        The key in `Answer.observed`; the error is NaN where nothing of that name is reported.
+        Key in `Answer.observed`; NaN if absent.
     label : str
-        Of an axis.
+        For an axis.
     """
     return Error(name, label, lambda problem, answer: float(answer.observed.get(name, math.nan)))
 
@@ -112,8 +105,6 @@ def observed(name: str, label: str) -> Error:
 END_POINT = Error("end_point", "relative error of the end point", _end_point)
 TURNING_POINTS = Error("turning_points", "relative error of the turning points", _turning_points)
 CURVE_DISTANCE = Error("curve_distance", "relative distance of the dense output from the curve", _curve_distance)
-
-# -- the study ----------------------------------------------------------------------------------------------------
 
 
 def _named_once(instance: Any, attribute: Attribute[Any], value: Any) -> None:
@@ -133,36 +124,29 @@ class Study:
 
     Parameters
     ----------
-    name : str
-        Of its files.
-    problems : sequence of Problem
-    methods : sequence of Method
-        See `traced` for the usual ones.
-    ladder : sequence of Rung
-        See `tolerances`, `longest_steps`; by default tolerances from 1e-4 to 1e-10.
-    errors : sequence of Error
-        The first one counts where a table has room for one.
-    work : sequence of str
-        Names in `WORK`; the first one counts where there is room for one.
+    name, title : str
+        For files; for figures.
+    problems, methods, ladder : sequence of Problem, Method, Rung
+        Default ladder: tolerances 1e-4 to 1e-10.
+    errors, work : sequence of Error, of str
+        Most important first; work from `WORK`.
     figures : sequence
-        Of `Lines`, `Profile`, `Dumbbell`: what ``continuation chart`` draws.
+        `Lines`, `Profile`, `Dumbbell`.
     tables : mapping of str to callable
-        By title, of the results: what ``continuation chart`` prints beside the summary by method.
-    title : str
+        Functions of the results, by title.
     repeats : int
-        Timed runs after the first, which warms up and is judged; the shortest counts.
+        Timed runs after the first.
     patience : float
-        Seconds: a run that took longer than this, or failed, is not repeated, its own time counts.
+        Seconds; slower or failed runs are not repeated.
     give_up : bool
-        Whether a method that ran out of budget is spared the further rungs of that problem and the larger problems of
-        its family: they are failures of the same kind, without having been run.
+        Whether running out of budget also fails, unrun, later rungs and larger problems of the family.
     notes : sequence of str
-        Sentences for the reader of the results, kept with them: outside solvers that are not installed, say.
+        Remarks kept with the results.
 
     Raises
     ------
     ValueError
-        If there is no problem, method or error, two of a kind have the same name, or a kind of work is unknown.
+        For missing or equally named problems, methods, errors, or unknown work.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Results as tables: text and Markdown."""
+"""Tables of results, as text and Markdown."""
 
 from __future__ import annotations
 
@@ -17,26 +17,25 @@ Cell = str | int | float
 
 @frozen
 class Table:
-    """Rows of cells under a head.
+    """Rows under a head.
 
     Attributes
     ----------
     head : sequence of str
     rows : sequence of sequences
-        Of text and numbers.
     """
 
     head: Sequence[str]
     rows: Sequence[Sequence[Cell]]
 
     def text(self) -> str:
-        """Columns aligned, numbers to the right."""
+        """Aligned text, numbers to the right."""
         lines = self._aligned()
         rule = ["-" * len(cell) for cell in lines[0]]
         return "\n".join("  ".join(line).rstrip() for line in (lines[0], rule, *lines[1:]))
 
     def markdown(self) -> str:
-        """A table of GitHub's kind."""
+        """GitHub Markdown."""
         lines = self._aligned()
         rule = [("-" * (len(c) - 1) + ":") if right else "-" * len(c) for c, right in zip(lines[0], self._numeric())]
         return "\n".join(f"| {' | '.join(line)} |" for line in (lines[0], rule, *lines[1:]))
@@ -62,13 +61,12 @@ def _shown(cell: Cell) -> str:
 
 
 def runs(results: Results, failures_only: bool = False) -> Table:
-    """One line a run, failures included; a star where no run is better in the first error and the first work.
+    """One line per run, starred on the front of first error and work.
 
     Parameters
     ----------
     results : Results
     failures_only : bool
-        Only the runs that failed.
     """
     far = excess(results, next(iter(results.errors)), results.work[0])
     counts = [name for name in Counts().as_dict() if name != "jacobians"]
@@ -83,10 +81,7 @@ def runs(results: Results, failures_only: bool = False) -> Table:
 
 
 def summary(results: Results) -> Table:
-    """One line a method: runs that succeeded, and how far from the best ones they are in each kind of work.
-
-    The excess of a run is its work over that of the best run of the same problem that is at least as accurate. Shown
-    are the median and the largest over the runs that succeeded.
+    """One line per method: successes; median and worst `excess` of successful runs.
 
     Parameters
     ----------
@@ -110,13 +105,12 @@ def summary(results: Results) -> Table:
 
 
 def profile(results: Results, work: str = "factorizations") -> Table:
-    """One line a family and method: the fraction solved at all, and within 1, 2 and 10 times the best work.
+    """Fractions solved, and within 1, 2, 10 times the best work, per family and method.
 
     Parameters
     ----------
     results : Results
     work : str
-        One of `WORK`.
     """
     lines: list[tuple[Cell, ...]] = [
         (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
@@ -128,13 +122,12 @@ def profile(results: Results, work: str = "factorizations") -> Table:
 
 
 def scaling(results: Results, work: str = "factorizations") -> Table:
-    """One line a family and method: the work at each size, and the exponent.
+    """Work by size, and exponent, per family and method.
 
     Parameters
     ----------
     results : Results
     work : str
-        One of `WORK`.
     """
     sizes = sorted({row.n for row in results.rows})
     lines: list[tuple[Cell, ...]] = []

@@ -1,8 +1,6 @@
-"""Pictures of a path with matplotlib, which is imported only when one is drawn.
+"""Pictures of paths; matplotlib is imported on drawing.
 
-A picture is a line, its events, and names for the axes: what the line is against (`across`), which number of each point
-is drawn, and which parts are solid. Colours are Okabe and Ito's, which colour-blind readers tell apart; line styles
-repeat the distinction.
+Okabe and Ito's colours suit colour-blind readers; line styles repeat them.
 """
 
 from continuation.plot.along import plot_components, plot_heat, plot_profiles, plot_steps

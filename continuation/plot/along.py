@@ -1,4 +1,4 @@
-"""Pictures of one path: its unknowns, its profiles, a map of colours, its steps."""
+"""Pictures of one path: components, profiles, heat map, steps."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from continuation.plot.drawing import (
 from continuation.plot.stretches import by_stability, draw_line
 
 MOST_PROFILES = 6
-"""Lines of one panel that are told apart at a glance."""
+"""Lines of a panel that a reader distinguishes at a glance."""
 
 
 def plot_components(
@@ -37,31 +37,28 @@ def plot_components(
     components: Iterable[int] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Draw components of y against the parameter or the arclength, with the events of the path.
+    """Draw components of y against the parameter or arclength, with events.
 
-    An arrow on each curve shows where the path goes. Where the path knows its stability (`continuation.Stability`), it
-    is solid where stable, and dashed elsewhere. Of events of one name the first is named, with their number.
+    Arrows show the direction. If the path stored `continuation.Stability`, stable parts are solid, others dashed.
 
     Parameters
     ----------
     path : Path
-        Or a path of an archive.
+        Also from an archive.
     axes : matplotlib Axes, optional
-        Drawn into; a new figure otherwise.
+        Default: new figure.
     against : {"lam", "arclength"}
     names : sequence of str, optional
-        One a component drawn; the homotopy's by default, or ``y_0``, ``y_1``, ..., counted as in `y`.
+        One per component; default: the homotopy's, or ``y_0``, ``y_1``, ....
     components : iterable of int, optional
-        Which components; by default all of them, or twelve at even distances where there are more.
+        Default: all, or twelve evenly spaced.
     legend : bool
-        Whether to name curves and events, and to draw the arrows.
+        Whether to name curves and events and draw arrows.
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If `against` is neither, a component does not exist, the names are too few, or the path is empty.
+    ImportError, ValueError
+        Without matplotlib; for invalid arguments or an empty path.
     """
     check_path(path)
     drawing = Drawing.of(path)
@@ -96,17 +93,16 @@ def plot_components(
 
 
 def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PROFILES, x: Array | None = None) -> Axes:
-    """Draw all unknowns as one line, as a function of where they are, at a few points along the path.
+    """Draw all unknowns over position at a few points of the path.
 
     Parameters
     ----------
     path : Path
-        Of a discretised equation.
     axes : matplotlib Axes, optional
     profiles : int, default 6
-        At so many points, evenly spaced in arclength, the ends among them.
+        Evenly spaced in arclength, ends included.
     x : array_like, shape (N,), optional
-        Where the unknowns are; their numbers by default.
+        Positions; default: numbers of the unknowns.
 
     Returns
     -------
@@ -114,10 +110,8 @@ def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PR
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the path is empty, or there are not as many places as unknowns.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or wrong size of x.
     """
     check_path(path)
     places = _places(path, x)
@@ -132,14 +126,14 @@ def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PR
 
 
 def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> Axes:
-    """Draw all unknowns along the path as a map of colours: arclength to the right, the unknowns upwards.
+    """Draw all unknowns as a heat map over arclength.
 
     Parameters
     ----------
     path : Path
     axes : matplotlib Axes, optional
     x : array_like, shape (N,), optional
-        Where the unknowns are; their numbers by default.
+        Positions; default: numbers of the unknowns.
 
     Returns
     -------
@@ -147,10 +141,8 @@ def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> 
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the path is empty, or there are not as many places as unknowns.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or wrong size of x.
     """
     check_path(path)
     places = _places(path, x)
@@ -174,7 +166,7 @@ def _places(path: Drawn, x: Array | None) -> Array:
 
 
 def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
-    """Draw how far apart the points are, on a logarithmic scale, against arclength: where the controller was careful.
+    """Draw step lengths (logarithmic) against arclength.
 
     Parameters
     ----------
@@ -183,16 +175,14 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the path is empty.
+    ImportError, ValueError
+        Without matplotlib; for an empty path.
     """
     check_path(path)
     axes = axes_or_new(axes)
     s = path.arclength
     lengths = np.diff(s)
-    # An event stored with the points may lie on one of them; a length of zero has no logarithm.
+    # An event on a point gives length zero.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
     for event in path.events:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)

@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: one number of a path, or of several, against the parameter, with what lies on it marked."""
+"""Bifurcation diagrams."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from continuation.plot.drawing import (
 from continuation.plot.stretches import Stretch, by_stability, draw_line, stretches
 
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
-"""A component, the name of an unknown or of an observed scalar, a function of (y, lam), or the maximum norm."""
+"""Component, name, function of (y, lam), or None (maximum norm)."""
 
 Stable: TypeAlias = str | Callable[[Array, float], bool] | None
 
@@ -42,25 +42,22 @@ def plot_bifurcation(
     names: Sequence[str] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Draw one number of y against the parameter, turning points, branch points and other events marked and named.
+    """Draw one number of y against the parameter, with named events.
 
     Parameters
     ----------
     path : Path or sequence of Path
-        Several branches are drawn in several colours.
     axes : matplotlib Axes, optional
     component : int, optional
-        Of y; the same as `value`.
+        Same as `value`.
     value : int, str or callable, optional
-        A component, the name of an unknown or of a scalar that the homotopy observes, or a function of (y, lam); by
-        default the maximum norm of y.
+        A component, the name of an unknown or observed scalar, or a function of (y, lam); default: maximum norm.
     against : {"lam", "arclength"}
     stable : str or callable, optional
-        Which part is stable, drawn solid, the rest dashed: the name of an observed scalar that is positive there, or a
-        function of (y, lam) that is true there. By default what `continuation.Stability` stored with the path, if it
-        was among the observers.
+        Observed scalar positive, or function of (y, lam) true, on stable (solid) parts; default: from
+        `continuation.Stability`.
     names : sequence of str, optional
-        One a path, for the legend.
+        One per path.
     legend : bool
 
     Returns
@@ -69,10 +66,8 @@ def plot_bifurcation(
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If a path is empty, a component does not exist, or nothing is called as `value` or `stable` says.
+    ImportError, ValueError
+        Without matplotlib; for an empty path or unknown `component`, `value`, `stable`.
     """
     paths = list(path) if isinstance(path, Iterable) else [path]
     if not paths:
@@ -99,22 +94,19 @@ def plot_bifurcation(
 
 
 def values_along(path: Drawn, drawing: Drawing, value: Value) -> Array:
-    """A number of each point that is drawn."""
+    """The drawn number at each point."""
     measured = _measured(path, value)
     return _observed(path, drawing, str(value)) if measured is None else np.array([*map(measured, drawing.u)])
 
 
 def at_event(event: Any, path: Drawn, value: Value) -> float:
-    """The number that is drawn of an event.
-
-    `path`: On which it lies.
-    """
+    """The drawn number at an event of `path`."""
     measured = _measured(path, value)
     return float(event.observed.get(value, np.nan)) if measured is None else measured(event.u)
 
 
 def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
-    """The number of a point (y, lam); None for a scalar that was observed along the path."""
+    """Function of (y, lam), or None for an observed scalar."""
     if value is None:
         return lambda u: float(height(u[:-1]))
     if not isinstance(value, int | str):
@@ -132,7 +124,6 @@ def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
 
 
 def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
-    """An observed scalar between the points."""
     known = [(step.arclength, step.observed[name]) for step in path.steps]
     known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
     s, values = np.array(known).T

@@ -1,7 +1,4 @@
-"""What every picture of a path is made of: the curve, its marks, its axes. matplotlib is imported when one is drawn.
-
-Colours are Okabe and Ito's, which colour-blind readers tell apart; line styles repeat the distinction.
-"""
+"""Parts of every path picture: curve, marks, axes."""
 
 from __future__ import annotations
 
@@ -18,10 +15,10 @@ from continuation.status import Kind
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":")
 TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
-"""How a turning point is marked, above every line."""
+"""Mark of turning points."""
 
 KINK = {**TURN, "marker": "D", "markersize": 5.5}
-"""How a kink is marked."""
+"""Mark of kinks."""
 
 MARKS = {
     Kind.TURNING_POINT: {},
@@ -30,36 +27,36 @@ MARKS = {
     Kind.KINK: {"marker": "D", "markersize": 5.5},
     Kind.HOPF: {"marker": "*", "markersize": 10, "markerfacecolor": "black"},
 }
-"""Kinds that have a sign of their own: a circle, a square, an open square, an open diamond, a star; ..."""
+"""Marks by kind: circle, filled square, square, diamond, star."""
 
 OTHER = {"marker": "D", "markersize": 5, "markerfacecolor": "0.6"}
-"""... any other event, as a value that was asked for, has a grey diamond, and its own name."""
+"""Mark of other events, which show their name."""
 
 SMOOTHNESS = 12
-"""Points of the curve for every step, ..."""
+"""Curve points per step ..."""
 
 SAMPLES = 600
-"""... but no more than this in all: a path of many steps is smooth without."""
+"""... but at most this many: long paths look smooth without."""
 
 MOST_COMPONENTS = 12
-"""More curves than this cannot be told apart in one picture."""
+"""Most curves that a reader can tell apart."""
 
 Axes = Any
 
 Drawn: TypeAlias = Any
-"""A path with its steps, events and labels: `continuation.Path`, whose `plot` is what imports this."""
+"""A `continuation.Path`."""
 
 
 @frozen(eq=False)
 class Drawing:
-    """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
+    """Dense output if stored, else cubics through points."""
 
     s: Array
     u: Array
 
     @classmethod
     def of(cls, path: Drawn) -> Drawing:
-        """Sample the curve, between its points too."""
+        """Sample the curve."""
         if len(path) < 2:
             return cls(path.arclength, path.u)
         if all(step.segment is not None for step in path.steps[1:]):
@@ -68,15 +65,15 @@ class Drawing:
 
     @classmethod
     def _along(cls, steps: Sequence[Any]) -> Drawing:
-        """By the segments' own parameter; arclength within a segment by chords, which no picture shows to be wrong.
+        """Sample segments, with arclength by chords, whose error no picture shows.
 
-        The path at given arclengths (`Path.__call__`) integrates its speed for each: 0.5 s of the 4 s of the demo.
+        `Path.__call__` integrates instead: 0.5 s of the demo's 4 s.
         """
         inner = np.linspace(0.0, 1.0, _count(len(steps)), endpoint=False)[1:]
         s, u = [], []
         for before, after in pairwise(steps):
             assert after.segment is not None
-            # The segment's own beginning: the step before may be in other unknowns (`continuation.renewal`).
+            # The previous step may have other unknowns (`continuation.renewal`).
             points = np.array([after.segment.at(0.0), *map(after.segment.at, inner), after.u])
             weights = np.ones(points.shape[1]) if after.weights is None else after.weights
             chords = np.sqrt(np.diff(points, axis=0) ** 2 @ weights)
@@ -87,7 +84,6 @@ class Drawing:
 
     @classmethod
     def _through(cls, path: Drawn) -> Drawing:
-        """Through points without tangents and turning points, by `between`."""
         points = [(s.arclength, *s.u) for s in path.steps] + [(t.arclength, *t.u) for t in path.turning_points]
         s, u = (part for part in np.split(np.array(points), [1], axis=1))
         knots = path.arclength
@@ -101,10 +97,7 @@ class Drawing:
 
 
 def interpolated(s: Array, values: Array, wanted: Array) -> Array:
-    """Values given at some arclengths, elsewhere: by monotone cubics, which have no extremum that the points have not.
-
-    `s`: In any order; of two that are one, the first counts.
-    """
+    """Interpolate by monotone cubics, which add no extrema; `s` in any order, the first of equal ones counts."""
     from scipy.interpolate import PchipInterpolator
 
     order = np.argsort(s, kind="stable")
@@ -115,12 +108,12 @@ def interpolated(s: Array, values: Array, wanted: Array) -> Array:
 
 
 def _count(points: int) -> int:
-    """How many points to draw for a step of a path of so many points."""
+    """Drawn points per step."""
     return int(np.clip(SAMPLES // (points - 1), 1, SMOOTHNESS))
 
 
 def require_matplotlib() -> None:
-    """Raise ImportError, with what to install, unless matplotlib can be imported."""
+    """Raise ImportError with advice unless matplotlib imports."""
     try:
         import matplotlib.pyplot  # noqa: F401
     except ImportError as error:
@@ -128,20 +121,19 @@ def require_matplotlib() -> None:
 
 
 AGAINST = ("lam", "arclength")
-"""What a picture may run along."""
 
 
 def check_path(path: Drawn) -> None:
-    """Raise ValueError for a path without points."""
+    """Raise ValueError for an empty path."""
     if len(path) == 0:
         raise ValueError("path: expected at least one point, found none")
 
 
 def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
-    """The components asked for, which must exist, or twelve at even distances."""
+    """Requested components, or twelve evenly spaced."""
     n = y.shape[1]
     if components is None:
-        # An archive of paths with different numbers of unknowns fills the shorter ones up with NaN.
+        # Archives fill shorter paths with NaN.
         filled = np.flatnonzero(np.isfinite(y).any(axis=0))
         if len(filled) > MOST_COMPONENTS:
             filled = filled[np.linspace(0, len(filled) - 1, MOST_COMPONENTS).round().astype(int)]
@@ -154,13 +146,13 @@ def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
 
 
 def height(y: Array) -> Array:
-    """The largest absolute value along the last axis, NaN apart."""
+    """Maximum norm on the last axis, ignoring NaN."""
     largest: Array = np.fmax.reduce(np.abs(y), axis=-1)
     return largest
 
 
 def axes_or_new(axes: Axes | None) -> Axes:
-    """The axes, or those of a new figure."""
+    """The axes, or new ones."""
     if axes is not None:
         return axes
     require_matplotlib()
@@ -170,19 +162,19 @@ def axes_or_new(axes: Axes | None) -> Axes:
 
 
 def line_style(k: int) -> dict[str, Any]:
-    """Colour and dashes of the k-th line."""
+    """Colour and dashes of line k."""
     return {"color": COLOURS[k % len(COLOURS)], "linestyle": STYLES[k % len(STYLES)], "linewidth": 1.6}
 
 
 def tidy(axes: Axes) -> Axes:
-    """Take away what no reader needs."""
+    """Remove the frame, narrow the margins."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.margins(x=0.03)
     return axes
 
 
 def across(against: str, drawing: Drawing) -> Array:
-    """The horizontal coordinate of a drawing."""
+    """Horizontal coordinates of a drawing."""
     if against not in AGAINST:
         raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
     values: Array = drawing.u[:, -1] if against == "lam" else drawing.s
@@ -190,7 +182,7 @@ def across(against: str, drawing: Drawing) -> Array:
 
 
 def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
-    """Name the horizontal axis, and let it run as the paths do: from left to right where the parameter falls."""
+    """Label the horizontal axis; invert it for falling parameters."""
     if against == "arclength":
         axes.set_xlabel("arclength $s$")
         return
@@ -201,23 +193,23 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
 
 
 def sign(event: Any) -> dict[str, Any]:
-    """How an event is marked."""
+    """Mark of an event."""
     return {**TURN, **MARKS.get(event.kind, OTHER)}
 
 
 def called(event: Any) -> str:
-    """What an event is called in a picture: its kind, or its own name where that says more."""
+    """An event's kind, or its own name if that says more."""
     known = event.kind in MARKS and event.kind is not Kind.HOPF
     return str(event.kind.flag.replace("_", " ") if known else event.name)
 
 
 def name_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
-    """Write the name of the first event of each name beside it, with how many there are."""
+    """Name the first event of each name, with their number."""
     names = [called(event) for event, _, _ in places]
     for name in dict.fromkeys(names):
         _, x, y = places[names.index(name)]
         text = f"{name} ({names.count(name)})" if names.count(name) > 1 else name
-        # Towards the middle of the panel, where there is room.
+        # Towards the middle of the panel.
         right, up = (axes.transData + axes.transAxes.inverted()).transform((x, np.max(y)))
         looks = {"fontsize": "x-small", "ha": "left" if right < 0.6 else "right", "va": "bottom" if up < 0.9 else "top"}
         offset = (6 if right < 0.6 else -6, 4 if up < 0.9 else -4)
@@ -226,7 +218,7 @@ def name_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
 
 
 def arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
-    """An arrow head on a line, at a point where it moves, two fifths of its points from its beginning."""
+    """Draw an arrow head two fifths along a line's moving points."""
     moves = np.flatnonzero(np.isfinite(y[1:]) & np.isfinite(y[:-1]) & ((np.diff(x) != 0.0) | (np.diff(y) != 0.0)))
     if moves.size:
         k = moves[2 * moves.size // 5]
@@ -235,7 +227,7 @@ def arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
 
 
 def mark_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
-    """Mark events at their coordinates, each kind in its own way, named once in the legend."""
+    """Mark events, each name once in the legend."""
     named = set(axes.get_legend_handles_labels()[1])
     for event, x, y in places:
         heights, name = np.atleast_1d(y), called(event)

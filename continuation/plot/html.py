@@ -1,4 +1,4 @@
-"""Small tables for notebooks: what paths, archives and answers are shown as."""
+"""Tables for notebooks."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ TABLE_ROWS = 10
 
 
 def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = ()) -> str:
-    """A table of texts, each escaped.
+    """Escape texts into a table.
 
     Parameters
     ----------
     caption : str
     rows : iterable of sequence
     head : sequence of str
-        Names of the columns.
+        Column names.
     """
     cells = "".join(
         "<tr>" + "".join(f"<td style='text-align:left'>{escape(str(cell))}</td>" for cell in row) + "</tr>"
@@ -29,7 +29,7 @@ def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = 
 
 
 def archive_page(archive: Any) -> str:
-    """What an archive holds, path by path."""
+    """Table of an archive's paths."""
     shown = range(min(len(archive), TABLE_ROWS))
     lengths, messages = archive.paths["n_points"], archive.paths["message"]
     rows = [(k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace")) for k in shown]

@@ -1,4 +1,4 @@
-"""Which parts of a line are solid and which dashed: the stable ones, and the others."""
+"""Solid (stable) and dashed parts of a line."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from continuation.plot.drawing import Axes, Drawn
 from continuation.status import Kind
 
 UNSTABLE = "unstable"
-"""The scalar that `continuation.Stability` stores: how many eigenvalues are unstable."""
+"""Number of unstable eigenvalues, stored by `continuation.Stability`."""
 
 CHANGES = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.HOPF, Kind.KINK)
-"""Where stability may change."""
+"""Events where stability may change."""
 
 
 @frozen
 class Stretch:
-    """A part of a line between two arclengths, to be drawn solid or dashed."""
+    """A solid or dashed part between two arclengths."""
 
     begin: float
     end: float
@@ -30,17 +30,16 @@ class Stretch:
 
 
 def stretches(s: Array, edges: Array, first: bool) -> list[Stretch]:
-    """Solid and dashed in turn, changing at some arclengths of a line; `first` says whether it begins solid."""
+    """Alternate solid and dashed at the arclengths `edges`."""
     bounds = [float(s[0]), *map(float, edges), float(s[-1])]
     return [Stretch(a, b, first != bool(k % 2)) for k, (a, b) in enumerate(pairwise(bounds))]
 
 
 def by_stability(path: Drawn, s: Array) -> list[Stretch] | None:
-    """Where the path is stable, by what was stored with its points; None where nothing was.
+    """Solid parts of a line at arclengths s from stored stability, or None.
 
-    Between two points that differ it changes at the first of the events between them that can be the reason, else at
-    the first of any other kind, as a period doubling of cycles is, else half way. The arclengths s are those of the
-    line to draw.
+    Stability changes at the first event of `CHANGES` between two points, else at another event (period doubling), else
+    half way.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None
@@ -60,12 +59,12 @@ def by_stability(path: Drawn, s: Array) -> list[Stretch] | None:
 def draw_line(
     axes: Axes, x: Array, y: Array, label: str, looks: dict[str, Any], s: Array, parts: Sequence[Stretch] | None
 ) -> None:
-    """A line of points at arclengths s, whole or in parts that are solid and dashed."""
+    """Draw a line whole, or in solid and dashed parts."""
     if parts is None or len(x) == 1:
         axes.plot(x, y, label=label, marker="." if len(x) == 1 else "", **looks)
         return
     for k, part in enumerate(parts):
-        # Dashes mean one thing in a picture: with stability they are not for telling lines apart.
+        # With stability, dashes do not distinguish lines.
         style = {**looks, "linestyle": "-" if part.solid else "--"}
         places = np.concatenate(([part.begin], s[(s > part.begin) & (s < part.end)], [part.end]))
         axes.plot(np.interp(places, s, x), np.interp(places, s, y), label=label if k == 0 else "_", **style)

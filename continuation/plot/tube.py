@@ -11,10 +11,10 @@ from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from continuation.point.segment import cubic
 
 POINTS = 12
-"""Of each cell: as smooth as the curve of a path (`drawing.SMOOTHNESS`)."""
+"""Points per cell, as smooth as a path (`drawing.SMOOTHNESS`)."""
 
 VISIBLE = 0.004
-"""Radii are drawn at least this wide, in widths of the picture: most tubes are thinner than a line."""
+"""Least drawn radius in picture widths: most tubes are thinner than a line."""
 
 
 def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, axes: Axes | None = None) -> Axes:

@@ -1,4 +1,4 @@
-"""Bifurcation problems with known answers, as homotopies."""
+"""Bifurcation problems with known answers."""
 
 from problems.bifurcation.aircraft import Aircraft
 from problems.bifurcation.bratu_1d import Bratu1D

@@ -1,4 +1,4 @@
-"""An aircraft at a high angle of attack: equilibria in roll, continued in the aileron."""
+"""Aircraft equilibria at high angle of attack."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from continuation.events.box import Box
 from problems.bibliography import MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT
 from problems.options import finite, finite_or_none, quiet
 
-# Columns: roll, pitch and yaw rate, angle of attack, sideslip.
+# Columns: roll, pitch, yaw rate; angle of attack; sideslip.
 _STATE = np.array(
     [
         [-3.933, 0.107, 0.126, 0.0, -9.99],
@@ -25,7 +25,7 @@ _STATE = np.array(
 _ELEVATOR = np.array([0.0, -28.37, 0.0, -0.168, 0.0])
 _AILERON = np.array([-45.83, 0.0, -0.921, 0.0, -0.0071])
 
-# The quadratic terms: coefficients of x_i x_j, one pair a column ...
+# Quadratic terms: a column per pair x_i x_j.
 _FIRST = np.array([1, 2, 3, 0, 0, 0, 0])
 _SECOND = np.array([2, 3, 4, 2, 4, 1, 3])
 _QUADRATIC = np.array(
@@ -37,28 +37,28 @@ _QUADRATIC = np.array(
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     ]
 )
-# ... and of x_4 times the aileron.
+# Coefficients of x_4 times the aileron.
 _ATTACK_AILERON = np.array([63.5, 0.0, 1.132, 0.0, 0.0])
 _ATTACK = 3
 
 _NEWTON_STEPS = 30
 _NEWTON_TOLERANCE = 1e-14
-"""For the equilibrium at aileron 0, from level flight: 4 steps suffice at the published elevators."""
+"""Newton for the start takes 4 steps at published elevators."""
 
 
 @frozen
 class Aircraft:
     """Equilibria of an aircraft: five quadratic equations, continued in the aileron deflection, the elevator fixed.
 
-    y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron (x7 of the source). The source
-    carries elevator x6 = e and rudder x8 = 0 as unknowns with equations of their own; here they are substituted.
+    y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron (x7 of the source); its x6 =
+    elevator and x8 = rudder = 0 are substituted.
 
     Parameters
     ----------
     elevator : float
-        Deflection e of the elevator; the source takes -0.05, -0.008, 0, 0.05 and 0.1.
+        The source takes -0.05, -0.008, 0, 0.05 and 0.1.
     target : float or None
-        Where the path ends.
+        End of the path.
 
     References
     ----------
@@ -72,12 +72,12 @@ class Aircraft:
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:
-        """The equilibrium at aileron 0 that Newton's method finds from level flight without deflections, the origin.
+        """Newton from level flight, y = 0, at aileron 0.
 
         Raises
         ------
         ArithmeticError
-            If Newton's method does not converge, which it does for every elevator of the source.
+            If Newton fails, which no elevator of the source causes.
         """
         y = np.zeros(5)
         for _ in range(_NEWTON_STEPS):
@@ -89,7 +89,7 @@ class Aircraft:
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """The five equations, shape (5,)."""
+        """The equations, shape (5,)."""
         products = _QUADRATIC @ (y[_FIRST] * y[_SECOND])
         deflections = self.elevator * _ELEVATOR + lam * (_AILERON + _ATTACK_AILERON * y[_ATTACK])
         equations: Array = _STATE @ y + products + deflections

@@ -1,4 +1,4 @@
-"""Bratu's problem on an interval: a banded path with one fold."""
+"""Bratu's problem on an interval."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _BOUNDARY = np.zeros(1)
 class Bratu1D:
     """u'' + lam e^u = 0 on (0, 1), u(0) = u(1) = 0, by second-order differences, from u = 0 at lam = 0.
 
-    ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}`` with h = 1/(n + 1): multiplied by h^2, so that H_y has entries
-    of order 1 for every n. The path turns at lam* = 3.5138... and returns towards lam = 0 on the upper branch.
+    ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}``, h = 1/(n + 1): H_y is of order 1. The path turns at
+    lam* = 3.5138... and returns towards lam = 0.
 
     Parameters
     ----------
     n : int
-        Number of interior points, and of unknowns.
+        Interior points.
     target : float or None
-        Where the path ends. The upper branch has no end: where nothing is said, the path stops at max u = 8.
+        End of the path; None: max u = 8.
 
     References
     ----------
@@ -43,25 +43,25 @@ class Bratu1D:
     references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     def start(self) -> tuple[Array, float]:
-        """The trivial solution at lam = 0."""
+        """Zero at lam = 0."""
         return np.zeros(self.n), 0.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (n,); inf or nan where e^u overflows."""
+        """H, shape (n,); inf or nan on overflow."""
         u = np.concatenate((_BOUNDARY, y, _BOUNDARY))
         return u[:-2] - 2.0 * y + u[2:] + self._square * lam * np.exp(y)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Banded, Array]:
-        """(H_y, H_lam): tridiagonal of order n, and shape (n,)."""
+        """(H_y, H_lam): tridiagonal; shape (n,)."""
         slope = self._square * np.exp(y)
         bands = np.ones((3, self.n))
         bands[1] = lam * slope - 2.0
         return Banded(bands, 1, 1), slope
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The maximum of u, the ordinate of the usual diagram."""
+        """Maximum of u, the usual ordinate."""
         return {"max_u": float(np.max(y))}
 
     @property

@@ -1,4 +1,4 @@
-"""Bratu's problem on the unit square: a sparse path with one fold."""
+"""Bratu's problem on the unit square."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.options import finite_or_none, positive_integer, quiet
 
 
 def five_point(m: int) -> Matrix:
-    """h^2 times the five-point Laplacian of an m x m interior grid with Dirichlet boundary, CSC, indices sorted."""
+    """h^2 times the Dirichlet Laplacian on m x m interior points, sorted CSC."""
     one = np.ones(m - 1)
     line = sp.diags_array([one, np.full(m, -2.0), one], offsets=[-1, 0, 1])
     eye = sp.eye_array(m)
@@ -29,16 +29,15 @@ def five_point(m: int) -> Matrix:
 class Bratu2D:
     """Laplacian(u) + lam e^u = 0 on the unit square, u = 0 on its edge, by the five-point formula.
 
-    ``H = h^2 (Laplacian_h u + lam e^u)`` with h = 1/(m + 1), on m x m interior points numbered row by row: multiplied
-    by h^2, so that H_y has entries of order 1 for every m. The path leaves u = 0 at lam = 0, turns at lam* = 6.808...
-    and returns towards lam = 0.
+    ``H = h^2 (Laplacian_h u + lam e^u)``, h = 1/(m + 1), points by rows: H_y is of order 1. The path turns at
+    lam* = 6.808... and returns towards lam = 0.
 
     Parameters
     ----------
     m : int
-        Interior points a side; m^2 unknowns.
+        Interior points per side.
     target : float or None
-        Where the path ends. The upper branch has no end: where nothing is said, the path stops at max u = 8.
+        End of the path; None: max u = 8.
 
     References
     ----------
@@ -54,19 +53,19 @@ class Bratu2D:
 
     @cached_property
     def _pattern(self) -> tuple[Matrix, Any]:
-        """The Laplacian, and where its diagonal is stored: H_y alters nothing else along the path."""
+        """Laplacian and its stored diagonal, which alone varies in H_y."""
         laplacian = five_point(self.m)
         columns = np.repeat(np.arange(self.m**2), np.diff(laplacian.indptr))
         return laplacian, np.flatnonzero(laplacian.indices == columns)
 
     def start(self) -> tuple[Array, float]:
-        """The trivial solution at lam = 0."""
+        """Zero at lam = 0."""
         return np.zeros(self.m**2), 0.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (m^2,); inf or nan where e^u overflows."""
-        # Shifts instead of the sparse product: they let complex numbers and jets pass through numpy.
+        """H, shape (m^2,); inf or nan on overflow."""
+        # Shifts, unlike the sparse product, accept complex numbers and jets.
         u = np.pad(y.reshape(self.m, self.m), 1)
         around = u[:-2, 1:-1] + u[2:, 1:-1] + u[1:-1, :-2] + u[1:-1, 2:]
         equations: Array = around.ravel() - 4.0 * y + self._square * lam * np.exp(y)
@@ -74,7 +73,7 @@ class Bratu2D:
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam): CSC of order m^2, and shape (m^2,)."""
+        """(H_y, H_lam): CSC of order m^2; shape (m^2,)."""
         slope = self._square * np.exp(y)
         laplacian, diagonal = self._pattern
         matrix = laplacian.copy()
@@ -82,7 +81,7 @@ class Bratu2D:
         return matrix, slope
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The maximum of u, the ordinate of the usual diagram."""
+        """Maximum of u, the usual ordinate."""
         return {"max_u": float(np.max(y))}
 
     @property

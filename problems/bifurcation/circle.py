@@ -1,4 +1,4 @@
-"""The unit circle: a closed path with two turning points."""
+"""The unit circle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.options import quiet
 class Circle:
     """H(u, lam) = u^2 + lam^2 - 1, one unknown, from (1, 0).
 
-    The path closes after an arclength of 2 pi, with turning points of lam at (0, 1) and (0, -1).
+    The path closes after arclength 2 pi; it turns at (0, 1) and (0, -1).
 
     References
     ----------
@@ -28,12 +28,12 @@ class Circle:
     references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
 
     def start(self) -> tuple[Array, float]:
-        """(1, 0), where the path runs along lam."""
+        """The point (1, 0)."""
         return np.ones(1), 0.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H = u^2 + lam^2 - 1, shape (1,)."""
+        """H, shape (1,)."""
         return y * y + (lam * lam - 1.0)
 
     @quiet

@@ -1,4 +1,4 @@
-"""The cusp: a hysteresis loop in mu, with both folds in closed form."""
+"""The cusp."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Cusp:
     Parameters
     ----------
     splitting : float
-        The fixed lambda, the splitting factor. The path turns twice if it is positive, never if it is negative.
+        Fixed lambda: two folds if positive, none if negative.
     target : float or None
-        Where the path ends; by default mu of the mirror image of the start.
+        End of the path; by default at the start's mirror image.
 
     References
     ----------
@@ -35,18 +35,18 @@ class Cusp:
 
     @target.default
     def _mirrored_start(self) -> float:
-        # Defaults are made before anything is validated.
+        # Defaults precede validation.
         finite(self, fields(Cusp).splitting, self.splitting)
         return -self.start()[1]
 
     def start(self) -> tuple[Array, float]:
-        """The point x = -1 - sqrt(abs(lambda)), which lies before both folds."""
+        """The point x = -1 - sqrt(abs(lambda)), before both folds."""
         x = -1.0 - float(np.sqrt(abs(self.splitting)))
         return np.array([x]), x * (x * x - self.splitting)
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """F = mu + lambda x - x^3, shape (1,)."""
+        """F, shape (1,)."""
         return lam + y * (self.splitting - y * y)
 
     @quiet

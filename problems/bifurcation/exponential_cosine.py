@@ -1,4 +1,4 @@
-"""The exponential-cosine homotopy: a path that winds past itself, the test of path jumping."""
+"""A test of path jumping."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ class ExponentialCosine:
     Parameters
     ----------
     n : int
-        Number of unknowns. The turning points of lam grow in number (0 for n = 2, 24 for n = 8) and the largest
-        curvature with them (1.6 and 374).
+        Unknowns. n = 2 has no turning point, n = 8 has 24; the largest curvature is 1.6 and 374.
     target : float or None
-        Where the path ends.
+        End of the path.
 
     References
     ----------
@@ -45,7 +44,7 @@ class ExponentialCosine:
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
-        """(H_y, H_lam): the identity plus a matrix of rank one, shape (n, n), and shape (n,)."""
+        """(H_y, H_lam): identity plus rank one, shape (n, n); shape (n,)."""
         angles = self._harmonics * np.sum(y)
         fixed_point = np.exp(np.cos(angles))
         slope = self._harmonics * np.sin(angles) * fixed_point

@@ -1,4 +1,4 @@
-"""The Freudenstein-Roth function, embedded as by Rheinboldt and Burkardt."""
+"""The Freudenstein-Roth function, embedded."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ _EMBEDDING = np.array([34.0, 10.0])
 class FreudensteinRoth:
     """Two equations whose path to the root (5, 4) turns twice in lam and passes a sharp bend.
 
-    ``H1 = x1 - x2^3 + 5 x2^2 - 2 x2 - 13 + 34 (lam - 1)`` and ``H2 = x1 + x2^3 + x2^2 - 14 x2 - 29 + 10 (lam - 1)``,
-    y = (x1, x2), from (15, -2) at lam = 0 to (5, 4) at lam = 1.
+    ``H1 = x1 - x2^3 + 5 x2^2 - 2 x2 - 13 + 34 (lam - 1)``, ``H2 = x1 + x2^3 + x2^2 - 14 x2 - 29 + 10 (lam - 1)``, from
+    (15, -2) at lam = 0 to (5, 4) at lam = 1.
 
     Parameters
     ----------
     target : float or None
-        Where the path ends.
+        End of the path.
 
     Notes
     -----
-    Near x2 = -1.74 the tangent turns by more than 90 degrees within one generous step, which misleads an orientation by
-    angle alone into a fold at lam = 0.3057 that does not exist.
+    Near x2 = -1.74 a long step turns the tangent by over 90 degrees; orientation by angle alone then reports a false
+    fold at lam = 0.3057.
 
     References
     ----------
@@ -45,7 +45,7 @@ class FreudensteinRoth:
     references: ClassVar[tuple[str, ...]] = (FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:
-        """(15, -2) at lam = 0, exactly on the path."""
+        """(15, -2) at lam = 0."""
         return np.array([15.0, -2.0]), 0.0
 
     @quiet

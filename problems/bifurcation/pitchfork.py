@@ -1,4 +1,4 @@
-"""The pitchfork, perfect and imperfect."""
+"""Perfect and imperfect pitchfork."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Pitchfork:
     Parameters
     ----------
     imperfection : float
-        The eps. With 0 the path is the trivial branch x = 0, which meets x^2 = lam in a branch point at lam = 0. Else
-        the path has the sign of eps and avoids the branch point; the other two arms join in a turning point.
+        eps. For 0 the path x = 0 meets x^2 = lam in a branch point at lam = 0. Otherwise the path keeps the sign of
+        eps; the other two arms join in a fold.
     target : float or None
-        Where the path ends.
+        End of the path.
 
     References
     ----------
@@ -35,13 +35,13 @@ class Pitchfork:
     references: ClassVar[tuple[str, ...]] = (GOLUBITSKY_SCHAEFFER,)
 
     def start(self) -> tuple[Array, float]:
-        """The only real root at lam = -1, x^3 + x = eps, by the hyperbolic form of Cardano's formula."""
+        """The real root of x^3 + x = eps (hyperbolic Cardano)."""
         third = np.arcsinh(1.5 * np.sqrt(3.0) * self.imperfection) / 3.0
         return np.array([2.0 / np.sqrt(3.0) * np.sinh(third)]), -1.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H = lam x - x^3 + eps, shape (1,)."""
+        """H, shape (1,)."""
         return y * (lam - y * y) + self.imperfection
 
     @quiet

@@ -1,1 +1,1 @@
-"""The ready studies of ``continuation chart``: each module has a function `studies` that an entry point names."""
+"""Ready studies for ``continuation chart``; an entry point names each module's function `studies`."""

@@ -1,4 +1,4 @@
-"""Chandrasekhar's H-equation: a dense path of any size with one fold, known in closed form."""
+"""Chandrasekhar's H-equation: dense, any size, fold in closed form."""
 
 from __future__ import annotations
 
@@ -23,10 +23,8 @@ _CHANDRASEKHAR = """@book{Chandrasekhar1960,
 class Chandrasekhar:
     """``y_i (1 - (lam/2n) sum_j mu_i y_j/(mu_i + mu_j)) = 1`` with mu_i = (i - 1/2)/n, from y = 1 at lam = 0.
 
-    The mean m of y satisfies m = 1 + lam m^2/4, so the path turns at lam = 1, where m = 2, for every n, and the branch
-    that returns has m = 2 (1 + sqrt(1 - lam))/lam.
-
-    `target`: Where the path ends; the returning branch has no end.
+    The mean m of y satisfies m = 1 + lam m^2/4: the path turns at lam = 1, m = 2, for every n, and returns along
+    m = 2 (1 + sqrt(1 - lam))/lam without end.
 
     References
     ----------
@@ -44,7 +42,7 @@ class Chandrasekhar:
         return np.asarray(mu[:, None] / (mu[:, None] + mu) / (2.0 * self.n))
 
     def start(self) -> tuple[Array, float]:
-        """Ones at lam = 0."""
+        """Ones, lam = 0."""
         return np.ones(self.n), 0.0
 
     @quiet

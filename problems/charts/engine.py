@@ -1,4 +1,4 @@
-"""The engine's parts against each other: presets, predictors, correctors, controllers, and how steps decide."""
+"""Compare the engine's presets, predictors, correctors, controllers, series and metrics."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 BUDGET = continuation.Budget(steps=3000)
 
 Parts = dict[str, dict[str, Any]]
-"""Options of a trace, by the label of the method."""
+"""Trace options by method label."""
 
 PRESETS: Parts = {
     preset.name: {"preset": preset}
@@ -85,19 +85,18 @@ COUNTED = ("factorizations", "solves", "residuals")
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One study a kind of part, and one of longest steps."""
+    """One study per kind of part, and one of longest steps."""
     problems = _problems(size)
     rungs = {"smoke": (1e-6,), "moderate": (1e-3, 1e-6, 1e-9), "full": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)}[size]
     found = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
-        # The presets are what users choose from: beside other software, on a sparse system too, and timed.
+        # Users choose among presets: time and compare them, also on a sparse system.
         whole = name == "presets"
         square = bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size]) if whole else None
-        # Where no picture of times is drawn, the counts of one run are all there is to know.
         timed = size == "full" or whole
         shown = [square.name, problems[-1].name] if square else []
-        # The accuracy of a series is its own; the tolerance hardly matters to it, and a series is expensive.
+        # A series hardly depends on the tolerance and is expensive.
         own = rungs[:: 2 if name == "series" else 1]
         found.append(
             Study(
@@ -124,7 +123,7 @@ def _problems(size: Size) -> list[Problem]:
 
 
 def _steps(problems: list[Problem], size: Size) -> Study:
-    """Dense output: what shorter steps buy between the points."""
+    """Dense output of predictors for shorter steps."""
     steps = {"smoke": (0.3,), "moderate": (1.0, 0.3, 0.1), "full": (3.0, 1.0, 0.3, 0.1, 0.03)}[size]
     methods = [traced(label, budget=BUDGET, **options) for label, options in PREDICTORS.items()]
     return Study(

@@ -1,4 +1,4 @@
-"""Random linear complementarity problems: of a class, with a seed, of any size."""
+"""Seeded random LCPs of a given matrix class and size."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ Draw = Callable[[np.random.Generator, int], Matrix]
 
 
 def semidefinite(random: np.random.Generator, n: int) -> Array:
-    """A positive semidefinite matrix of rank n/2 or more plus a skew one: monotone, so row sufficient."""
+    """Positive semidefinite of rank n/2 plus skew: monotone, so row sufficient."""
     factor, skew = random.standard_normal((n, max(1, n // 2))), random.standard_normal((n, n))
     return np.asarray(factor @ factor.T / n + (skew - skew.T) / np.sqrt(n))
 
 
 def scaled_p(random: np.random.Generator, n: int) -> Array:
-    """D (positive definite plus skew) E with positive diagonals over two decades: a P-matrix, mostly not definite."""
+    """D (positive definite plus skew) E, positive diagonals over two decades: a P-matrix, mostly indefinite."""
     factor, skew = random.standard_normal((n, n)), random.standard_normal((n, n))
     core = factor @ factor.T / n + 0.1 * np.eye(n) + (skew - skew.T) / np.sqrt(n)
     left, right = (10.0 ** random.uniform(-1.0, 1.0, n) for _ in range(2))
@@ -28,7 +28,7 @@ def scaled_p(random: np.random.Generator, n: int) -> Array:
 
 
 def n_matrix(random: np.random.Generator, n: int) -> Array:
-    """K - u v' with u_i v_i > K_ii, K an M-matrix: every principal minor is negative."""
+    """K - u v', u_i v_i > K_ii, K an M-matrix: all principal minors negative."""
     K = -random.uniform(0.0, 1.0, (n, n)) / n
     np.fill_diagonal(K, 0.0)
     np.fill_diagonal(K, 0.5 - K.sum(axis=1))
@@ -38,18 +38,18 @@ def n_matrix(random: np.random.Generator, n: int) -> Array:
 
 
 def copositive(random: np.random.Generator, n: int) -> Array:
-    """Positive semidefinite of low rank plus nonnegative plus skew: strictly copositive, of no sign of minors."""
+    """Low-rank positive semidefinite plus nonnegative plus skew: strictly copositive, minors of any sign."""
     factor, skew = random.standard_normal((n, max(1, n // 4))), random.standard_normal((n, n))
     return np.asarray(factor @ factor.T / n + random.uniform(0.0, 1.0, (n, n)) / np.sqrt(n) + (skew - skew.T) / n)
 
 
 def indefinite(random: np.random.Generator, n: int) -> Array:
-    """Independent normal entries: of no class, nondegenerate with probability one."""
+    """Independent normal entries: no class, nondegenerate with probability one."""
     return np.asarray(random.standard_normal((n, n)) / np.sqrt(n))
 
 
 def obstacle(random: np.random.Generator, n: int) -> Matrix:
-    """The second difference matrix, sparse: an M-matrix, as for a string over an obstacle."""
+    """Sparse second differences, an M-matrix: string over an obstacle."""
     one = -np.ones(n - 1)
     return sp.csr_array(sp.diags_array([one, np.full(n, 2.0), one], offsets=[-1, 0, 1]))
 
@@ -58,14 +58,10 @@ FAMILIES: Mapping[str, Draw] = {
     "semidefinite": semidefinite, "scaled P": scaled_p, "N": n_matrix, "copositive": copositive,
     "indefinite": indefinite, "obstacle": obstacle,
 }  # fmt: skip
-"""By name."""
 
 
 def planted(family: str, n: int, seed: int) -> LCP:
-    """A problem of one of `FAMILIES` with a strictly complementary solution planted; the seed decides the rest.
-
-    Raises `ValueError` for another family.
-    """
+    """Draw a problem of `FAMILIES` with a strictly complementary solution."""
     if family not in FAMILIES:
         raise ValueError(f"family: expected one of {', '.join(FAMILIES)}, found {family!r}")
     random = np.random.default_rng([seed, n, list(FAMILIES).index(family)])

@@ -1,4 +1,4 @@
-"""Methods for the LCP beside each other: homotopies, predictors, the finish, and Lemke, modulus, min-Newton."""
+"""Compare LCP methods: homotopies, predictors, finish, Lemke, modulus, min-Newton."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from problems.paper import EXAMPLES
 from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon, by_reference, by_tables
 
 SOLVED_TO = 1e-6
-"""What `Certificate.solves` is asked of an end before the run counts as a success."""
+"""Residual bound (`Certificate.solves`) for success."""
 
 RESIDUAL = observed("natural_residual", "natural residual max |min(x, Ax + q)|, over 1 + max |q|")
 
 BUDGET = continuation.Budget(steps=200)
-"""Of one path."""
+"""Per path."""
 
 WHOLE_BUDGET = continuation.Budget(steps=400)
-"""Of `lcp.solve`, all paths together."""
+"""For all paths of `lcp.solve`."""
 
 WORK = ("factorizations", "solves", "seconds")
 
 
 def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
-    """A homotopy of the problem, from the problem's start (`options['x0']`) or its own, traced without a finish."""
+    """Trace a homotopy from ``options['x0']`` or its own start, without finish."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         x0 = problem.options.get("x0")
@@ -53,7 +53,7 @@ def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
 
 
 def solver(name: str, **options: Any) -> Method:
-    """`problems.lcp.solve`: the active-set finish before the path and along it."""
+    """`problems.lcp.solve`, with active-set finish."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         solution = lcp.solve(problem.subject, x0=problem.options.get("x0"), **{"budget": WHOLE_BUDGET, **options})
@@ -65,7 +65,7 @@ def solver(name: str, **options: Any) -> Method:
 
 
 def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], Counts]) -> Method:
-    """A solver that the ladder does not concern; `cost` is what so many of its iterations come to, for n unknowns."""
+    """A solver without tolerance ladder; `cost(iterations, n)` estimates its counts."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         try:
@@ -78,12 +78,12 @@ def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], 
 
 
 def pivots(k: int, n: int) -> Counts:
-    """Of Lemke's tableau, 4 n^2 operations each: as many factorisations as take that long."""
+    """Lemke's pivots, 4 n^2 operations each, as factorisations of equal work."""
     return Counts(factorizations=-(-6 * k // n), solves=k, accepted=k)
 
 
 def interior(k: int, n: int) -> Counts:
-    """An iteration of an interior-point method is one factorisation, a solve to predict and one to correct."""
+    """One factorisation, predictor and corrector solves per iteration."""
     return Counts(factorizations=k, solves=2 * k, accepted=k)
 
 
@@ -95,30 +95,30 @@ DIRECT = {
     "PIQP": ("piqp", by_piqp, interior),
     "Clarabel": ("clarabel", by_clarabel, interior),
 }
-"""By name: the module that it needs, how it solves, what an iteration costs."""
+"""Required module, solver, cost of iterations."""
 
 
 def direct_methods(compare: bool) -> list[Method]:
-    """The references, and the installed solvers of other packages if they are asked for."""
+    """References, and installed outside solvers if `compare`."""
     taken = {name: one for name, one in DIRECT.items() if not one[0] or (compare and rivals.installed(one[0]))}
     for _, solve, _ in taken.values():
-        # Once beforehand, for a library that compiles itself at its first call.
+        # Warm up libraries that compile at first call.
         solve(LCP(np.eye(1), -np.ones(1)))
     return [direct(name, solve, cost) for name, (_, solve, cost) in taken.items()]
 
 
 def notes(compare: bool) -> list[str]:
-    """Which packages take part, and which are left out."""
+    """Outside packages present or missing."""
     return rivals.notes([module for module, _, _ in DIRECT.values() if module], compare)
 
 
 def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
-    """An answer with its natural residual, and a failure where x does not solve the problem."""
+    """Answer with natural residual; fails if x is no solution."""
     size = 1.0 + float(np.abs(problem.q).max())
     residual = problem.natural_residual(x) / size if np.isfinite(x).all() else np.inf
     solved = np.isfinite(residual) and lcp.certify(problem, x).solves(SOLVED_TO)
     message, traced = more.pop("message", ""), more.get("path")
-    # Where the path did not arrive, its status says so already.
+    # An unfinished path's status already tells the failure.
     unfinished = traced is not None and traced.status is not continuation.Status.REACHED_TARGET
     return Answer(
         counts,
@@ -131,7 +131,7 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """The ten examples, and generated families over sizes."""
+    """The ten examples, and generated families."""
     rungs = {"smoke": (1e-6,), "moderate": (1e-4, 1e-8), "full": (1e-3, 1e-5, 1e-7, 1e-9)}[size]
     homotopies = [path(one.title, one.make) for one in HOMOTOPIES.values()]
     quick = (HOMOTOPIES["kkt"], HOMOTOPIES["wang"])
@@ -158,6 +158,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
 
 
 def problem(family: str, n: int, seed: int) -> Problem:
-    """A generated problem of a study."""
+    """Draw a study's problem."""
     subject = planted(family, n, seed)
     return Problem(f"{family}, n = {n}, seed {seed}", subject, family=family)

@@ -1,4 +1,4 @@
-"""Outside solvers, each behind a small adapter, where they are installed."""
+"""Adapters to outside solvers, used if installed."""
 
 from __future__ import annotations
 
@@ -21,19 +21,16 @@ from continuation.counts import Counts
 PITCON = "PITCON (dense)"
 
 STEPS = 1000
-"""Of a path at most: the plain loop needs some hundred where it arrives."""
+"""Limit per path; a successful plain loop needs some hundred."""
 
 
 @frozen
 class _Aim:
-    """Where a path ends: at a value of the parameter, crossed upwards (1) or downwards (-1)."""
-
     value: float
     direction: float
 
     @classmethod
     def of(cls, problem: Problem) -> _Aim:
-        """From the event that ends the path, or the homotopy's target."""
         for event in problem.options.get("events", ()):
             return cls(event.value, event.direction)
         target = problem.subject.target
@@ -45,8 +42,6 @@ class _Aim:
 
 @frozen
 class _Counted:
-    """The problem's functions of u = (y, lam), counted."""
-
     homotopy: Any
     counts: Counts = field(factory=Counts)
 
@@ -64,7 +59,7 @@ class _Counted:
         return self.homotopy.jacobian(u[:-1], float(u[-1]))  # type: ignore[no-any-return]
 
     def solve(self, u: Array, row: Array, r: Array, rho: float) -> Array:
-        """The solution of H' x = r, row x = rho; a sparse H_y by two solves with it, a dense one with the whole."""
+        """Solve H' x = r, row x = rho; a sparse H_y by block elimination."""
         self.counts.solves += 1
         H_y, H_lam = self.jacobian(u)
         if not sp.issparse(H_y):
@@ -75,7 +70,7 @@ class _Counted:
         return np.append(x - lam * w, lam)
 
     def newton(self, u: Array, row: Array, tolerance: float) -> tuple[Array | None, int]:
-        """On H = 0 in the plane that is normal to `row`; how many iterations it took."""
+        """Newton in the plane normal to `row`; returns (point, iterations)."""
         for k in range(8):
             step = self.solve(u, row, -self.residual(u), 0.0)
             u = u + step
@@ -84,14 +79,13 @@ class _Counted:
         return None, 8
 
     def land(self, before: Array, after: Array, value: float, tolerance: float) -> Answer:
-        """Newton's method at the parameter's value, from between two points."""
         guess = before + (value - before[-1]) / (after[-1] - before[-1]) * (after - before)
         end, _ = self.newton(guess, np.eye(1, guess.size, guess.size - 1)[0], tolerance)
         return Answer(self.counts, end=end)
 
 
 def _loop(problem: Problem, rung: Rung) -> Answer:
-    """Keller's pseudo-arclength continuation as one writes it in an afternoon; it looks for no turning points."""
+    """Plain Keller continuation, without turning points."""
     aim, ours = _Aim.of(problem), _Counted(problem.subject)
     u, counts = ours.start, ours.counts
     zero, h = np.zeros(u.size - 1), 0.1
@@ -116,7 +110,7 @@ def _loop(problem: Problem, rung: Rung) -> Answer:
 
 
 def _pitcon(problem: Problem, rung: Rung) -> Answer:
-    """PITCON 6.1, dense, as pysces wraps it; it lands on the target itself."""
+    """Dense PITCON 6.1 (pysces)."""
     library, aim, ours = _pitcon_library(), _Aim.of(problem), _Counted(problem.subject)
     x = ours.start
     N = x.size
@@ -131,11 +125,11 @@ def _pitcon(problem: Problem, rung: Rung) -> Answer:
         return whole, 0
 
     iwork, rwork = np.zeros(30 + N, dtype=np.int32), np.zeros(30 + 4 * N + N * N)
-    # It starts on lam, whose value is the target; Newton's method in full, with this Jacobian; where work space begins.
+    # N, start and target on lam, full Newton with this Jacobian, work-space offsets.
     iwork[[1, 4, 7, 12, 13, 14, 15, 16]] = N, N, 6, 30, iwork.size, 30, rwork.size, 10
-    # Tolerances, least, largest and first step, direction, target.
+    # Tolerances; least, largest, first step; direction; target.
     rwork[:7] = rung.value, rung.value, 1e-6, 30.0, 0.1, 1.0 if aim.value > x[-1] else -1.0, aim.value
-    # A target lies between the last two points, and comes after them.
+    # PITCON returns a target after the two points around it.
     none, before, after = np.zeros(1, dtype=np.int32), float(x[-1]), float(x[-1])
     for _ in range(STEPS):
         error, iwork, rwork, x = library.pitcon1(jacobian, np.zeros(1), residual, none, iwork, rwork, x)
@@ -149,7 +143,7 @@ def _pitcon(problem: Problem, rung: Rung) -> Answer:
 
 
 def _pitcon_library() -> Any:
-    """The compiled routine alone: pysces itself, once imported, prints a page and makes folders."""
+    """Load the compiled routine only: importing pysces prints a page and makes folders."""
     package = find_spec("pysces")
     if package is None or package.submodule_search_locations is None:
         raise ImportError("pysces is not installed")
@@ -163,21 +157,19 @@ def _pitcon_library() -> Any:
 
 
 def curve_followers(compare: bool) -> list[Method]:
-    """The plain loop, and where it is asked for and installed PITCON."""
+    """The plain loop, and PITCON if requested and installed."""
     found = {"plain scipy loop": _loop, **({PITCON: _pitcon} if compare and installed("pysces") else {})}
     return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
 
 
 def _is_matrix(problem: Problem) -> bool:
-    """Whether H_y is an array or a sparse matrix, and no structure of our own as of banded systems."""
+    """Whether H_y is a numpy or scipy matrix."""
     y, lam = problem.subject.start()
     H_y, _ = problem.subject.jacobian(y, lam)
     return isinstance(H_y, np.ndarray) or bool(sp.issparse(H_y))
 
 
 def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung], Answer]:
-    """Without warnings of numpy where a path is lost: the answer is judged."""
-
     def run(problem: Problem, rung: Rung) -> Answer:
         with np.errstate(all="ignore"):
             return follow(problem, rung)
@@ -186,7 +178,7 @@ def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung
 
 
 def notes(modules: Iterable[str], compare: bool) -> list[str]:
-    """Which packages take part where they are asked for, with their versions, and which are left out."""
+    """Versions of packages that take part; names of missing ones."""
     if not compare:
         return []
     modules = list(dict.fromkeys(modules))

@@ -1,4 +1,4 @@
-"""Which fraction of random problems each method solves, and at what cost: performance profiles."""
+"""Performance profiles on random problems."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One panel a family; every problem has a planted solution."""
+    """One panel per family; every problem has a planted solution."""
     orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 4), "full": ((5, 10, 20, 50), 25)}[size]
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [
         *(path(one.title, one.make) for one in HOMOTOPIES.values()),
-        # The same path in several times the time: for reports.
+        # The series takes several times longer.
         *((path("KKT, series", HOMOTOPIES["kkt"].make, preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),

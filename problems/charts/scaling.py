@@ -1,4 +1,4 @@
-"""What a path costs as its problem grows, with fitted exponents."""
+"""Cost against problem size, with fitted exponents."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from problems.charts.subjects import bratu, bratu_square, chandrasekhar
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One study of bifurcation problems, one of LCPs; one tolerance."""
+    """Bifurcation problems and LCPs at one tolerance."""
     repeats = {"smoke": 0, "moderate": 1, "full": 3}[size]
     presets = (continuation.DEFAULT, continuation.FAST, continuation.SERIES)
     broyden = traced("DEFAULT, Broyden", corrector=Broyden())
@@ -36,7 +36,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "obstacle")
     methods = [
         path("KKT", lcp.KKTHomotopy),
-        # Wang's path shows what a series does to the cost; that of the KKT path takes most of the time of the study.
+        # The KKT series would take most of the study's time.
         *((path("KKT, series", lcp.KKTHomotopy, preset=continuation.SERIES),) if size == "full" else ()),
         path("Wang", lcp.WangHomotopy),
         path("Wang, series", lcp.WangHomotopy, preset=continuation.SERIES),

@@ -1,4 +1,4 @@
-"""Scenes by ours and by the methods of their fields: time against the error of the answer, with its order."""
+"""Scenes: time against error, ours and rivals'."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from problems.charts.rivals import notes
 from problems.scenes import Rival, available, error, make, order, solve
 
 WRONG = 1e-2
-"""An answer that is off by more is no answer."""
+"""Larger relative errors fail."""
 
 
 COMPILING = 30.0
-"""Seconds that a first run may take and still be repeated: quantecon and numba compile themselves in it."""
+"""Seconds of a first run still repeated: quantecon and numba compile in it."""
 
 ERROR = observed("answer", "error of the answer, relative")
-# Of the model that was solved, made again: the run is not longer for it.
+# Recreated outside of the timed run.
 ORDER = Error("unknowns", "unknowns of the model", lambda problem, answer: float(
     order(_refined(problem, answer.observed.get("factor", 1.0)).problem())))  # fmt: skip
 
 OURS = "ours"
 
 MESHES = ("american-put", "bearing", "bratu-lid", "converter", "membrane", "string", "torsion")
-"""Scenes with a mesh of n points: their error is that of the mesh, whatever the method."""
+"""Scenes whose error is the mesh's, for any method of solution."""
 
 COUNTS = ("jumps", "steps", "support vectors")
-"""Quantities that methods which leave no exact zeros do not tell."""
+"""Counts that need exact zeros."""
 
 LARGER: dict[str, dict[str, Any]] = {
     "arch": {"stones": 60},
@@ -49,11 +49,11 @@ LARGER: dict[str, dict[str, Any]] = {
     "traffic": {"side": 12},
     "unmixing": {"substances": 60, "channels": 400},
 }
-"""Sizes at which methods differ."""
+"""Parameters large enough to separate methods."""
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """Two: scenes with a mesh, which is refined, and those whose answers are exact but for round-off."""
+    """Scenes with a refined mesh, and scenes exact to round-off."""
     factors = {"smoke": (0.2,), "moderate": (0.5, 1.0, 2.0), "full": (0.5, 1.0, 2.0, 4.0, 8.0)}[size]
     names = ("string", "cournot") if size == "smoke" else tuple(available())
     larger: dict[str, dict[str, Any]] = {} if size == "smoke" else LARGER
@@ -74,7 +74,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
 
 
 def _problem(name: str, scene: Any) -> Problem:
-    """With the answer to measure against: in closed form, else to all digits by ours, certified."""
+    """Known: the closed form, else our certified answer."""
     known = scene.exact()
     if name not in MESHES:
         known = {**scene.answer(solve(scene)), **known}
@@ -83,7 +83,7 @@ def _problem(name: str, scene: Any) -> Problem:
 
 
 def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Method]:
-    """Ours, each rival of any of the scenes once, and where they are asked for those of other packages."""
+    """Ours, each rival once, outside packages if requested."""
     rivals: dict[str, Rival] = {}
     for problem in problems:
         rivals.update({rival.name: rival for rival in problem.subject.rivals})
@@ -93,16 +93,14 @@ def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Met
 
 
 def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
-    """Which packages take part, and which are left out."""
     return notes([rival.module for problem in problems for rival in problem.subject.rivals if rival.module], compare)
 
 
 def _refined(problem: Problem, factor: float) -> Any:
-    """The scene on a finer mesh, by a factor."""
     if problem.name not in MESHES:
         return problem.subject
     values = asdict(problem.subject.parameters)
-    # The put's errors in price and time are to fall alike.
+    # Refine price and time alike.
     finer = {key: max(least, round(factor * values[key])) for key, least in (("n", 4), ("steps", 2)) if key in values}
     return make(problem.name, {**values, **finer})
 
@@ -110,7 +108,7 @@ def _refined(problem: Problem, factor: float) -> Any:
 def _method(
     name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None
 ) -> Method:
-    """A method that answers a scene: ours, or a rival that is one for some of them."""
+    """A method for scenes, or for those that `applies` selects."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         factor = rung.value if mesh else 1.0

@@ -1,4 +1,4 @@
-"""The bifurcation problems as problems of a study; the truths are references, exact but for round-off."""
+"""Bifurcation problems with references exact to round-off."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from problems.charts.chandrasekhar import Chandrasekhar
 
 
 def freudenstein() -> Problem:
-    """Freudenstein and Roth's path to (5, 4)."""
+    """Freudenstein-Roth path to (5, 4)."""
     subject = FreudensteinRoth()
     return Problem("Freudenstein-Roth", subject, reference(subject))
 
 
 def cosine(n: int) -> Problem:
-    """The exponential-cosine path."""
+    """Exponential-cosine path."""
     subject = ExponentialCosine(n)
     return Problem(f"exponential-cosine, n = {n}", subject, reference(subject), family="exponential-cosine")
 
 
 def bratu(n: int) -> Problem:
-    """Bratu's problem on an interval, through the fold to lam = 1 on the upper branch."""
+    """Bratu on an interval, through the fold to lam = 1."""
     return _round_the_fold(Bratu1D(n), 1.0, f"Bratu 1D, n = {n}", n, "Bratu 1D (banded)")
 
 
 def bratu_square(m: int) -> Problem:
-    """Bratu's problem on a square of m x m points, through the fold to lam = 2 on the upper branch."""
+    """Bratu on m x m points, through the fold to lam = 2."""
     return _round_the_fold(Bratu2D(m), 2.0, f"Bratu 2D, n = {m * m}", m * m, "Bratu 2D (sparse)")
 
 
 def chandrasekhar(n: int) -> Problem:
-    """Chandrasekhar's equation, through the fold to lam = 0.5 on the returning branch."""
+    """H-equation, through the fold to lam = 0.5."""
     return _round_the_fold(Chandrasekhar(n), 0.5, f"H-equation, n = {n}", n, "H-equation (dense)")
 
 

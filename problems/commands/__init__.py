@@ -1,1 +1,1 @@
-"""Commands of the `continuation` program that know about complementarity; found through entry points."""
+"""Commands of `continuation` for complementarity problems."""

@@ -1,4 +1,4 @@
-"""What the commands share: the file formats in words, and library errors as complaints about an argument."""
+"""Shared by commands: file formats, and library errors as argument errors."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ PROBLEM_FORMATS = ".npz, .json, .mat or .h5 with A and q, or A alone as .mtx, .n
 
 @contextmanager
 def named(arguments: Mapping[str, str]) -> Iterator[None]:
-    """Turn a ValueError about a parameter of the library into a UsageError about the argument behind it.
+    """Turn a library error about a parameter into a UsageError about the argument.
 
-    `arguments`: Parameter name, with which the library's message begins, to the argument as the user types it. An error
-    about anything else is a defect and passes.
+    `arguments`: parameter name, which begins the message, to typed argument. Other errors pass.
     """
     try:
         yield
@@ -30,12 +29,12 @@ def named(arguments: Mapping[str, str]) -> Iterator[None]:
 
 
 _BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"\x89HDF": ".h5", b"%%MatrixMarket": ".mtx", b"MATLAB": ".mat"}
-"""By which a format is known; JSON begins with a brace, after blanks perhaps."""
+"""First bytes by format; JSON begins with a bracket."""
 
 
 @contextmanager
 def file_of(name: str) -> Iterator[str]:
-    """The file of that name; for ``-`` one with what comes on stdin, in a format that its first bytes tell."""
+    """The file, or for ``-`` a typed temporary copy of stdin."""
     if name != "-":
         yield name
         return

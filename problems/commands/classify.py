@@ -1,4 +1,4 @@
-"""``continuation classify FILE``: which matrix classes of the LCP literature a matrix belongs to."""
+"""``continuation classify FILE``: matrix classes of the LCP literature."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``continuation paper``: the ten examples of the paper, as a table, an archive and figures."""
+"""``continuation paper``: the ten examples as table, archive, figures."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     methods = _methods(arguments.methods)
     folder = new_folder("--output", arguments.output)
     archive = folder / "paths.h5"
-    # The folder is this command's own: a second run replaces what the first one wrote.
+    # This command owns the folder: replace the last run's archive.
     archive.unlink(missing_ok=True)
     rows = run_examples(EXAMPLES, archive)
     text = "\n".join([table(rows), *remarks(rows)])
@@ -71,7 +71,6 @@ def _methods(value: str | None) -> list[str]:
 
 
 def _figure(folder: Path, rows: Sequence[Row]) -> str:
-    """Draw where matplotlib is installed; the end of the sentence that lists the files."""
     from problems.paper_figures import draw_examples
 
     try:

@@ -1,4 +1,4 @@
-"""``continuation solve scene NAME KEY=VALUE``: a scene by its name, its answer on stdout."""
+"""``continuation solve scene NAME KEY=VALUE``."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from continuation.cli.making import homotopy_of, refused
 from continuation.cli.parser import paint
 
 WORD = "scene"
-"""In place of a file."""
+"""Replaces FILE."""
 
 _NOT_FOR_SCENES = ("q", "x0", "archive", "restarts")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Make the scene, solve it, print its answer."""
+    """Solve the scene and print its answer."""
     if not arguments.scene:
         raise UsageError("NAME", "expected the name of a scene, found none; `continuation plugins` lists them")
     for option in _NOT_FOR_SCENES:
@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     with refused(name):
         problem = scene.problem()
         solution = solve(scene)
-        # A path of a scene may end on a ray, as at a collapse: what that says the scene knows.
+        # A scene's own path may end on a ray (collapse), which `answer` interprets.
         well = getattr(scene, "solve", None) is not None or bool(solution.success)
         answer = scene.answer(solution) if well else {}
     if arguments.json:

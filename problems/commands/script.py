@@ -1,4 +1,4 @@
-"""The installed script ``continuation``: its version is said before anything of the library is imported."""
+"""Script ``continuation``: prints its version without importing the library."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def main() -> int:
-    """Run the command line; see `continuation.cli.main`."""
+    """Run the command line."""
     found = importlib.util.find_spec("continuation")
     if sys.argv[1:] == ["--version"] and found is not None and found.origin is not None:
         print(f"continuation {runpy.run_path(str(Path(found.origin).with_name('version.py')))['__version__']}")

@@ -1,4 +1,4 @@
-"""``continuation solve FILE``: an LCP, a problem with bounds, a QP from a file, or a scene; its solution on stdout."""
+"""``continuation solve FILE``: an LCP, bounded problem, QP, or scene."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
-"""Components printed; --json prints all."""
+"""Printed components; --json prints all."""
 
 _ARGUMENTS = {
     "path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy",
@@ -121,7 +121,6 @@ def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
 
 
 def _program_as_json(solution: Any) -> dict[str, Any]:
-    """The objective, and the variables and multipliers by name; x alone is that of the optimality conditions."""
     named = {name: _numbers(values) for name, values in solution.named.items()}
     return {"objective": _number(solution.objective), "named": named}
 
@@ -131,7 +130,7 @@ def _numbers(vector: Array | None) -> list[float | None] | None:
 
 
 def _number(value: float) -> float | None:
-    """JSON has no NaN and no infinity."""
+    """JSON lacks NaN and infinity."""
     return float(value) if math.isfinite(value) else None
 
 

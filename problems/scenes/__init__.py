@@ -1,7 +1,4 @@
-"""Scenes: problems that people have, each with the smallest model that answers it, by name.
-
-The scenes themselves are the entry points of the group `continuation.scenes`, so that a package may add its own.
-"""
+"""Practical problems, each with its smallest model, registered in the entry points `continuation.scenes`."""
 
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.registry import available, find, make

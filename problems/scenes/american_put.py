@@ -1,4 +1,4 @@
-"""An American put: its price, and when to exercise it."""
+"""An American put."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ KNOWN = {
     (36.0, 40.0, 0.06, 0.2, 1.0): 4.48668,
     (44.0, 40.0, 0.06, 0.4, 2.0): 5.64674,
 }
-"""Price by spot, strike, rate, volatility and maturity: binomial trees of 1000 to 8000 steps, extrapolated, by two
-rules (Broadie and Detemple; Leisen and Reimer) that agree to 1e-5. The published 6.0905, 4.4867 and 5.6470 are of
-trees that are not extrapolated: the mean of Cox, Ross and Rubinstein's with 3000 and 3001 steps has these digits."""
+"""Price by (spot, strike, rate, volatility, maturity): trees of 1000 to 8000 steps, extrapolated by two rules (Broadie
+and Detemple; Leisen and Reimer) that agree to 1e-5. The published 6.0905, 4.4867 and 5.6470 are not extrapolated
+(Cox-Ross-Rubinstein, mean of 3000 and 3001 steps)."""
 
 
 @frozen(eq=False)
 class Exercise:
-    """Prices of the put on the grid at expiry's beginning, and the asset's price below which to exercise, over time."""
+    """Prices on the grid today, and the exercise boundary over time."""
 
     prices: Array
     time_left: Array
@@ -55,26 +55,18 @@ def AmericanPut(
 ) -> Scene:  # fmt: skip
     """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
 
-    The equation of Black and Scholes in the logarithm of the price, by second-order differences, and the method of
-    Crank and Nicolson after four implicit half steps (Rannacher). The steps grow linearly from expiry, where the price
-    of exercise moves like a root of the time: with equal ones the order is lower (Forsyth and Vetzal). Each is a
-    complementarity problem, solved from the active set of the one before.
+    Second-order differences discretise the Black-Scholes equation in log(price); Crank-Nicolson follows four implicit
+    half steps (Rannacher). Steps grow linearly from expiry; equal ones have a lower order (Forsyth and Vetzal).
 
     Parameters
     ----------
     spot, strike : float
-    rate : float
-        A year.
-    volatility : float
-        A root of a year.
-    maturity : float
-        Years.
-    n : int
-        Points of the grid.
-    steps : int
-        In time.
+    rate, volatility, maturity : float
+        With years as time unit.
+    n, steps : int
+        Grid points; time steps.
     width : float
-        Of the grid to each side of the strike, in standard deviations at maturity.
+        Half width of the grid, in standard deviations at maturity.
 
     References
     ----------
@@ -82,30 +74,26 @@ def AmericanPut(
     and Schwartz, Rev. Financial Studies 14 (2001).
     """
     reach = width * volatility * sqrt(maturity)
-    # Logarithms of prices over the strike, both ends included.
+    # log(price / strike)
     x = np.linspace(-reach, reach, n + 2)
     payoff = strike * np.maximum(1.0 - np.exp(x), 0.0)
     h = 2.0 * reach / (n + 1)
     a, b = 0.5 * volatility**2 / h**2, (rate - 0.5 * volatility**2) / (2.0 * h)
 
     def implicit(step: float) -> tuple[float, float, float]:
-        """The diagonals of an implicit step of that many years."""
         return -step * (a - b), 1.0 + step * (2.0 * a + rate), -step * (a + b)
 
     def lifted(step: float, values: Array) -> Array:
-        """The implicit matrix times values at all points, inner and boundary."""
         below, main, above = implicit(step)
         return below * values[:-2] + main * values[1:-1] + above * values[2:]
 
     def stepped(step: float, known: Array) -> LCP:
-        """For values above the payoff, the right side being known."""
         A = sp.diags_array(implicit(step), offsets=[-1, 0, 1], shape=(n, n), format="csr")
         return LCP(A, lifted(step, payoff) - known)
 
     def march(solver: Callable[[LCP], Any]) -> Exercise:
-        """Back from expiry, by any solver of a time step."""
         times = maturity * (np.arange(steps + 1) / steps) ** 2
-        # Four half steps, implicit: the payoff's kink makes Crank and Nicolson's method oscillate.
+        # Implicit half steps: Crank-Nicolson oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
         values, edges, well = payoff.copy(), [strike], True
         for k, dt in enumerate(np.diff(times)):
@@ -114,16 +102,17 @@ def AmericanPut(
             well = bool(found.success) and found.x is not None
             if not well:
                 break
-            # To the digits of the strike: far from it values fall to numbers that no float holds with all its digits.
+            # Round to the strike's digits, which tiny far values lack.
             values[1:-1] = (strike + payoff[1:-1] + found.x) - strike
-            # With more time left it is exercised at no higher price; in the first steps the mesh is too coarse to tell.
+            # The boundary falls with the time left; the first steps are too coarse to show it.
             edges.append(min(edge(found.x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
     def edge(above: Array) -> float:
-        """Where the value leaves the payoff: as a square, from the second and the fourth point where it does.
+        """Extrapolate the boundary from the second and fourth free points.
 
-        The first one has the error of an equation across the edge; without it the boundary is seven times as smooth.
+        The value leaves the payoff quadratically. The first point is inaccurate; the boundary is seven times as smooth
+        without.
         """
         beyond = above > 1e-12 * strike
         k = int(np.argmax(beyond)) if beyond.any() else 0
@@ -132,7 +121,6 @@ def AmericanPut(
         return strike * exp(float(x[k + 1] - away * (x[1] - x[0])))
 
     def solved() -> Exercise:
-        """All time steps, each from the active set of the one before."""
         found: Solution | None = None
 
         def step(problem: LCP) -> Solution:
@@ -143,7 +131,7 @@ def AmericanPut(
         return march(step)
 
     def answer(solution: Any) -> Quantities:
-        """By a cubic through the four points around the spot, which keeps the second order of the differences."""
+        """Interpolate by a cubic to keep second order."""
         place = log(spot / strike)
         k = min(max(int(np.searchsorted(x, place)), 2), n)
         cubic = np.polynomial.Polynomial.fit(x[k - 2 : k + 2], solution.prices[k - 2 : k + 2], 3)
@@ -153,12 +141,10 @@ def AmericanPut(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """For the cases of the tables."""
         key = (spot, strike, rate, volatility, maturity)
         return {"price": KNOWN[key]} if key in KNOWN else {}
 
     def drawn(solution: Any) -> Picture:
-        """The price below which to exercise, against the time that is left."""
         time, below = solution.time_left, solution.boundary
         return picture(
             mark("plot", time, below, color="#0072B2"),
@@ -170,9 +156,7 @@ def AmericanPut(
 
     return Scene(
         units={"price": "money", "delta": "", "exercise below": "money"},
-        # Zero is where it is exercised.
         unknowns=(Unknown("values above the payoff", n, "where to exercise, and the price elsewhere"),),
-        # The last time step before expiry, the first one that is solved.
         problem=lambda: stepped(0.5 * maturity / steps**2, payoff[1:-1]),
         solve=solved, answer=answer, exact=exact, picture=drawn,
         rivals=(Rival("Brennan-Schwartz", "", lambda scene: answer(march(_eliminated))),),
@@ -180,10 +164,7 @@ def AmericanPut(
 
 
 def _eliminated(problem: LCP) -> Point:
-    """Brennan and Schwartz' elimination for a tridiagonal matrix: exact where the put is exercised below one price.
-
-    Eliminated from above, substituted from below with the positive part taken at each point: that takes a loop.
-    """
+    """Tridiagonal elimination, exact if the put is exercised below one price."""
     A: Any = problem.A
     lower, main, upper, right = (part.tolist() for part in (A.diagonal(-1), A.diagonal(), A.diagonal(1), -problem.q))
     for i in range(len(main) - 2, -1, -1):

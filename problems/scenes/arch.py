@@ -1,4 +1,4 @@
-"""A masonry arch under its own weight: does it stand?"""
+"""A masonry arch."""
 
 from __future__ import annotations
 
@@ -19,34 +19,30 @@ def Arch(
 ) -> Scene:  # fmt: skip
     """A half circle of stones with radial joints that take no tension and do not slide: how thin may it be?
 
-    By the safe theorem it stands if some line of thrust, in equilibrium with the weights, lies within every joint. The
-    program finds that line which leaves the largest moment to spare at every joint. By symmetry half the arch is
-    modelled; a half circle of many stones stands from thickness .1075 times its mean radius on.
+    It stands if a line of thrust lies within every joint (safe theorem). The program maximises the least spare moment
+    on half the arch. Many stones stand if thickness / radius > .1075.
 
     Parameters
     ----------
-    radius : float
-        m, to the middle of the stones.
-    thickness : float
-        m.
+    radius, thickness : float
+        m; mean radius.
     stones : int
-        Of one half.
+        Per half.
     weight : float
         N/m^3.
 
     References
     ----------
-    Milankovitch, Z. Math. Phys. 55 (1907); Heyman, Int. J. Solids Struct. 2 (1966); Ochsendorf, The Structural
-    Engineer 84 (2006), for .1075.
+    Milankovitch, Z. Math. Phys. 55 (1907); Heyman, Int. J. Solids Struct. 2 (1966); Ochsendorf, Structural Engineer 84
+    (2006), for .1075.
     """
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
-    # In units of the arch's weight forces and moments are about 1.
+    # Scales forces and moments to about 1.
     unit = weight * radius * thickness
-    # Angles from the crown, the weight above each joint, and its moment about the centre.
     angle = np.linspace(0.0, 0.5 * np.pi, stones + 1)
     above = weight * 0.5 * (outer**2 - inner**2) * angle
     moment = weight * (outer**3 - inner**3) / 3.0 * (1.0 - np.cos(angle))
-    # Max z: inner N + z <= M <= outer N - z, M the moment about the centre, N the force across the joint.
+    # Max z: inner N + z <= M <= outer N - z (moment M, normal force N).
     one, across = np.ones(angle.size), np.stack([np.cos(angle), np.zeros(angle.size)], axis=1)
     G = np.concatenate([
         np.column_stack([inner * across - [0.0, 1.0], one]), np.column_stack([[0.0, 1.0] - outer * across, one]),
@@ -54,24 +50,21 @@ def Arch(
     h = np.concatenate([moment - inner * above * np.sin(angle), outer * above * np.sin(angle) - moment])
 
     def answer(solution: Any) -> Quantities:
-        """The arch stands if there is a moment to spare."""
         thrust, _, spare = unit * solution.x[:3]
         return {"thrust": thrust, "spare moment": spare, "stands": float(spare >= 0.0)}
 
     def exact() -> Quantities:
-        """Milankovitch's limit, for many stones; so near to it that the number of stones decides, nothing."""
+        """Near the limit the number of stones decides: nothing is known."""
         ratio = thickness / radius
         return {"stands": float(ratio > 0.1075)} if abs(ratio - 0.1075) > 0.002 and stones >= 20 else {}
 
     def drawn(solution: Any) -> Picture:
-        """Joints, the line of thrust, and the joints at which it comes nearest to the surface."""
         thrust, own, spare = unit * solution.x[:3]
         force = thrust * np.cos(angle) + above * np.sin(angle)
         r, joint = (own + moment) / force, np.array([inner, outer])
         near = np.minimum(own + moment - inner * force, outer * force - own - moment) <= spare + 1e-9 * unit
 
         def half(side: float, label: str) -> list[Mark]:
-            """To the left or to the right of the crown."""
             return [
                 *(mark("plot", side * np.sin(a) * joint, np.cos(a) * joint, color="0.7") for a in angle),
                 *(mark("plot", side * edge * np.sin(angle), edge * np.cos(angle), color="0.3") for edge in joint),
@@ -87,7 +80,6 @@ def Arch(
 
     return Scene(
         units={"thrust": "N/m", "spare moment": "N", "stands": ""},
-        # The two forces that symmetry leaves undetermined in the crown, and what each side of each joint bears.
         unknowns=(
             Unknown("thrust, its moment, spare moment", 3, "every other force follows by equilibrium"),
             Unknown("rotations", 2 * (stones + 1), "at which joints hinges open, inside or outside"),

@@ -1,4 +1,4 @@
-"""A journal bearing whose oil film breaks."""
+"""A journal bearing."""
 
 from __future__ import annotations
 
@@ -25,43 +25,37 @@ def Bearing(
 ) -> Scene:  # fmt: skip
     """A long journal bearing: where does the oil film break, and which load does it bear?
 
-    Reynolds' equation with the condition of Swift and Stieber, p >= 0, by second-order finite volumes around the shaft.
+    Reynolds' equation with p >= 0 (Swift and Stieber), second-order finite volumes.
 
     Parameters
     ----------
     eccentricity : float
         Between 0 and 1.
-    radius : float
+    radius, clearance : float
         m.
-    clearance : float
-        m.
-    viscosity : float
-        Pa s.
-    speed : float
-        rad/s.
+    viscosity, speed : float
+        Pa s; rad/s.
     n : int
-        Points around the shaft, without that of the widest gap.
+        Points around the shaft.
 
     References
     ----------
-    Cryer, "The method of Christopherson for solving free boundary problems for infinite journal bearings", Math. Comp.
-    25 (1971).
+    Cryer, Math. Comp. 25 (1971).
     """
     h, unit = 2.0 * pi / (n + 1), 6.0 * viscosity * speed * (radius / clearance) ** 2
 
     def gap(angle: Any) -> Any:
-        """Over the clearance, widest at 0."""
+        """Gap over clearance, widest at 0."""
         return 1.0 + eccentricity * np.cos(angle)
 
     def problem() -> LCP:
-        """Flows out of the cells."""
         edges = gap(h * (np.arange(n + 1) + 0.5))
         k = edges**3 / h
         A = sp.diags_array([-k[1:-1], k[:-1] + k[1:], -k[1:-1]], offsets=[-1, 0, 1], format="csr")
         return LCP(A, np.diff(edges))
 
     def answer(solution: Any) -> Quantities:
-        """The flow is the same all along the film, and is the gap where it breaks: second order in h."""
+        """The flow equals the gap at the break, to second order."""
         p, first = solution.x, float(gap(0.5 * h))
         breaks = 2.0 * pi - acos(min(max((first - first**3 * p[0] / h - 1.0) / eccentricity, -1.0), 1.0))
         angle = h * np.arange(1, n + 1)
@@ -71,14 +65,13 @@ def Bearing(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """By quadrature of (gap - gap where it breaks) / gap^3, which is p'."""
+        """Quadrature of p' = (gap - gap at the break) / gap^3."""
 
         def integral(end: float, breaks: float, weight: Any = np.ones_like) -> float:
             return float(quad(lambda a: (gap(a) - gap(breaks)) / gap(a) ** 3 * weight(a), 0.0, end,
                               epsabs=1e-12, epsrel=1e-11)[0])  # fmt: skip
 
         breaks = float(brentq(lambda b: integral(b, b), pi + 1e-6, 2.0 * pi - 1e-6, xtol=1e-14))
-        # By parts, since p is zero at both ends.
         across, up = (integral(breaks, breaks, f) for f in (np.sin, np.cos))
         return {
             "film breaks at": degrees(breaks), "largest pressure": unit * integral(2.0 * pi - breaks, breaks),
@@ -86,7 +79,6 @@ def Bearing(
         }  # fmt: skip
 
     def drawn(solution: Any) -> Picture:
-        """Pressure around the shaft, and the gap."""
         breaks = answer(solution)["film breaks at"]
         return picture(
             mark("plot", np.linspace(0.0, 360.0, n + 2), 1e-6 * unit * np.pad(solution.x, 1), color="#0072B2",
@@ -97,14 +89,12 @@ def Bearing(
 
     return Scene(
         units={"film breaks at": "degrees", "largest pressure": "Pa", "load": "N/m"},
-        # Where the film is broken they are zero, and the gap is not full.
         unknowns=(Unknown("pressures", n, "where the film is, and what it bears"),),
         problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, LEMKE, *QUADRATIC),
     )  # fmt: skip
 
 
 def _peak(p: Array) -> float:
-    """The top of the parabola through the largest value and its neighbours."""
     k = min(max(int(np.argmax(p)), 1), p.size - 2)
     a, b, c = p[k - 1 : k + 2]
     bend = a - 2.0 * b + c

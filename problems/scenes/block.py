@@ -1,4 +1,4 @@
-"""A block on a plane: it slides, or friction holds it."""
+"""A block on a rough plane."""
 
 from __future__ import annotations
 
@@ -20,40 +20,30 @@ def Block(
 ) -> Scene:  # fmt: skip
     """A block on a plane, pushed or not: does it slide, or does friction hold it?
 
-    One time step. Its rotation is not modelled, so one contact is enough.
+    One time step without rotation.
 
     Parameters
     ----------
-    mass : float
-        kg.
+    mass, gravity, step : float
+        kg, m/s^2, s.
     friction : float
         Coulomb's coefficient.
-    speed : float
-        m/s, before the step.
-    push : float
-        N, along the plane.
-    gravity : float
-        m/s^2.
-    step : float
-        s.
+    speed, push : float
+        Before the step, m/s; along the plane, N.
 
     References
     ----------
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996).
     """
     A, _, _ = time_step([(mass, 1.0, 0.0, 0.0)], [(0, -1, 0.0, 0.0, 0.0, 1.0)], friction)
-    # The speed after the step without friction.
     free = speed + step * push / mass
     q = free_motion(np.array([-step * gravity, free]))
-    # Without friction the normal impulse is the one unknown.
     n = 4 if friction else 1
 
     def after(normal: float, along: float) -> Quantities:
-        """Impulses of the plane on the block, and its speed after the step."""
         return {"normal impulse": normal, "friction impulse": along, "speed": free + along / mass}
 
     def exact() -> Quantities:
-        """Friction stops the block, or is at its limit."""
         normal = mass * gravity * step
         return after(normal, -float(np.clip(mass * free, -friction * normal, friction * normal)))
 
@@ -61,7 +51,6 @@ def Block(
         return after(*impulses(np.pad(solution.x, (0, 4 - solution.x.size))))
 
     def drawn(solution: Any) -> Picture:
-        """The block, the impulses on it, and its velocity after the step."""
         normal, along, speed = answer(solution).values()
         return picture(
             mark("fill", [-0.5, 0.5, 0.5, -0.5], [0.0, 0.0, 0.6, 0.6], color="0.85"),

@@ -1,4 +1,4 @@
-"""A box on two corners, pushed at its top: it rests, slides, or tips."""
+"""A pushed box."""
 
 from __future__ import annotations
 
@@ -20,30 +20,24 @@ def Box(
 ) -> Scene:  # fmt: skip
     """A box that stands on a rough floor and is pushed at the height of its top: does it rest, slide, or tip?
 
-    A flat floor bears on the two corners alone: what presses between them can be replaced by forces there.
+    The floor acts on two corners.
 
     Parameters
     ----------
     width, height : float
         m.
-    mass : float
-        kg.
+    mass, gravity, step : float
+        kg, m/s^2, s.
     friction : float
     push : float
         N, to the right.
-    gravity : float
-        m/s^2.
-    step : float
-        s.
     """
     half, inertia, weight = 0.5 * width, mass * (width**2 + height**2) / 12.0, mass * gravity
     corners = [(0, -1, side, 0.0, 0.0, 1.0) for side in (-half, half)]
     A, J, inverse = time_step([(mass, inertia, 0.0, 0.5 * height)], corners, friction)
-    # The velocity after the step without a floor.
     free = step * inverse * np.array([push, -mass * gravity, -0.5 * push * height])
 
     def answer(solution: Any) -> Quantities:
-        """Forces of the floor, and velocities after the step; to tip is to turn, which is a negative rotation."""
         p = impulses(solution.x)
         velocity = free + inverse * (J.T @ p)
         left, right = p[::2] / step
@@ -53,7 +47,7 @@ def Box(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Of a box that rests; one that slides, or tips, has other forces."""
+        """Only a box at rest has a closed form."""
         moment = push * height / width
         if abs(push) >= friction * weight or abs(moment) >= 0.5 * weight:
             return {}
@@ -63,7 +57,6 @@ def Box(
         }  # fmt: skip
 
     def drawn(solution: Any) -> Picture:
-        """The box with the forces at its corners and its top, in parts of its weight."""
         left, right, friction, speed, rotation = answer(solution).values()
         unit, moves = height / weight, 1e-9 * step * gravity
         return picture(

@@ -1,4 +1,4 @@
-"""Braess' paradox: a new road that makes every way longer."""
+"""Braess' paradox."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_par
 def Braess(cars: Positive = 6.0, bridge: bool = True) -> Scene:
     """Drivers choose among two routes, or three with a bridge between them: how long do they take?
 
-    A route takes 10 a car on each narrow road, 50 and 1 a car on each wide one; on the bridge 10 and 1 a car.
+    Minutes: 10 per car on narrow roads, 50 plus 1 per car on wide ones, 10 plus 1 on the bridge.
 
     Parameters
     ----------
@@ -27,14 +27,13 @@ def Braess(cars: Positive = 6.0, bridge: bool = True) -> Scene:
     ----------
     Braess, Unternehmensforschung 12 (1968); Wardrop, Proc. Inst. Civ. Eng. 1 (1952).
     """
-    # Roads: narrow, wide, wide, narrow, bridge; routes: over the first two, the next two, narrow - bridge - narrow.
+    # Roads: narrow, wide, wide, narrow, bridge.
     routes = np.array([[1, 1, 0, 0, 0], [0, 0, 1, 1, 0], [1, 0, 0, 1, 1]], dtype=float)[: 2 + bridge]
     slope, empty = np.array([10.0, 1.0, 1.0, 10.0, 1.0]), np.array([0.0, 50.0, 50.0, 0.0, 10.0])
     one = np.ones((len(routes), 1))
     A = np.block([[(routes * slope) @ routes.T, -one], [one.T, np.zeros((1, 1))]])
 
     def exact() -> Quantities:
-        """Who takes the bridge is nobody, everybody, or as many as make the times equal."""
         over = float(np.clip((80.0 - 9.0 * cars) / 13.0, 0.0, cars)) if bridge else 0.0
         side = 0.5 * (cars - over)
         narrow = 10.0 * (side + over)
@@ -42,7 +41,6 @@ def Braess(cars: Positive = 6.0, bridge: bool = True) -> Scene:
         return {"flows": np.array([side, side, over][: 2 + bridge]), "time": time}
 
     def drawn(solution: Any) -> Picture:
-        """The roads, as wide as their loads."""
         f = np.pad(solution.x[:-1], (0, 3 - len(routes)))
         places = {"s": (0.0, 0.5), "a": (1.0, 1.0), "b": (1.0, 0.0), "t": (2.0, 0.5)}
         roads = [("s", "a", f[0] + f[2]), ("a", "t", f[0]), ("s", "b", f[1]), ("b", "t", f[1] + f[2]), ("a", "b", f[2])]

@@ -1,4 +1,4 @@
-"""A reacting layer under a lid: Bratu's fold, and the kink behind it."""
+"""Bratu's problem under a lid."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least
 
 @frozen
 class HalfLayer:
-    """The force of `BratuForce` at the points of one half, the last one in the middle, for a solution that is even."""
+    """`BratuForce` of an even solution on one half, the middle last."""
 
     n: int
 
@@ -30,14 +30,14 @@ class HalfLayer:
         return BratuForce(Bratu1D(2 * self.n - 1))
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """The value, shape (n,); jets pass through it."""
+        """Value, shape (n,); accepts jets."""
         return self._whole(np.concatenate((x, x[-2::-1])), lam)[: self.n]
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
-        """Tridiagonal, and shape (n,)."""
+        """Tridiagonal matrix; shape (n,)."""
         F_x, F_lam = self._whole.slope(np.concatenate((x, x[-2::-1])), lam)
         bands = F_x.ab[:, : self.n].copy()
-        # Of the middle both neighbours are the same unknown.
+        # Both neighbours of the middle are one unknown.
         bands[2, -2] *= 2.0
         return Banded(bands, 1, 1), F_lam[: self.n]
 
@@ -46,17 +46,17 @@ class HalfLayer:
 def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_least(4)] = 50) -> Scene:
     """A layer that heats itself, u'' + load e^u = 0, with u held below a lid: where does its path turn?
 
-    Its path turns in the usual fold, comes back until the middle touches the lid, and turns there again, in a kink. By
-    second-order differences; solutions are symmetric, so half the layer is modelled.
+    It turns at a fold, and again at a kink where the middle touches the lid. Second-order differences on half the
+    layer.
 
     Parameters
     ----------
     lid : float
-        More than 1.1869, the largest u in the fold: below that there is none.
+        Above 1.1869, the largest u at the fold.
     load : float
-        At which the answer says where u touches the lid.
+        Where contact is reported.
     n : int
-        Points from the surface, which is none of them, to the middle.
+        Points from the surface (excluded) to the middle.
 
     References
     ----------
@@ -65,24 +65,22 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
     layer, weight = HalfLayer(n), np.append(np.ones(n - 1), 0.5)
 
     def problem() -> NormalMap:
-        """The path from zero load, to the load."""
         return NormalMap(layer, layer.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=lid, target=max(load, 3.6))
 
     def named(fold: float, kink: float, z: Array) -> Quantities:
-        # z is above the lid by the lid's force; where u rests that is the load's, so it tells how far: to second order.
+        # The lid's force z - lid balances the load and locates the edge to second order.
         force = np.maximum(z - lid, 0.0) * weight * 2.0 * n
         edge = 0.5 - float(force.sum()) / (load * exp(lid))
         return {"fold": fold, "turning kink": kink, "contact from": edge}
 
     def answer(solution: Any) -> Quantities:
-        """Loads at which the path turns, and the contact's edge at the load."""
         folds = [event.lam for event in solution.turning_points if event not in solution.kinks]
         kinks = [kink.lam for kink in solution.kinks if kink.name == "turning kink"]
         z = solve_at(problem(), load, solution.crossings(load)[-1][:-1])
         return named(folds[0] if folds else np.nan, kinks[0] if kinks else np.nan, z)
 
     def exact() -> Quantities:
-        """By quadrature: u' = 0 at the lid's edge, so that all is in elementary functions."""
+        """Closed form: u' = 0 at the contact's edge."""
         turn = float(brentq(lambda z: z * np.tanh(z) - 1.0, 1.0, 1.5, xtol=1e-15))
         reach = acosh(exp(0.5 * lid))
         return {
@@ -91,7 +89,6 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
         }  # fmt: skip
 
     def drawn(solution: Any) -> Picture:
-        """The mean of u against the load, with fold and kinks."""
         u = solution(np.linspace(0.0, solution.arclength[-1], 400))
 
         def shown(u: Array, *style: str, **options: Any) -> Any:
@@ -107,7 +104,6 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
 
     return Scene(
         units={"fold": "", "turning kink": "", "contact from": ""},
-        # One half: with both, kinks would come in pairs.
         unknowns=(Unknown("temperatures", n, "where they reach the lid"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

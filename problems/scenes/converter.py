@@ -1,4 +1,4 @@
-"""A DC/DC converter in its periodic state."""
+"""A DC/DC converter."""
 
 from __future__ import annotations
 
@@ -21,40 +21,31 @@ def Converter(
 ) -> Scene:  # fmt: skip
     """A buck converter, with an ideal switch and an ideal diode, over one period of its periodic state.
 
-    By the trapezoidal rule. The period closes on itself, so that all of it is one problem, and no transient is
-    computed. The diode blocks where the coil's current would turn; with a light load it is zero for a part of the
-    period, and the output is higher than duty * input.
+    The trapezoidal rule closes the period: no transient. The diode keeps the coil's current from reversing. At light
+    load the current pauses and the output exceeds duty * voltage.
 
     Parameters
     ----------
-    voltage : float
-        V, of the input.
+    voltage, load : float
+        V (input); Ohm.
     duty : float
-        The part of the period for which the switch is closed.
-    period : float
-        s.
-    inductance : float
-        H.
-    capacity : float
-        F.
-    load : float
-        Ohm.
+        Fraction of the period with closed switch.
+    period, inductance, capacity : float
+        s, H, F.
     n : int
-        Steps in a period.
+        Steps per period.
 
     References
     ----------
     Erickson and Maksimovic, Fundamentals of Power Electronics, 2001, chapter 5.
     """
-    # The part of each step for which the switch is closed.
     closed = np.clip(duty * n - np.arange(n), 0.0, 1.0)
     one, before, h = np.eye(n), np.roll(np.eye(n), -1, axis=1), period / n
-    # Differences and means of neighbours around the period, and currents to voltages.
+    # Periodic differences and means; map from coil currents to capacitor voltages.
     difference, mean = one - before, 0.5 * (one + before)
     voltages = np.linalg.solve(capacity / h * difference + mean / load, mean)
 
     def answer(solution: Any) -> Quantities:
-        """Means over the period, by the trapezoidal rule."""
         i = np.asarray(solution.x)
         return {
             "output": float((voltages @ i).mean()), "largest current": float(i.max()),
@@ -63,13 +54,12 @@ def Converter(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """For a capacitor so large that its voltage stands still."""
+        """Holds for a constant capacitor voltage (large capacity)."""
         K = 2.0 * inductance / (load * period)
         ratio = duty if 1.0 - duty <= K else 2.0 / (1.0 + (1.0 + 4.0 * K / duty**2) ** 0.5)
         return {"output": ratio * voltage}
 
     def drawn(solution: Any) -> Picture:
-        """The coil's current over the period."""
         time, i = 1e6 * np.linspace(0.0, period, n + 1), np.asarray(solution.x)
         return picture(
             mark("plot", time, np.append(i[-1], i), color="#0072B2", label="current of the coil"),
@@ -79,9 +69,8 @@ def Converter(
 
     return Scene(
         units={"output": "V", "largest current": "A", "part without current": "", "mean input current": "A"},
-        # The capacitor's voltages are linear in these.
         unknowns=(Unknown("currents of the coil", n, "when the diode blocks"),),
-        # The voltage across the diode, mean over each step: at least zero, and zero while current flows.
+        # Mean diode voltage: nonnegative, zero while current flows.
         problem=lambda: LCP(inductance * n / period * difference + mean @ voltages, -voltage * closed),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Cournot's oligopoly: how much do competing producers sell?"""
+"""Cournot's oligopoly."""
 
 from __future__ import annotations
 
@@ -21,18 +21,15 @@ def Cournot(
 ) -> Scene:  # fmt: skip
     """Producers with different costs sell one good at the price that their total leaves: who sells how much?
 
-    The price is intercept - slope * total. Each maximises its own profit, given what the others sell.
+    The price is intercept - slope * total. Each maximises its profit.
 
     Parameters
     ----------
     costs : sequence of float
-        Money a unit, of each producer.
-    intercept : float
-        The price at which nothing is bought.
-    slope : float
-        By which the price falls with each unit.
+        Per unit.
+    intercept, slope : float
     capacity : float
-        The most that one producer can make.
+        Per producer.
 
     References
     ----------
@@ -42,19 +39,17 @@ def Cournot(
     A = slope * (np.eye(n) + np.ones((n, n)))
 
     def answer(solution: Any) -> Quantities:
-        """Quantities, price and profits."""
         sold = np.asarray(solution.x)
         price = intercept - slope * float(sold.sum())
         return {"quantities": sold, "price": price, "profits": (price - cost) * sold}
 
     def exact() -> Quantities:
-        """Without a binding capacity: producers enter in the order of their costs as long as it pays."""
+        """Cheapest producers enter first; a binding capacity has no closed form."""
         price = float(min(intercept, ((intercept + np.cumsum(np.sort(cost))) / (np.arange(n) + 2.0)).min()))
         sold = np.maximum(price - cost, 0.0) / slope
         return {} if (sold > capacity).any() else {"quantities": sold, "price": price}
 
     def drawn(solution: Any) -> Picture:
-        """What each sells, against its cost, below the price."""
         found = answer(solution)
         return picture(
             mark("bar", range(n), found["quantities"], color="#0072B2"),
@@ -64,9 +59,8 @@ def Cournot(
 
     return Scene(
         units={"quantities": "units", "price": "money a unit", "profits": "money"},
-        # A capacity is a bound, which needs no multiplier, and the price follows.
         unknowns=(Unknown("quantities", n, "who sells how much"),),
-        # Marginal profits, with their signs changed.
+        # Negative marginal profits.
         problem=lambda: MixedLCP(A, cost - intercept, np.zeros(n), np.full(n, capacity)),
         answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A signal with jumps, freed of noise by total variation."""
+"""Total-variation denoising."""
 
 from __future__ import annotations
 
@@ -19,16 +19,14 @@ def Denoising(
 ) -> Scene:
     """A signal of flat pieces under noise: where does it jump?
 
-    It is the x of least |x - y|^2 / 2 + weight * (sum of its jumps).
+    Minimise |x - y|^2 / 2 + weight * (sum of absolute jumps).
 
     Parameters
     ----------
-    samples : int
-        A multiple of 4: the true signal has four levels.
-    weight : float
-    noise : float
-        Standard deviation.
-    seed : int
+    samples, seed : int
+        A multiple of 4 samples, for four levels.
+    weight, noise : float
+        Noise is a standard deviation.
 
     References
     ----------
@@ -39,26 +37,24 @@ def Denoising(
     data = true + noise * np.random.default_rng(seed).normal(size=samples)
 
     def problem() -> MixedLCP:
-        """D D' z - D y in the box of the weight, D the differences of neighbours."""
+        """D D' z - D y, |z| <= weight, D differences."""
         A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), format="csr")
         return MixedLCP(A, -np.diff(data), np.full(n, -weight), np.full(n, weight))
 
     def answer(solution: Any) -> Quantities:
-        """The signal y - D'z, and the number of its jumps, where the force is at its limit."""
+        """The signal y - D'z jumps where |z| = weight."""
         z = np.asarray(solution.x)
         jumps = float((np.abs(z) >= weight * (1.0 - 1e-9)).sum())
         return {"signal": data + np.diff(np.pad(z, 1)), "jumps": jumps}
 
     def exact() -> Quantities:
-        """Without noise every level moves to its neighbours by the weight over its length, while there are jumps."""
+        """Without noise, each jump moves its two levels together by weight / length."""
         whole, rest = divmod(samples, 4)
         by = weight / whole
-        # Up, down, up: the ends are pulled by one jump, what is inside by two.
         moved = levels + by * np.array([1.0, -2.0, 2.0, -1.0])
         return {} if noise or rest or by > 0.2 else {"signal": np.repeat(moved, whole), "jumps": 3.0}
 
     def drawn(solution: Any) -> Picture:
-        """The noisy signal and the one that is found."""
         found = answer(solution)["signal"]
         return picture(
             mark("plot", data, ".", color="0.65", markersize=3, label="measured"),
@@ -68,7 +64,6 @@ def Denoising(
 
     return Scene(
         units={"signal": "", "jumps": ""},
-        # At most the weight; the signal is the data moved by these.
         unknowns=(Unknown("forces between neighbours", n, "where the signal jumps"),),
         problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A bridge of four ideal diodes that rectifies a voltage."""
+"""A diode bridge."""
 
 from __future__ import annotations
 
@@ -21,17 +21,15 @@ def DiodeBridge(
 ) -> Scene:
     """A source, four ideal diodes and a load: which diodes conduct, and what does the load get?
 
-    The path over all voltages from -amplitude to amplitude has one kink, at zero, where all four diodes switch at once.
+    The path from -amplitude to amplitude has one kink, at zero: all diodes switch.
 
     Parameters
     ----------
     voltage : float
-        V, of the source, where the answer gives currents.
+        V, where currents are reported.
     amplitude : float
         V.
-    load : float
-        Ohm.
-    source_resistance : float
+    load, source_resistance : float
         Ohm.
 
     References
@@ -40,19 +38,18 @@ def DiodeBridge(
     """
     if abs(voltage) > amplitude:
         raise ValueError(f"voltage: expected at most the amplitude, {amplitude}, found {voltage}")
-    # The matrix, and q for one volt: upper diodes to the load, lower ones back to both ends of the source.
+    # Matrix, and q per volt.
     R, g = load, 1.0 / source_resistance
     A = np.array([[R, R, -1.0, 0.0], [R, R, 0.0, -1.0], [1.0, 0.0, g, -g], [0.0, 1.0, -g, g]])
     one = np.array([0.0, 0.0, -g, g])
 
     def solved() -> Path:
-        """The path over the voltages; below zero the second upper diode conducts."""
+        """The second upper diode conducts below zero."""
         current = amplitude / (load + source_resistance)
         start = np.array([0.0, current, 0.0, load * current])
         return along(LCP(A, np.zeros(4)), one, (-amplitude, amplitude), x=start)
 
     def answer(solution: Any) -> Quantities:
-        """At the voltage, and of a path the mean over a period of a sine."""
         path = isinstance(solution, Path)
         x = solution(t=voltage)[:-1] if path else np.asarray(solution.x)
         w = A @ x + voltage * one
@@ -60,10 +57,7 @@ def DiodeBridge(
         return {**found, "mean load voltage": mean(solution)} if path else found
 
     def mean(solution: Path) -> float:
-        """In closed form, over a quarter of a sine, from its zero to its peak, each way.
-
-        Between kinks the load's voltage is linear in the source's.
-        """
+        """Integrate the piecewise linear load voltage over a sine exactly."""
         v, u = solution.lam, load * solution.y[:, :2].sum(axis=1)
         angle = np.arcsin(np.clip(v / amplitude, -1.0, 1.0))
         slope = np.diff(u) / np.diff(v)
@@ -71,7 +65,6 @@ def DiodeBridge(
         return float(whole.sum()) / pi
 
     def exact() -> Quantities:
-        """The absolute value, divided by the two resistances."""
         part = load / (load + source_resistance)
         i = abs(voltage) * part / load
         return {
@@ -81,7 +74,6 @@ def DiodeBridge(
         }  # fmt: skip
 
     def drawn(solution: Any) -> Picture:
-        """Voltages of source and load over a period."""
         time = np.linspace(0.0, 2.0, 401)
         source = amplitude * np.sin(pi * time)
         got = load * np.interp(source, solution.lam, solution.y[:, :2].sum(axis=1))
@@ -93,7 +85,6 @@ def DiodeBridge(
 
     return Scene(
         units={"load voltage": "V", "diode currents": "A", "mean load voltage": "V"},
-        # One for each diode; Kirchhoff's laws give everything else.
         unknowns=(
             Unknown("currents of the upper diodes", 2, "which of them conducts"),
             Unknown("voltages across the lower diodes", 2, "which of these does not conduct"),

@@ -1,4 +1,4 @@
-"""A flash drum: how much of a mixture boils, and when a phase appears or vanishes."""
+"""A flash drum."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import Positive, Quantities, Rival, Scene, Unknown, with_parameters
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
-"""Of benzene and toluene, for mm Hg and degrees Celsius: log10 p = A - B / (T + C) (Perry's handbook)."""
+"""Antoine coefficients of benzene and toluene: log10 p = A - B / (T + C), mm Hg and Celsius (Perry's handbook)."""
 
 
 @frozen
 class RachfordRice:
-    """Rachford and Rice's function with its sign changed: it rises with the part of vapour."""
+    """The negative Rachford-Rice function, increasing in the vapour fraction."""
 
     feed: tuple[float, float]
     pressure: float
 
     def volatilities(self, temperature: Any) -> Any:
-        """K_i - 1 = p_i / p - 1, by Raoult's law, in a list; 760 mm Hg are 101.325 kPa. Jets pass through it."""
+        """K_i - 1 = p_i / p - 1 (Raoult), 760 mm Hg = 101.325 kPa; accepts jets."""
         return [10.0 ** (a - b / (temperature + c)) * (101.325 / 760.0 / self.pressure) - 1.0 for a, b, c in ANTOINE]
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """-sum z_i (K_i - 1) / (1 + x (K_i - 1)), shape (1,)."""
+        """Value, shape (1,)."""
         return -sum(z * k / (1.0 + x * k) for z, k in zip(self.feed, self.volatilities(lam)))
 
 
@@ -37,17 +37,16 @@ class RachfordRice:
 def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature: Positive = 95.0) -> Scene:
     """Benzene and toluene in a drum: which part is vapour at each temperature?
 
-    The part of vapour is between 0 and 1. At 0 no vapour can appear, at 1 no liquid: complementarity with two bounds,
-    as a path over the temperature with a kink at the bubble point and one at the dew point.
+    The vapour fraction, in [0, 1], has kinks at the bubble point and the dew point.
 
     Parameters
     ----------
     benzene : float
-        Its part of the feed, in moles; the rest is toluene.
+        Mole fraction; the rest is toluene.
     pressure : float
         kPa.
     temperature : float
-        Degrees Celsius, where the answer gives the phases; between 70 and 120.
+        Degrees Celsius, 70 to 120, where phases are reported.
 
     References
     ----------
@@ -64,11 +63,10 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
                          f"degrees, found {pressure}")  # fmt: skip
 
     def problem() -> NormalMap:
-        """The path of the part of vapour, from cold to warm."""
         return NormalMap(balance, x0=np.zeros(1), lam0=cold, lower=0.0, upper=1.0, target=warm)
 
     def phases(bubble: float, dew: float, part: float) -> Quantities:
-        """A phase that is not there has the composition in which it would appear."""
+        """An absent phase gets its incipient composition."""
         k = np.array(balance.volatilities(temperature))
         liquid = np.array([z / (1.0 + part * ki) for z, ki in zip(balance.feed, k)])
         vapour = liquid * (1.0 + k)
@@ -78,20 +76,17 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
         }  # fmt: skip
 
     def answer(solution: Any) -> Quantities:
-        """Temperatures at which a phase appears or vanishes, and the phases at one temperature."""
         z = solve_at(problem(), temperature, solution(t=temperature)[:-1])
         bubble, dew = (kink.lam for kink in solution.kinks)
         return phases(bubble, dew, float(np.clip(z[0], 0.0, 1.0)))
 
     def exact() -> Quantities:
-        """By Brent's method, phase by phase."""
         bubble, dew = (brentq(lambda T, x=x: float(balance(x, T)), cold, warm, xtol=1e-13) for x in (0.0, 1.0))
         inside = bubble < temperature < dew
         part = brentq(lambda x: float(balance(x, temperature)), 0.0, 1.0, xtol=1e-15) if inside else dew <= temperature
         return phases(bubble, dew, float(part))
 
     def drawn(solution: Any) -> Picture:
-        """The part of vapour against the temperature."""
         u = solution(np.linspace(0.0, solution.arclength[-1], 400))
         kinks = [(kink.lam, np.clip(kink.y[0], 0.0, 1.0)) for kink in solution.kinks]
         return picture(
@@ -107,7 +102,6 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
             "bubble point": "degrees C", "dew point": "degrees C", "vapour": "", "benzene in vapour": "",
             "benzene in liquid": "",
         },
-        # Compositions follow from it, and no phase needs a switch of its own.
         unknowns=(Unknown("part of vapour", 1, "which phases there are"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
         rivals=(Rival("Brent, phase by phase (scipy)", "", lambda scene: exact()),),

@@ -1,4 +1,4 @@
-"""A game of two players: all its equilibria."""
+"""A game of two players."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.scenes.scene import Kind, Point, Quantities, Rival, Scene, Unknown
 
 
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
-    """The rows of a matrix of finite numbers, so that parameters can be compared."""
+    """Convert a finite matrix to tuples, which can be compared."""
     matrix = real_array(name, value)
     if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
         raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
@@ -27,10 +27,7 @@ Payoffs = Annotated[Any, Kind(convert=payoffs)]
 
 
 def bimatrix(C: Array, D: Array) -> LCP:
-    """The equilibria of a game with positive losses: C y >= e and D'x >= e, complementary to x and y.
-
-    `C`, `D`, of shape (m, n): What the player who chooses a row loses, and the one who chooses a column.
-    """
+    """Equilibria for positive losses `C`, `D` of shape (m, n): C y >= e and D'x >= e, complementary to x and y."""
     m, n = C.shape
     return LCP(np.block([[np.zeros((m, m)), C], [D.T, np.zeros((n, n))]]), -np.ones(m + n))
 
@@ -41,12 +38,12 @@ def Game(
 ) -> Scene:
     """Two players choose at the same time: which mixed strategies are best against each other?
 
-    Of small games all equilibria are found, by trying all faces exactly; of larger ones those that lie on paths.
+    Small games: an exact test of all faces finds all equilibria. Larger ones: paths find some.
 
     Parameters
     ----------
     rows, columns : matrix
-        What the player who chooses a row gains, and the one who chooses a column.
+        Gains of the two players.
 
     References
     ----------
@@ -59,7 +56,7 @@ def Game(
     m, n = mine.shape
 
     def answer(solution: Any) -> Quantities:
-        """One equilibrium a row, both mixed strategies side by side, in lexical order; and what both gain."""
+        """Sort equilibria lexically."""
         points = np.atleast_2d(solution.points if hasattr(solution, "points") else solution.x)
         mixed = np.hstack([part / part.sum(axis=1, keepdims=True) for part in (points[:, :m], points[:, m:])])
         mixed = mixed[np.lexsort(mixed.round(9).T[::-1])]
@@ -67,7 +64,6 @@ def Game(
         return {"equilibria": mixed, "gains": np.array(gains)}
 
     def exact() -> Quantities:
-        """That of Avis and others, who publish theirs."""
         avis = [[3.0, 3.0], [2.0, 5.0], [0.0, 6.0]], [[3.0, 2.0], [2.0, 6.0], [3.0, 1.0]]
         published = [
             [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0], [0.8, 0.2, 0.0, 2.0 / 3.0, 1.0 / 3.0],
@@ -76,7 +72,6 @@ def Game(
         return {"equilibria": np.array(published)} if (mine.tolist(), others.tolist()) == avis else {}
 
     def bars(place: float, mixed: Array, colour: str) -> list[Any]:
-        """One player's strategies side by side."""
         left = np.append(0.0, np.cumsum(mixed)[:-1])
         return [
             *(mark("barh", place, part, left=at, color=colour, alpha=1.0 - 0.25 * i, edgecolor="white")
@@ -86,7 +81,6 @@ def Game(
         ]  # fmt: skip
 
     def drawn(solution: Any) -> Picture:
-        """Each equilibrium as two rows of bars."""
         found = answer(solution)["equilibria"]
         each = [part for k, row in enumerate(found)
                 for part in (*bars(3 * k, row[:m], "#0072B2"), *bars(3 * k + 1, row[m:], "#D55E00"))]  # fmt: skip
@@ -97,7 +91,7 @@ def Game(
         )  # fmt: skip
 
     def supports(scene: Any) -> Quantities:
-        """All equilibria of a game without degeneracy."""
+        """Complete for nondegenerate games."""
         theory = import_module("quantecon.game_theory")
         players = [theory.Player(mine), theory.Player(others.T)]
         found = theory.support_enumeration(theory.NormalFormGame(players))
@@ -105,10 +99,9 @@ def Game(
 
     return Scene(
         units={"equilibria": "", "gains": ""},
-        # Probabilities over what the other player loses: with positive losses that value needs no unknown.
+        # Positive losses need no unknown for the game's value.
         unknowns=(Unknown("strategies of the first", m, "what the first mixes"),
                   Unknown("strategies of the second", n, "what the second mixes")),
-        # In losses against more than the best.
         problem=lambda: bimatrix(mine.max() + 1.0 - mine, others.max() + 1.0 - others),
         solve=lambda: solutions(bimatrix(mine.max() + 1.0 - mine, others.max() + 1.0 - others)),
         answer=answer, exact=exact, picture=drawn,

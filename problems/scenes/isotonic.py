@@ -1,4 +1,4 @@
-"""A curve that may only rise, fitted to noisy data."""
+"""Isotonic regression."""
 
 from __future__ import annotations
 
@@ -20,10 +20,9 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
 
     Parameters
     ----------
-    samples : int
+    samples, seed : int
     noise : float
         Standard deviation.
-    seed : int
 
     References
     ----------
@@ -33,22 +32,19 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
     data = 1.0 / (1.0 + np.exp(-2.0 * place)) + noise * np.random.default_rng(seed).normal(size=samples)
 
     def problem() -> LCP:
-        """D D' z + D y >= 0, D the differences of neighbours."""
+        """D D' z + D y >= 0, D differences."""
         A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), format="csr")
         return LCP(A, np.diff(data))
 
     def answer(solution: Any) -> Quantities:
-        """The fit y + D'z, and the number of its different values."""
         z = np.asarray(solution.x)
         return {"fit": data - np.diff(np.pad(z, 1)), "steps": 1.0 + float((z == 0.0).sum())}
 
     def exact() -> Quantities:
-        """By pooling adjacent violators, which is exact."""
         fit = _pooled(data)
         return {"fit": fit, "steps": 1.0 + float((np.diff(fit) > 0.0).sum())}
 
     def drawn(solution: Any) -> Picture:
-        """Data and fit."""
         return picture(
             mark("plot", data, ".", color="0.6", label="measured"),
             mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
@@ -57,7 +53,6 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
 
     return Scene(
         units={"fit": "", "steps": ""},
-        # The fit is the data moved by these, so no value of the curve is an unknown.
         unknowns=(Unknown("forces between neighbours", n, "which samples are pooled"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
         rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
@@ -65,7 +60,7 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
 
 
 def _pooled(data: Array) -> Array:
-    """The rising curve nearest to the data, by pooling adjacent violators."""
+    """Pool adjacent violators."""
     blocks: list[tuple[float, int]] = []
     for value in data.tolist():
         total, size = value, 1

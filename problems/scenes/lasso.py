@@ -1,4 +1,4 @@
-"""A penalised regression: all its solutions, from nothing to least squares."""
+"""Lasso path."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, U
 
 
 def penalised(G: Array, c: Array) -> Path:
-    """The path of min b'Gb/2 - c'b + t |b|_1, from the least t with b = 0 on, to 0.
+    """Path of min b'Gb/2 - c'b + t |b|_1 from b = 0 to t = 0.
 
     References
     ----------
@@ -34,19 +34,17 @@ def Lasso(
 ) -> Scene:  # fmt: skip
     """Which of many features explain an observation, as the penalty on their coefficients falls?
 
-    min |X b - y|^2 / 2 + t |b|_1 for all t at once: a path with a kink wherever a feature enters or leaves. The data
-    are drawn at random, with a few features that matter.
+    The path of min |X b - y|^2 / 2 + t |b|_1, with kinks where features enter or leave; random data.
 
     Parameters
     ----------
-    samples, features : int
+    samples, features, seed : int
     relevant : int
-        Features whose coefficient is not zero.
+        Nonzero true coefficients.
     noise : float
         Standard deviation.
     penalty : float
-        At which the answer gives the coefficients.
-    seed : int
+        Where coefficients are reported.
 
     References
     ----------
@@ -59,18 +57,15 @@ def Lasso(
     y = X @ b + noise * random.normal(size=samples)
 
     def answer(solution: Any) -> Quantities:
-        """Coefficients at the penalty, the penalty at which the first one enters, and the number of kinks."""
         enters = solution.lam[0] if not solution.kinks else solution.kinks[0].lam
         b = solution(t=penalty)[:-1] if penalty < enters else np.zeros(features)
         return {"coefficients": b, "first enters at": enters, "kinks": float(len(solution.kinks))}
 
     def exact() -> Quantities:
-        """The first enters at the largest correlation; without penalty b is that of least squares."""
         least = {} if penalty or samples <= features else {"coefficients": np.linalg.lstsq(X, y)[0]}
         return {"first enters at": float(np.abs(X.T @ y).max()), **least}
 
     def drawn(solution: Any) -> Picture:
-        """Coefficients against the penalty."""
         kinks = ((np.full(len(kink.switches), kink.lam), kink.y[list(kink.switches)]) for kink in solution.kinks)
         return picture(
             mark("plot", solution.lam, solution.y, linewidth=1.0),
@@ -94,9 +89,8 @@ def Lasso(
 
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
-        # Parts of both signs would be twice as many, of a singular problem.
+        # Splitting signs would double the unknowns and make the problem singular.
         unknowns=(Unknown("coefficients", features, "which features matter, and how much"),),
-        # Of least squares; the penalty is a level of the path.
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),
         answer=answer, exact=exact, picture=drawn,

@@ -1,4 +1,4 @@
-"""A membrane over a ball: where it rests on it."""
+"""A membrane over a ball."""
 
 from __future__ import annotations
 
@@ -23,24 +23,21 @@ def Membrane(
 ) -> Scene:  # fmt: skip
     """A membrane that is held at the rim of a disc and pushed up by a ball: how much of the ball does it touch?
 
-    By second-order differences. Membrane, rim and ball are round, so the radius is the one coordinate.
+    Second-order differences along the radius.
 
     Parameters
     ----------
     radius : float
-        Of the rim, with that of the ball for unit. More than 1.
+        Of the rim, in ball radii (above 1).
     tension : float
         N/m.
     n : int
-        Points from the middle to the rim, which is none of them.
+        Points from the middle to the rim (excluded).
     """
     h = radius / n
 
     def problem() -> MixedLCP:
-        """-(r u')' = 0 where the membrane is free, u above the upper half of the ball.
-
-        By finite volumes, which are those of rings over 2 pi, so that the matrix is symmetric.
-        """
+        """Finite volumes of -(r u')' = 0 above the ball; symmetric."""
         r = h * np.arange(n)
         outer = (r + 0.5 * h) / h
         inner = np.append(0.0, outer[:-1])
@@ -48,18 +45,17 @@ def Membrane(
         return MixedLCP(A, np.zeros(n), np.where(r < 1.0, np.sqrt(np.maximum(1.0 - r**2, 0.0)), -np.inf))
 
     def answer(solution: Any) -> Quantities:
-        """The force at the rim is that on the ball, and tells the contact's radius to second order."""
+        """The rim's force gives the contact to second order."""
         flux = (radius - 0.5 * h) * solution.x[-1] / h
         a = sqrt(0.5 * flux * (sqrt(flux * flux + 4.0) - flux))
         return {"contact radius": a, "force": 2.0 * pi * tension * flux}
 
     def exact() -> Quantities:
-        """A logarithm that is tangent to the ball: a^2 (1 - log(a / R)) = 1."""
+        """The free membrane is a logarithm tangent to the ball: a^2 (1 - log(a / R)) = 1."""
         a = float(brentq(lambda a: a * a * (1.0 - log(a / radius)) - 1.0, 1e-6, 1.0, xtol=1e-15))
         return {"contact radius": a, "force": 2.0 * pi * tension * a * a / sqrt(1.0 - a * a)}
 
     def drawn(solution: Any) -> Picture:
-        """A section."""
         r, u = np.linspace(0.0, radius, n + 1), np.append(solution.x, 0.0)
         ball, a = np.linspace(0.0, 2.0 * pi, 200), answer(solution)["contact radius"]
         return picture(
@@ -71,7 +67,6 @@ def Membrane(
 
     return Scene(
         units={"contact radius": "", "force": "N"},
-        # On one radius, with the ball for a bound where it is.
         unknowns=(Unknown("heights", n, "where the membrane hangs between ball and rim"),),
         problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, PIQP, CLARABEL, BFGS),
     )  # fmt: skip

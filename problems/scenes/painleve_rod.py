@@ -1,4 +1,4 @@
-"""Painleve's rod: a rod that slides on a rough table may have no acceleration at all, or two."""
+"""Painleve's rod."""
 
 from __future__ import annotations
 
@@ -25,55 +25,48 @@ def PainleveRod(
 ) -> Scene:  # fmt: skip
     """A rod that slides with one end on a rough table: which contact forces are possible?
 
-    With a force x its end accelerates upward by a x / mass + b: a < 0 where friction is large, b > 0 where it spins
-    fast. The path of x as b moves has a turning kink at b = 0.
+    A force x accelerates the end upward by a x / mass + b; large friction makes a < 0, fast spin b > 0. The path of x
+    over b has a turning kink at b = 0.
 
     Parameters
     ----------
-    mass : float
-        kg.
-    half_length : float
-        m.
+    mass, half_length : float
+        kg, m.
     angle : float
         Between rod and table.
     friction : float
-    spin : float
-        rad/s.
-    gravity : float
-        m/s^2.
+    spin, gravity : float
+        rad/s, m/s^2.
 
     References
     ----------
     Painleve, C. R. Acad. Sci. Paris 121 (1895); Stewart, SIAM Review 42 (2000), section 3.
     """
     c, s = cos(angle), sin(angle)
-    # The upward acceleration of the end by a unit force, times the mass (-.8480762 for the defaults), and without one.
+    # a: mass times acceleration per force (-.8480762 by default); b: acceleration without force.
     a, b = 1.0 + 3.0 * c * (c - friction * s), half_length * spin**2 * s - gravity
 
     def solved() -> Path:
-        """The path of the force as b falls from where the rod lifts off, on to whatever follows."""
         start, end = max(2.0 * abs(b), gravity), inf if a < 0.0 else -inf
         return along(LCP([[a / mass]], [0.0]), [1.0], (start, end), x=[0.0], ray=[0.0, -1.0])
 
     def possible(path: Path) -> Any:
-        """The forces at b: where the path crosses it, or where the ray beyond its last point does."""
+        """Forces at b on the path or the ray behind its end."""
         end, v = path.endpoint.u, path.steps[-1].tangent
         beyond = (b - end[1]) / v[1] if v[1] else -1.0
         return np.unique(np.append(path.crossings(b)[:, 0], [end[0] + beyond * v[0]] * bool(beyond > 0.0)))
 
     def answer(solution: Any) -> Quantities:
-        """The forces that are possible at the spin of the scene: none, one or two."""
         forces = possible(solution) if isinstance(solution, Path) else solution.x
         critical = sqrt(gravity / (half_length * s))
         return {"a": a, "acceleration without force": b, "critical spin": critical, "forces": forces}
 
     def exact() -> Quantities:
-        """The rod lifts off if b >= 0; a force a x = -mass b keeps it down if it is positive."""
+        """The rod lifts off if b >= 0; a positive force a x = -mass b presses it down."""
         pressed = -mass * b / a
         return {"forces": np.array([0.0] * (b >= 0.0) + [pressed] * (pressed > 0.0))}
 
     def drawn(solution: Any) -> Picture:
-        """The force against b."""
         end, v = solution.endpoint.u, solution.steps[-1].tangent
         x, t = np.vstack([solution.u, end + (solution.lam[0] / abs(v[1]) if v[1] else 0.0) * v]).T
         forces, kinks = np.atleast_1d(possible(solution)), np.reshape([kink.u for kink in solution.kinks], (-1, 2))
@@ -87,9 +80,8 @@ def PainleveRod(
 
     return Scene(
         units={"a": "", "acceleration without force": "m/s^2", "critical spin": "rad/s", "forces": "N"},
-        # Friction is the contact force times the coefficient, as the rod slides.
         unknowns=(Unknown("contact force", 1, "whether the rod lifts off or is pressed down"),),
         problem=lambda: LCP([[a / mass]], [b]),
-        # At the spin of the scene they find one of two forces, or none and do not say why.
+        # Rivals find one of two forces, or none without a reason.
         solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
     )  # fmt: skip

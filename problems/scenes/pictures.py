@@ -1,4 +1,4 @@
-"""A picture as data: what the methods of axes draw, in order, and the settings of the axes."""
+"""Pictures as data."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from continuation.arrays import Array
 from continuation.plot.drawing import COLOURS
 
 Mark = tuple[str, tuple[Any, ...], Mapping[str, Any]]
-"""A method of axes, its arguments, and its options."""
+"""Axes method, arguments, options."""
 
 
 @frozen(eq=False)
 class Picture:
-    """Marks in the order in which they are drawn; where one has a label there is a legend."""
+    """Marks in drawing order; a labelled mark adds a legend."""
 
     marks: Sequence[Mark]
     title: str
@@ -25,7 +25,7 @@ class Picture:
     settings: Mapping[str, Any]
 
     def on(self, axes: Any) -> None:
-        """Draw it.
+        """Draw the picture.
 
         Parameters
         ----------
@@ -40,15 +40,15 @@ class Picture:
 
 
 def picture(*marks: Mark, title: str = "", legend: Mapping[str, Any] | None = None, **settings: Any) -> Picture:
-    """A picture of marks.
+    """Combine marks.
 
     Parameters
     ----------
     *marks : tuple
-        Of `mark`, `arrow`, `rectangle`.
+        From `mark`, `arrow`, `rectangle`.
     title : str
     legend : mapping, optional
-        Options of the legend.
+        Legend options.
     **settings
         For ``axes.set``.
     """
@@ -56,26 +56,26 @@ def picture(*marks: Mark, title: str = "", legend: Mapping[str, Any] | None = No
 
 
 def mark(method: str, *arguments: Any, **options: Any) -> Mark:
-    """What a method of axes draws: ``mark("plot", x, y, label="height")``.
+    """One call of an axes method: ``mark("plot", x, y, label="height")``.
 
     Parameters
     ----------
     method : str
     *arguments, **options
-        Of the method.
+        For the method.
     """
     return method, arguments, options
 
 
 def arrow(start: tuple[float, float], along: tuple[float, float], k: int, label: str = "") -> list[Mark]:
-    """An arrow in the units of the axes, in colour k, with a label in the legend; none where it has no length."""
+    """An arrow in data units; zero length draws only its legend."""
     style = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.008, "color": COLOURS[k], "zorder": 3}
     drawn = [mark("quiver", *start, *along, **style)] if np.hypot(*along) > 0.0 else []
     return [*drawn, mark("plot", [], [], color=COLOURS[k], label=label)]
 
 
 def rectangle(place: Array, width: float, height: float, **style: Any) -> Mark:
-    """A body whose middle is at (x, y) and which is turned by an angle; the style is for ``axes.fill``."""
+    """A rectangle at (x, y), turned by an angle."""
     x, y, angle = place
     corners = 0.5 * np.array([[-width, width, width, -width], [-height, -height, height, height]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

@@ -1,4 +1,4 @@
-"""A pile of boxes that falls together, in time steps."""
+"""A falling pile of boxes, in time steps."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from problems.scenes.scene import (
 )
 
 TIGHT = 1e-14
-"""Relative residual of a step: with the default, 1e-10, boxes overlap by up to 1e-12 m, with this by 2e-16 m at most,
-in the same time."""
+"""Relative residual of a step. The default 1e-10 lets boxes overlap by up to 1e-12 m; this one by 2e-16 m in the same
+time."""
 
 
 @frozen(eq=False)
 class Fall:
-    """Places and velocities at all times, shape (steps + 1, boxes, 3), energies, least gaps, whether all went well."""
+    """`places` and `velocities`: shape (steps + 1, boxes, 3)."""
 
     places: Array
     velocities: Array
@@ -50,41 +50,34 @@ def Pile(
 ) -> Scene:  # fmt: skip
     """Boxes with gaps between them fall on each other, the lowest one sliding: where do they come to rest?
 
-    Stewart and Trinkle's time steps: gaps are part of the problem, so that none is negative after a step, and no step
-    gains energy. Impacts are inelastic.
+    Stewart and Trinkle's time steps keep gaps nonnegative and gain no energy. Impacts are inelastic.
 
     Parameters
     ----------
-    boxes : int
+    boxes, steps : int
     gap : float
-        m, below each box at the beginning.
-    side : float
-        m, of the square boxes.
-    mass : float
-        kg, of each.
+        m, below each box at the start.
+    side, mass : float
+        m and kg, each box.
     friction : float
     speed : float
-        m/s, of the lowest box.
-    gravity : float
-        m/s^2.
-    step : float
-        s.
-    steps : int
+        m/s, lowest box.
+    gravity, step : float
+        m/s^2, s.
 
     References
     ----------
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996); Anitescu and Potra, Nonlinear Dynamics 14 (1997).
     """
     half, inertia, k = 0.5 * side, mass * side**2 / 6.0, np.arange(boxes)
-    # Places (x, y, angle) and velocities at the beginning.
     start = np.stack([0.0 * k, (k + 0.5) * side + (k + 1) * gap, 0.0 * k], axis=1), np.outer(k == 0, [speed, 0.0, 0.0])
 
     def touching(places: Array) -> tuple[list[Contact], Array]:
-        """The ends of each side that lies on what is below, and their distances from it."""
+        """Contacts at the ends of each supported side, and their gaps."""
         contacts: list[Contact] = []
         gaps = []
         for k, (x, y, angle) in enumerate(places):
-            # The floor is a box as wide as what lies on it.
+            # The floor is as wide as the lowest box.
             under, top, turn = (places[k - 1, 0], places[k - 1, 1] + half, places[k - 1, 2]) if k else (x, 0.0, 0.0)
             for end in np.clip([x - half, x + half], under - half, under + half):
                 height = y - half + (end - x) * np.sin(angle)
@@ -94,7 +87,7 @@ def Pile(
         return contacts, np.array(gaps)
 
     def stepped(places: Array, velocities: Array) -> tuple[LCP, Array, Array, Array]:
-        """The problem of a step, J, the inverse masses, and velocities without contacts."""
+        """LCP of a step, J, inverse masses, contact-free velocities."""
         contacts, gaps = touching(places)
         A, J, inverse = time_step([(mass, inertia, x, y) for x, y, _ in places], contacts, friction)
         free = velocities.ravel() + np.tile([0.0, -step * gravity, 0.0], boxes)
@@ -103,7 +96,6 @@ def Pile(
         return LCP(A, free_motion(u)), J, inverse, free
 
     def fall(solver: Callable[[LCP], Any]) -> Fall:
-        """All steps, by any solver of one."""
         (places, velocities), gaps, well = start, [], True
         history = [start]
         for _ in range(steps):
@@ -123,7 +115,7 @@ def Pile(
         return Fall(where, fast, energies, np.array(gaps), well)
 
     def answer(solution: Any) -> Quantities:
-        """What is to be zero, and where the boxes are at the end."""
+        """Energy gain and penetration should be zero."""
         return {
             "energy gained": max(float(np.diff(solution.energies).max()), 0.0),
             "deepest penetration": max(-float(solution.gaps.min()), 0.0),
@@ -131,11 +123,10 @@ def Pile(
         }  # fmt: skip
 
     def in_steps(rival: Rival, method: Callable[[LCP], Found]) -> Rival:
-        """The rival of that name, with its method for every step."""
+        """Apply a rival's method in every step."""
         return evolve(rival, run=lambda scene: answer(fall(lambda problem: Point(method(problem)[0]))))
 
     def drawn(solution: Any) -> Picture:
-        """The pile at the beginning, dashed, and at the end."""
         places, wide = solution.places, 0.5 * boxes * side
         return picture(
             *(rectangle(place, side, side, linestyle="--", facecolor="none") for place in places[0]),
@@ -148,12 +139,12 @@ def Pile(
 
     return Scene(
         units={"energy gained": "J", "deepest penetration": "m", "heights": "m", "slid": "m"},
-        # Two contacts a box: what touches along a side rests on the two ends of that.
+        # Two contacts a box.
         unknowns=contact_unknowns(2 * boxes),
         problem=lambda: stepped(*start)[0],
         solve=lambda: fall(lambda problem: solve(problem, tolerance=TIGHT)),
         answer=answer, picture=drawn,
-        # No step gains energy or lets bodies overlap; after long enough the boxes lie on each other.
+        # No step gains energy or lets boxes overlap.
         exact=lambda: {"energy gained": 0.0, "deepest penetration": 0.0},
         rivals=(in_steps(LEMKE, by_quantecon), in_steps(TABLES, by_tables)),
     )  # fmt: skip

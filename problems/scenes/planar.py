@@ -1,4 +1,4 @@
-"""Rigid bodies in the plane that touch with friction: the LCP of one time step."""
+"""One time step of rigid bodies in the plane with friction, as an LCP."""
 
 from __future__ import annotations
 
@@ -10,21 +10,18 @@ from continuation.arrays import Array
 from problems.scenes.scene import Unknown
 
 Body = tuple[float, float, float, float]
-"""Mass, moment of inertia, and place."""
+"""Mass, moment of inertia, place."""
 
 Contact = tuple[int, int, float, float, float, float]
-"""Body, body or -1 for the ground, place, and normal, towards the first body."""
+"""Body, other body (-1 for ground), place, normal towards the first body."""
 
 
 def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: float) -> tuple[Array, Array, Array]:
-    """Stewart and Trinkle's matrix, with Coulomb's law of friction, in impulses and slip velocities.
+    """Stewart and Trinkle's LCP matrix with Coulomb friction, J, and inverse masses.
 
-    The unknowns are normal impulses, impulses along the tangent to the right of the normal, those along the other one,
-    and slip velocities, each for all contacts. Two tangents are one edge each of the cone, which is exact in the plane.
-    The matrix is copositive, so that Lemke's method finds a solution whatever the state is; with three unknowns a
-    contact (Pfeiffer and Glocker) that is lost.
-
-    Returns J: Velocities of the bodies to normal and tangential ones, in turns. Returns inverse: Inverse masses.
+    Unknowns, for all contacts: normal impulses, tangential impulses right and left, slip velocities. Two tangents
+    represent the plane friction cone exactly. The matrix is copositive, so Lemke's method always finds a solution;
+    three unknowns a contact (Pfeiffer and Glocker) lose that. J yields alternating normal and tangential velocities.
 
     References
     ----------
@@ -47,18 +44,18 @@ def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: flo
 
 
 def free_motion(u: Array) -> Array:
-    """The vector q that belongs to the velocities, normal and tangential in turns, without any impulse."""
+    """The LCP's q from impulse-free velocities, alternating normal and tangential."""
     return np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(u.size // 2)])
 
 
 def impulses(x: Array) -> Array:
-    """Normal and tangential impulses, in turns, shape (2 c,), of a solution of a time step."""
+    """Alternating normal and tangential impulses of a solution, shape (2 c,)."""
     c = x.size // 4
     return np.stack([x[:c], x[c : 2 * c] - x[2 * c : 3 * c]], axis=1).ravel()
 
 
 def contact_unknowns(contacts: int) -> tuple[Unknown, ...]:
-    """Those of a time step."""
+    """Unknowns of a time step."""
     return (
         Unknown("normal impulses", contacts, "what keeps bodies apart"),
         Unknown("tangential impulses", 2 * contacts, "friction, one for each of the two directions of an edge"),

@@ -1,4 +1,4 @@
-"""Markowitz' portfolio, with bounds, and its frontier."""
+"""Markowitz' portfolio and frontier."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from problems.scenes.scene import Kind, NotNegative, Numbers, Quantities, Scene,
 
 
 def critical_line(mean: Array, covariance: Array) -> Path:
-    """Markowitz' critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance.
+    """Critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance.
 
-    The path is one of weights, and of the multiplier of the budget.
+    A point is (weights, budget multiplier).
 
     References
     ----------
@@ -32,7 +32,7 @@ def critical_line(mean: Array, covariance: Array) -> Path:
     problem = MixedLCP(A, np.append(np.zeros(n), -1.0), np.append(np.zeros(n), -np.inf))
     best = int(np.argmax(mean))
     gap = np.delete(mean[best] - mean, best)
-    # From there on the best asset alone is the solution.
+    # The best asset alone is optimal from this t on.
     first = 1.1 * float((np.delete(covariance[best, best] - covariance[:, best], best) / gap).max(initial=0.0)) + 1e-3
     multiplier = covariance[best, best] - first * mean[best]
     return along(problem, np.append(-mean, 0.0), (first, 0.0), x=np.append(np.eye(n)[best], multiplier))
@@ -47,20 +47,18 @@ def Portfolio(
 ) -> Scene:  # fmt: skip
     """Money to be divided among assets, none sold short: how much into each?
 
-    min variance / 2 - tolerance * mean.
+    Minimise variance / 2 - tolerance * mean.
 
     Parameters
     ----------
-    means : sequence of float
-        Returns, of each asset.
-    variances : sequence of float
-        Of these.
+    means, variances : sequence of float
+        Of the returns.
     correlation : float
-        Between any two of them.
+        Of any two assets.
     tolerance : float
-        Of risk: how much variance a unit of return is worth.
+        Risk tolerance: variance per unit of return.
     cap : float
-        The largest part that one asset may have.
+        Largest weight.
 
     References
     ----------
@@ -73,28 +71,26 @@ def Portfolio(
     covariance = np.outer(deviation, deviation) * (correlation + (1.0 - correlation) * np.eye(n))
 
     def problem() -> Program:
-        """At the tolerance of risk. A cap is a bound: it needs no multiplier, and where it is 1 it holds by itself."""
+        """A cap below 1 is a bound and needs no multiplier."""
         upper = None if cap == 1.0 else cap
         return from_qp(covariance, -tolerance * m, A_eq=np.ones((1, n)), b_eq=[1.0], lower=0.0, upper=upper)
 
     def answer(solution: Any) -> Quantities:
-        """Weights, and what they lead to."""
         weights = np.asarray(solution.x)[:n]
         risk = float(np.sqrt(weights @ covariance @ weights))
         return {"weights": weights, "mean": float(weights @ means), "deviation": risk}
 
     def exact() -> Quantities:
-        """Without correlation and cap: (tolerance m_i + nu)_+ / s_i, nu by sorting as for a simplex."""
+        """Without correlation and cap: (tolerance m_i + nu)_+ / s_i, nu from sorting."""
         if correlation or cap < 1.0:
             return {}
         gain = tolerance * m
         order = np.argsort(-gain)
         nu = (1.0 - np.cumsum(gain[order] / s[order])) / np.cumsum(1.0 / s[order])
-        # With too few or too many assets the sum at that nu is above 1 with the right ones.
+        # The right number of assets gives the least nu.
         return {"weights": np.maximum(gain + float(nu.min()), 0.0) / s}
 
     def drawn(solution: Any) -> Picture:
-        """The frontier with its kinks, without the cap, the assets, and this portfolio."""
         line, found = critical_line(m, covariance), answer(solution)
 
         def shown(weights: Array, style: str, label: str) -> Any:

@@ -1,4 +1,4 @@
-"""A puck that slides on a plane in any direction: the cone of friction as a pyramid."""
+"""A sliding puck: the friction cone as a pyramid."""
 
 from __future__ import annotations
 
@@ -19,42 +19,33 @@ def Puck(
 ) -> Scene:  # fmt: skip
     """A puck on a rough plane that moves in three dimensions: how does friction bend and slow its motion?
 
-    Coulomb's cone is replaced by a pyramid. The force against the motion is too small by a factor of cos(pi / edges) at
-    worst, second order in 1 / edges; what it has across the motion is first order, and bends it.
+    A pyramid replaces Coulomb's cone: friction against the motion is too small by a factor of cos(pi / edges) at worst,
+    second order in 1 / edges; friction across it is first order.
 
     Parameters
     ----------
-    mass : float
-        kg.
+    mass, gravity, step : float
+        kg, m/s^2, s.
     friction : float
-    speed : float
-        m/s, before the step.
-    heading : float
-        Degrees, against the pyramid's first edge.
+    speed, heading : float
+        Before the step: m/s, degrees from the first edge.
     edges : int
         Of the pyramid.
-    gravity : float
-        m/s^2.
-    step : float
-        s.
 
     References
     ----------
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996).
     """
     angle, towards = 2.0 * np.pi * np.arange(edges) / edges, np.deg2rad(heading)
-    # The pyramid's edges, and the velocity before the step.
     D, before = np.stack([np.cos(angle), np.sin(angle)]), speed * np.array([np.cos(towards), np.sin(towards)])
 
     def problem() -> LCP:
-        """One time step."""
         A = np.zeros((edges + 2, edges + 2))
         A[0, 0], A[1:-1, 1:-1] = 1.0 / mass, D.T @ D / mass
         A[1:-1, -1], A[-1, 0], A[-1, 1:-1] = 1.0, friction, -1.0
         return LCP(A, np.concatenate([[-step * gravity], D.T @ before, [0.0]]))
 
     def answer(solution: Any) -> Quantities:
-        """Velocity after the step, and the impulse of friction against that before."""
         along = D @ solution.x[1:-1]
         after = before + along / mass
         return {
@@ -63,7 +54,7 @@ def Puck(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """With the round cone, while it slides: friction is opposite to the motion."""
+        """Unlike the pyramid, a round cone opposes the motion."""
         loss = friction * gravity * step
         if loss >= speed:
             return {"speed": 0.0, "friction against motion": mass * speed}
@@ -71,7 +62,6 @@ def Puck(
         return {"speed": speed - loss, "heading": same, "friction against motion": mass * loss}
 
     def drawn(solution: Any) -> Picture:
-        """The pyramid's section, the impulse of friction in it, and the direction of the motion."""
         limit, round = friction * mass * gravity * step, np.linspace(0.0, 2.0 * np.pi, 200)
         return picture(
             mark("plot", limit * np.cos(round), limit * np.sin(round), color="0.7", label="cone"),
@@ -84,7 +74,6 @@ def Puck(
 
     return Scene(
         units={"speed": "m/s", "heading": "degrees", "friction against motion": "N s"},
-        # The direction of friction is not known before, so every edge of the pyramid may be needed.
         unknowns=(
             Unknown("normal impulse", 1, "the limit of friction"),
             Unknown("impulses along edges", edges, "friction in any direction"),

@@ -1,4 +1,4 @@
-"""Scenes by name: the entry points of the group `continuation.scenes`."""
+"""Scenes by name."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from continuation.arguments.plugins import SCENES, Factory, Plugin
 
 
 def available() -> dict[str, Plugin]:
-    """All registered names, sorted, without importing any scene.
+    """All registered names, without importing scenes.
 
     Returns
     -------
@@ -20,7 +20,7 @@ def available() -> dict[str, Plugin]:
 
 
 def find(name: str) -> Factory:
-    """The class of a scene.
+    """Find a scene's class.
 
     Parameters
     ----------
@@ -34,20 +34,20 @@ def find(name: str) -> Factory:
     Raises
     ------
     PluginError
-        If there is none by that name, or it cannot be loaded.
+        If it is unknown or does not load.
     """
     return plugins.find(name, SCENES)
 
 
 def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """The scene of that name.
+    """Make a scene.
 
     Parameters
     ----------
     name : str
-        A registered name, or ``module:Class``.
+        As for `find`.
     values : mapping, optional
-        Its parameters by name.
+        Parameters by name.
 
     Returns
     -------
@@ -58,6 +58,6 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
     PluginError
         As `find`.
     TypeError, ValueError
-        For a parameter that it does not have, or a value that it refuses.
+        For invalid parameters.
     """
     return plugins.called(name, find(name), values)

@@ -1,4 +1,4 @@
-"""A regulator with a limited drive: explicit predictive control."""
+"""Explicit predictive control of a limited drive."""
 
 from __future__ import annotations
 
@@ -22,21 +22,17 @@ def Regulator(
 ) -> Scene:  # fmt: skip
     """A cart is brought to rest by a drive of limited force: which force now, for every distance it starts from?
 
-    The best forces over a horizon are piecewise affine in the state at the start. Their path along one line of states
-    has a kink wherever a force reaches its limit or leaves it; there the value function's second derivative jumps.
+    The best forces are piecewise affine in the initial state: their path has a kink where a force reaches or leaves its
+    limit.
 
     Parameters
     ----------
     distance : float
-        m, of the cart at the start, which is at rest; where the answer gives the force.
-    limit : float
-        N, of the drive.
-    mass : float
-        kg.
-    step : float
-        s.
+        m, from rest, where the force is reported.
+    limit, mass, step : float
+        N, kg, s.
     weight : float
-        Of a force squared, against a distance squared.
+        Of squared force relative to squared distance.
     horizon : int
         Steps.
 
@@ -44,11 +40,11 @@ def Regulator(
     ----------
     Bemporad, Morari, Dua and Pistikopoulos, Automatica 38 (2002).
     """
-    # Of x' = F x + G u, of the weights of states, and of the last one, which is the value without limits.
+    # x' = F x + G u; Q weighs states; `last`, the value without limits, weighs the final state.
     F, G = np.array([[1.0, step], [0.0, 1.0]]), np.array([[0.5 * step**2], [step]]) / mass
     Q = np.diag([1.0, 0.0])
     last = solve_discrete_are(F, G, Q, np.array([[weight]]))
-    # Min u'Hu / 2 + t f'u + t^2 c, t the distance.
+    # Min u'Hu / 2 + t f'u + t^2 c at distance t.
     state, H = np.array([1.0, 0.0]), weight * np.eye(horizon)
     f, c, reach = np.zeros(horizon), 0.0, np.zeros((2, horizon))
     for k in range(horizon):
@@ -57,16 +53,15 @@ def Regulator(
         reach[:, k] += G[:, 0]
         W = last if k == horizon - 1 else Q
         H, f = H + reach.T @ W @ reach, f + reach.T @ W @ state
-    # The first state's weight is in c once, the last state's beside it.
+    # Add the last state's weight.
     H, c = 0.5 * (H + H.T), float(c + 0.5 * state @ last @ state)
     bound, none = np.full(horizon, limit), np.zeros(horizon)
 
     def solved() -> Path:
-        """The forces for all distances from zero to twice that of the scene."""
+        """Distances from 0 to twice the scene's."""
         return along(MixedLCP(H, none, -bound, bound), f, (0.0, 2.0 * distance or 1.0), x=none)
 
     def answer(solution: Any) -> Quantities:
-        """The force now and the value, at the distance; distances at which forces meet or leave their limits."""
         path, t = isinstance(solution, Path), distance
         u = solution(t=t)[:-1] if path else np.asarray(solution.x)
         found = {"force": float(u[0]), "value": float(0.5 * u @ H @ u + t * f @ u + t * t * c)}
@@ -76,9 +71,9 @@ def Regulator(
         return {**found, "free up to": float(kinks[0]) if kinks.size else float(solution.lam[-1]), "kinks at": kinks}
 
     def exact() -> Quantities:
-        """Before the first kink that of Riccati's equation, which has no limits."""
+        """Before the first kink: the Riccati solution."""
         gain = np.linalg.solve(weight + G.T @ last @ G, G.T @ last @ F)[0]
-        # The largest force of the closed loop says how far that holds.
+        # The closed loop's largest force limits its range.
         state, largest = np.array([1.0, 0.0]), 0.0
         for _ in range(horizon):
             u = -float(gain @ state)
@@ -88,7 +83,6 @@ def Regulator(
         return {"free up to": free, **near} if 2.0 * far > free else near
 
     def drawn(solution: Any) -> Picture:
-        """The first three forces against the distance, with all kinks."""
         first = zip(solution.y.T, ("now", "a step later", "two steps later"))
         return picture(
             *(mark("plot", solution.lam, force, label=label) for force, label in first),
@@ -98,7 +92,6 @@ def Regulator(
 
     return Scene(
         units={"force": "N", "value": "", "free up to": "m", "kinks at": "m"},
-        # States follow from forces, limits are bounds.
         unknowns=(Unknown("forces", horizon, "what the drive does, now and later"),),
         problem=lambda: MixedLCP(H, distance * f, -bound, bound),
         solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),

@@ -1,4 +1,4 @@
-"""Methods of other packages, and of the textbooks, that take the same problem; each is used where it is installed."""
+"""Other packages' and textbook methods, used if installed."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from problems.lcp.reference import ReferenceResult, lemke
 from problems.scenes.scene import Point, Rival, conditions
 
 TOLERANCE = 1e-10
-"""Asked of interior-point methods: what they reach on well-scaled problems."""
+"""For interior-point methods, which reach it on well-scaled problems."""
 
 SWEEPS = 200_000
-"""Of projected Gauss-Seidel at most: some seconds on the problems of the charts."""
+"""Limit for projected Gauss-Seidel: some seconds on charts."""
 
 
 Found = tuple[Array, int]
-"""The unknowns of a problem, or the first of them, and how many iterations it took to find them."""
+"""(leading unknowns, iterations)"""
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Found]) -> Rival:
-    """A rival that takes the problem of a scene."""
+    """A rival for ``scene.problem()``."""
     return Rival(name, module, lambda scene: scene.answer(Point(method(scene.problem())[0])))
 
 
@@ -39,7 +39,7 @@ def _arrived(x: Any, well: bool, message: object, iterations: int = 0) -> Found:
 
 
 def by_quantecon(problem: Any) -> Found:
-    """Lemke's method on tables, compiled."""
+    """Lemke's method (compiled tableau)."""
     found = conditions(problem)
     A = found.A.toarray() if found.sparse else found.A
     result = import_module("quantecon.optimize").lcp_lemke(A, found.q, max_iter=100 * found.n)
@@ -47,7 +47,7 @@ def by_quantecon(problem: Any) -> Found:
 
 
 def by_reference(method: Callable[[Any], ReferenceResult]) -> Callable[[Any], Found]:
-    """One of the reference methods."""
+    """Wrap a reference method."""
 
     def solve(problem: Any) -> Found:
         result = method(conditions(problem))
@@ -57,12 +57,12 @@ def by_reference(method: Callable[[Any], ReferenceResult]) -> Callable[[Any], Fo
 
 
 by_tables = by_reference(lemke)
-"""Lemke's method on tables of numpy."""
+"""Lemke's method (numpy tableau)."""
 
 
 @cache
 def _sweeper() -> Callable[..., Any]:
-    """Compiled: as a loop of Python it would be a hundred times slower, and no rival."""
+    """Compiled: a Python loop would be a hundred times slower."""
 
     def sweep(data: Any, columns: Any, rows: Any, q: Any, lower: Any, upper: Any, x: Any, most: int) -> int:
         n = q.size
@@ -96,9 +96,9 @@ def _gauss_seidel(problem: Any) -> Found:
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
-    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a problem with bounds.
+    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program or bounded problem.
 
-    Of one that is not symmetric: min x'(A x + q), A x + q >= 0, within the bounds; it is convex where A is monotone.
+    Nonsymmetric problems become min x'(A x + q), A x + q >= 0: convex for monotone A.
     """
     found = conditions(problem)
     if not isinstance(problem, Program):
@@ -128,7 +128,7 @@ def by_piqp(problem: Any) -> Found:
 
 
 def by_clarabel(problem: Any) -> Found:
-    """Another one, for programs with cones."""
+    """A conic interior-point method."""
     P, c, B, b, G, h, lower, upper = program_of(problem)
     library = import_module("clarabel")
     settings = library.DefaultSettings()
@@ -150,7 +150,7 @@ def _highs(problem: Any) -> Found:
 
 
 def by_bfgs(problem: Any) -> Found:
-    """A quasi-Newton method for bounds alone."""
+    """Quasi-Newton, bounds only."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
     if b.size or h.size:
         raise ArithmeticError("L-BFGS-B takes bounds alone")
@@ -174,4 +174,4 @@ HIGHS = of_problem("HiGHS (scipy)", "", _highs)
 BFGS = of_problem("L-BFGS-B (scipy)", "", by_bfgs)
 
 QUADRATIC = (PIQP, CLARABEL, BFGS)
-"""For symmetric problems with bounds alone."""
+"""For symmetric problems with bounds only."""

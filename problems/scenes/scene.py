@@ -1,7 +1,4 @@
-"""A scene is data: a question with its parameters, the smallest problem that answers it, what is known, a picture.
-
-A function of the parameters makes it, in which all its parts share what the parameters determine.
-"""
+"""A scene: a question with parameters, its smallest problem, known answers, a picture."""
 
 from __future__ import annotations
 
@@ -25,10 +22,10 @@ from problems.options import finite_vector
 from problems.scenes.pictures import Picture
 
 Quantities = Mapping[str, Any]
-"""Named numbers, or arrays of them."""
+"""Numbers or arrays by name."""
 
 Units = Mapping[str, str]
-"""Of the answer, by the names of its quantities."""
+"""Unit of each quantity of the answer."""
 
 
 @frozen
@@ -40,7 +37,7 @@ class Unknown:
     name : str
     count : int
     why : str
-        What the answer would lack without them.
+        What the answer needs them for.
     """
 
     name: str
@@ -50,15 +47,15 @@ class Unknown:
 
 @frozen(eq=False)
 class Rival:
-    """A method that the field uses for the same question.
+    """A method of the field for the same question.
 
     Attributes
     ----------
     name : str
     module : str
-        What must be installed; empty where nothing beyond scipy is needed.
+        Package required beyond scipy, or empty.
     run : callable
-        A scene to quantities with the names of its answer, some or all.
+        Maps a scene to some of its quantities.
     """
 
     name: str
@@ -67,7 +64,7 @@ class Rival:
 
     @property
     def installed(self) -> bool:
-        """Whether it can be asked."""
+        """Whether the required module imports."""
         try:
             return not self.module or bool(import_module(self.module))
         except ImportError:
@@ -76,7 +73,7 @@ class Rival:
 
 @frozen
 class Point:
-    """What `Scene.answer` looks at of a solution, for a method that returns a vector only."""
+    """A vector as a solution for `Scene.answer`."""
 
     x: Array
     success: bool = True
@@ -84,30 +81,24 @@ class Point:
 
 @frozen(eq=False)
 class Scene:
-    """A question, for parameters that are chosen; any object with these attributes can be registered as a scene.
+    """A question with chosen parameters; any object with these attributes can be a scene.
 
     Attributes
     ----------
     units : mapping
-        Of the answer, by the names of its quantities.
+        Unit of each quantity.
     unknowns : tuple of Unknown
-        What is modelled, and why: together as many as the problem has unknowns.
     problem : callable
-        ``problem()``: the smallest problem that answers the question: an `LCP`, a `MixedLCP`, a `Program`, or a
-        homotopy.
-    answer : callable
-        What `solve` returns for this scene to physical quantities by name.
-    picture : callable
-        What `solve` returns for this scene to a `Picture`.
+        ``problem()``: the smallest problem that answers the question: `LCP`, `MixedLCP`, `Program`, or homotopy.
+    answer, picture : callable
+        Map the result of `solve` to quantities, and to a `Picture`.
     exact : callable
-        ``exact()``: those quantities that have a closed form, or are published, for these parameters; perhaps none.
+        ``exact()``: quantities known in closed form or published.
     solve : callable, optional
-        ``solve()``, where the answer takes more than one solution of the problem: steps in time, a path, all
-        equilibria.
+        ``solve()``, for time steps, paths, or all equilibria.
     rivals : tuple of Rival
-        What the field uses.
     parameters : object
-        The parameters, by name: a frozen value that can be compared.
+        Set by `with_parameters`; comparable.
     """
 
     units: Units
@@ -121,12 +112,12 @@ class Scene:
     parameters: Any = None
 
     def draw(self, solution: Any, axes: Any) -> None:
-        """Draw the solution.
+        """Draw a solution.
 
         Parameters
         ----------
         solution : Solution, Path or other
-            What `solve` returns for this scene.
+            Result of `solve`.
         axes : matplotlib Axes
         """
         self.picture(solution).on(axes)
@@ -134,14 +125,14 @@ class Scene:
 
 @frozen
 class Kind:
-    """What a parameter may be: `check` validates it, `convert` makes what is kept of its name and its value."""
+    """Validator and converter (name, value) of a parameter."""
 
     check: Validator | None = None
     convert: Callable[[str, Any], Any] | None = None
 
 
 def at_least(least: int) -> Kind:
-    """An integer.
+    """An integer parameter.
 
     Parameters
     ----------
@@ -155,18 +146,18 @@ NotNegative = Annotated[float, Kind(NOT_NEGATIVE)]
 Finite = Annotated[float, Kind(FINITE)]
 Seed = Annotated[int, at_least(0)]
 Numbers = Annotated[Sequence[float], Kind(convert=lambda name, value: tuple(finite_vector(name, value).tolist()))]
-"""A tuple of finite numbers, so that parameters can be compared."""
+"""Tuples of finite numbers, which can be compared."""
 
 P = ParamSpec("P")
 
 
 def with_parameters(build: Callable[P, Scene]) -> Callable[P, Scene]:
-    """A function that makes a scene, with its arguments checked by their annotations; the scene keeps them.
+    """Check a scene's arguments by their annotations, and keep them in the scene.
 
     Parameters
     ----------
     build : callable
-        Its arguments are annotated by ``Annotated[type, Kind(...)]``, as `Positive` is, or not checked.
+        Checks arguments annotated as ``Annotated[type, Kind(...)]``, such as `Positive`.
     """
     hints = get_type_hints(build, include_extras=True)
     parts = {}
@@ -195,7 +186,7 @@ def solve(scene: Any) -> Any:
     Returns
     -------
     Solution, Path or other
-        By ``scene.solve()`` where there is one; else `problems.lcp.solve` of the problem, or the path of a homotopy.
+        From ``scene.solve()``, `problems.lcp.solve`, or `trace` (homotopies).
     """
     own = getattr(scene, "solve", None)
     if own is not None:
@@ -205,12 +196,12 @@ def solve(scene: Any) -> Any:
 
 
 def conditions(problem: Any) -> Any:
-    """The complementarity problem that is solved: of a program its optimality conditions, else the problem itself."""
+    """A program's optimality conditions, or the problem itself."""
     return problem.problem if isinstance(problem, Program) else problem
 
 
 def order(problem: Any) -> int:
-    """The number of unknowns.
+    """Number of unknowns.
 
     Parameters
     ----------
@@ -225,7 +216,7 @@ def order(problem: Any) -> int:
 
 
 def error(found: Quantities, true: Quantities) -> float:
-    """The largest difference of quantities that both have, relative to the size of the true one, or to 1 where it is 0.
+    """Largest difference of common quantities, relative to the true one (absolute if that is 0).
 
     Parameters
     ----------

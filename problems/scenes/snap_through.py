@@ -1,4 +1,4 @@
-"""A shallow truss that snaps through, onto a stop."""
+"""A shallow truss snapping onto a stop."""
 
 from __future__ import annotations
 
@@ -15,12 +15,11 @@ from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, wi
 
 
 def _lack(x: Any, lam: Any) -> Any:
-    """The force that two shallow bars lack of balance, upward, at a height, over stiffness rise^3 / span^3."""
+    """Unbalanced upward force over stiffness rise^3 / span^3."""
     return x**3 - x + lam
 
 
 def _slope(x: Array, lam: float) -> tuple[Array, Array]:
-    """Of that: shapes (1, 1) and (1,)."""
     return np.diag(3.0 * x**2 - 1.0), np.ones(1)
 
 
@@ -32,49 +31,43 @@ def SnapThrough(
 ) -> Scene:  # fmt: skip
     """Two shallow bars snap through under a load, onto a stop below: when, and what does the stop bear?
 
-    The path of the height turns in a fold, comes back, and turns again in a kink, where the joint touches the stop.
+    The height's path turns at a fold, and again at a kink where the joint touches the stop.
 
     Parameters
     ----------
-    rise : float
-        m, of the joint above the supports.
-    span : float
-        m, from the joint to a support.
+    rise, span : float
+        m: height of the joint above the supports, its horizontal distance to them.
     stiffness : float
-        N: Young's modulus times the section of a bar.
+        N: Young's modulus times bar section.
     stop : float
-        Height of the stop over the rise; below 0.
+        Stop height / rise, below 0.
     load : float
-        Over the load of the fold: where the force on the stop is asked for.
+        Load / fold load, where the stop's force is reported.
 
     References
     ----------
     von Mises, Z. angew. Math. Mech. 3 (1923).
     """
-    # Of loads, N; and the load of the fold, the cubic's extremum, and the one that is asked for in that unit.
+    # Load unit (N); fold load and requested load in this unit.
     unit, top = stiffness * (rise / span) ** 3, 2.0 / (3.0 * sqrt(3.0))
     asked = load * 2.0 / (3.0 * sqrt(3.0))
 
     def problem() -> NormalMap:
-        """The path of the height over the rise, from no load."""
         return NormalMap(_lack, _slope, x0=np.ones(1), lam0=0.0, lower=stop, upper=np.inf, target=1.1 * max(asked, top))
 
     def named(fold: float, kink: float, force: float) -> Quantities:
         return {"snap load": unit * fold, "load at touch": unit * kink, "force on stop": unit * max(force, 0.0)}
 
     def answer(solution: Any) -> Quantities:
-        """The loads at which the path turns; the normal map's z is below the bound by the bound's force."""
+        """The normal map's z is below the stop by the stop's force."""
         (kink,) = solution.kinks
         return named(solution.turning_points[0].lam, kink.lam, stop - float(solution.crossings(asked)[-1][0]))
 
     def exact() -> Quantities:
-        """The cubic's extremum, and its value at the stop, which bears what exceeds it."""
         touch = stop - stop**3
         return named(top, touch, load * top - touch)
 
     def drawn(solution: Any) -> Picture:
-        """The load against the height."""
-
         def shown(u: Array, *style: str, **options: Any) -> Any:
             return mark("plot", rise * np.maximum(u[:, 0], stop), unit * u[:, 1], *style, **options)
 
@@ -89,7 +82,6 @@ def SnapThrough(
 
     return Scene(
         units={"snap load": "N", "load at touch": "N", "force on stop": "N"},
-        # One, by symmetry; the force of the stop is what balances the joint.
         unknowns=(Unknown("height of the joint", 1, "where it is when it touches the stop"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Spatial prices: goods go where the price pays for the way."""
+"""Spatial price equilibrium."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from problems.scenes.scene import NotNegative, Numbers, Positive, Quantities, Sc
 
 
 def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Array) -> LCP:
-    """The flows from m places of supply to k of demand, by rows, with linear prices and costs of freight, shape (m, k).
+    """LCP for row-major flows from m suppliers to k markets; `freight` has shape (m, k).
 
-    Supply and demand are the prices at no supply or demand, and by how much they rise or fall with each unit.
+    `supply`, `demand`: price at zero quantity, and its rise or fall per unit.
     """
     (a, b), (c, e) = supply, demand
     out, to = np.kron(np.eye(a.size), np.ones((1, c.size))), np.kron(np.ones((1, a.size)), np.eye(c.size))
@@ -33,16 +33,12 @@ def SpatialPrices(
 
     Parameters
     ----------
-    offers : sequence of float
-        Prices at which producers begin to deliver.
-    rise : float
-        Of these with each unit.
-    bids : sequence of float
-        Prices at which markets begin to buy.
-    fall : float
-        Of these with each unit.
+    offers, bids : sequence of float
+        Prices at which supply and demand begin.
+    rise, fall : float
+        Change of these per unit.
     freight : float
-        A unit and a place: from place i to place j it is (1 + |i - j|) times that.
+        From place i to j a unit costs (1 + |i - j|) times this.
 
     References
     ----------
@@ -54,7 +50,7 @@ def SpatialPrices(
     costs = freight * (1.0 + np.abs(i - j))
 
     def answer(solution: Any) -> Quantities:
-        """Flows, and prices at both ends. Flows on ways of equal cost may be exchanged; prices and the trade not."""
+        """Prices and trade are unique; flows over equal costs are not."""
         flows = np.asarray(solution.x).reshape(m, k)
         return {
             "flows": flows, "offers": sell + rise * flows.sum(axis=1),
@@ -62,12 +58,11 @@ def SpatialPrices(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """For one producer and one market."""
+        """Closed form for one producer and one market."""
         flow = max((bids[0] - offers[0] - freight) / (rise + fall), 0.0)
         return {"flows": np.array([[flow]]), "trade": flow} if m == k == 1 else {}
 
     def drawn(solution: Any) -> Picture:
-        """Producers on the left, markets on the right, and what goes between."""
         found = answer(solution)
         flows, widest = found["flows"], max(float(found["flows"].max()), 1e-300)
         ways = [(i, j, flows[i, j]) for i, j in np.argwhere(flows > 0.0)]
@@ -86,9 +81,8 @@ def SpatialPrices(
 
     return Scene(
         units={"flows": "units", "offers": "money a unit", "bids": "money a unit", "trade": ""},
-        # Supplies, demands and prices are sums of them.
         unknowns=(Unknown("flows", m * k, "who delivers where"),),
-        # What a delivery costs more than it brings.
+        # Cost minus revenue of each delivery.
         problem=lambda: trade((sell, np.full(m, rise)), (buy, np.full(k, fall)), costs),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES, *QUADRATIC),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A string that hangs over a floor: where it lies on it."""
+"""A string hanging over a floor."""
 
 from __future__ import annotations
 
@@ -21,44 +21,38 @@ def String(
 ) -> Scene:  # fmt: skip
     """A heavy string between two supports above a floor: where does it touch down?
 
-    By second-order differences, T u'' = load where it hangs. By symmetry half of it is modelled.
+    Second-order differences of T u'' = load on one half.
 
     Parameters
     ----------
-    height : float
-        m, of the supports above the floor.
-    load : float
-        N/m.
-    tension : float
-        N.
-    length : float
-        m, between the supports.
+    height, length : float
+        m: supports above the floor; distance between supports.
+    load, tension : float
+        N/m; N.
     n : int
-        Points from a support, which is none of them, to the middle.
+        Points from a support (excluded) to the middle.
     """
-    # The distance of two points.
     h = 0.5 * length / n
 
     def problem() -> LCP:
-        """Forces on the points; on the middle, that of one half."""
+        """Balance of forces; the middle point counts half."""
         k, half = tension / h, np.append(np.ones(n - 1), 0.5)
         A = sp.diags_array([np.full(n - 1, -k), 2.0 * k * half, np.full(n - 1, -k)], offsets=[-1, 0, 1], format="csr")
         return LCP(A, load * h * half - k * height * (np.arange(n) == 0))
 
     def named(support: float) -> Quantities:
-        """A support bears what hangs from it: its force tells where the string touches down, to second order."""
+        """The support's force gives the contact to second order."""
         return {"contact from": support / load, "support force": support, "floor force": load * length - 2.0 * support}
 
     def answer(solution: Any) -> Quantities:
         return named(tension * (height - float(solution.x[0])) / h + 0.5 * load * h)
 
     def exact() -> Quantities:
-        """A parabola that is tangent to the floor at sqrt(2 T height / load), or one that is above it."""
+        """A parabola, tangent to the floor at sqrt(2 T height / load) or above it."""
         a = min(sqrt(2.0 * tension * height / load), 0.5 * length)
         return {**named(load * a), "contact from": a}
 
     def drawn(solution: Any) -> Picture:
-        """The string, both halves."""
         half, a = np.append(height, solution.x), answer(solution)["contact from"]
         return picture(
             mark("plot", np.linspace(0.0, length, 2 * n + 1), np.append(half, half[-2::-1]), color="#0072B2"),
@@ -69,7 +63,6 @@ def String(
 
     return Scene(
         units={"contact from": "m", "support force": "N", "floor force": "N"},
-        # The force of the floor is what balances a point, and needs no unknown.
         unknowns=(Unknown("heights above the floor", n, "where the string hangs and where it lies"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
         rivals=(GAUSS_SEIDEL, LEMKE, PIQP, CLARABEL, BFGS),

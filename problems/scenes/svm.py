@@ -1,4 +1,4 @@
-"""A support vector machine: which points decide where the border is?"""
+"""A support vector machine."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from problems.scenes.scene import (
 
 
 def clouds(samples: int, distance: float, seed: int) -> tuple[Array, Array]:
-    """Points, shape (n, 2), and their sides, -1 or 1."""
+    """Points, shape (n, 2), and labels, -1 or 1."""
     side = np.where(np.arange(samples) % 2, 1.0, -1.0)
     X = np.random.default_rng(seed).normal(size=(samples, 2))
     X[:, 0] += 0.5 * distance * side
@@ -33,7 +33,7 @@ def clouds(samples: int, distance: float, seed: int) -> tuple[Array, Array]:
 
 
 def kernel(X: Array, Y: Array, width: float) -> Array:
-    """Products of points, shape (len(X), len(Y)); with a width Gaussian ones."""
+    """Kernel matrix, shape (len(X), len(Y)); linear for width 0, else Gaussian."""
     if not width:
         return X @ Y.T
     square = ((X[:, None] - Y[None]) ** 2).sum(axis=2)
@@ -49,15 +49,14 @@ def SVM(
 
     Parameters
     ----------
-    samples : int
-        An even number: half of them in each cloud.
+    samples, seed : int
+        An even number of samples, half in each cloud.
     distance : float
-        Between the middles of the clouds, in standard deviations.
+        Between the cloud centres, in standard deviations.
     cost : float
-        Of an error: the largest weight that a point may have.
+        Price of an error: largest weight of a point.
     width : float
-        Of a Gaussian kernel; 0 is none, and the border is a line.
-    seed : int
+        Gaussian kernel width; 0 for a straight border.
 
     References
     ----------
@@ -67,16 +66,14 @@ def SVM(
     K = kernel(X, X, width)
 
     def problem() -> Program:
-        """The dual program."""
         P = K * np.outer(side, side)
         return from_qp(0.5 * (P + P.T), -np.ones(samples), A_eq=side[None], b_eq=[0.0], lower=0.0, upper=cost)
 
     def answer(solution: Any) -> Quantities:
-        """Weights, the offset, how many weights are not zero, and the objective."""
         weights = np.asarray(solution.x)[:samples]
         force = K @ (weights * side)
         inside = (weights > 1e-7 * cost) & (weights < (1.0 - 1e-7) * cost)
-        # From points on the margin; without any the multiplier, which is one of several offsets, would have to do.
+        # From points on the margin; without any, several offsets are optimal.
         offset = float(np.median((side - force)[inside])) if inside.any() else 0.0
         return {
             "weights": weights, "offset": offset, "support vectors": float((weights > 1e-7 * cost).sum()),
@@ -84,12 +81,11 @@ def SVM(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Of two points: 2 over the square of their distance."""
+        """Two points: 2 / distance^2."""
         weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), cost)
         return {} if samples != 2 or width else {"weights": np.full(2, weight)}
 
     def drawn(solution: Any) -> Picture:
-        """Points, border and margins; support vectors have a ring."""
         found = answer(solution)
         chosen, (low, high) = X[found["weights"] > 1e-7 * cost], (X.min(axis=0) - 0.5, X.max(axis=0) + 0.5)
         across, up = np.meshgrid(np.linspace(low[0], high[0], 80), np.linspace(low[1], high[1], 80))
@@ -111,7 +107,7 @@ def SVM(
 
     return Scene(
         units={"weights": "", "offset": "", "support vectors": "", "objective": ""},
-        # Between 0 and the cost, which is a bound and needs no multiplier.
+        # The cost is a bound and needs no multiplier.
         unknowns=(Unknown("weights of points", samples, "which points decide"),
                   Unknown("offset", 1, "where the border is: the multiplier of balance")),
         problem=problem, answer=answer, exact=exact, picture=drawn,

@@ -1,4 +1,4 @@
-"""A square bar that is twisted until it yields."""
+"""A twisted square bar that yields."""
 
 from __future__ import annotations
 
@@ -20,36 +20,31 @@ def Torsion(
 ) -> Scene:  # fmt: skip
     """A square bar of an elastic, perfectly plastic material under a twist: which torque does it bear?
 
-    Prandtl's stress function u: -lap u = 2 G twist where it is elastic, and u is at most the yield stress times the
-    distance from the surface (Ting; Brezis and Sibony). By second-order differences on an eighth of the section.
+    Prandtl's stress function u satisfies -lap u = 2 G twist where elastic, and u <= yield stress * distance from the
+    surface (Ting; Brezis and Sibony). Second-order differences on an eighth of the section.
 
     Parameters
     ----------
-    side : float
-        m.
-    modulus : float
-        Of shear, Pa.
-    yield_stress : float
-        Pa, in shear.
-    twist : float
-        rad/m.
+    side, twist : float
+        m; rad/m.
+    modulus, yield_stress : float
+        In shear, Pa.
     n : int
-        Points from the surface, which is none of them, to the middle.
+        Points from the surface (excluded) to the middle.
 
     References
     ----------
-    Ting, "Elastic-plastic torsion of a square bar", Trans. AMS 123 (1966); Timoshenko and Goodier, Theory of
-    Elasticity, for .1406.
+    Ting, Trans. AMS 123 (1966); Timoshenko and Goodier, Theory of Elasticity, for .1406.
     """
     h = 0.5 * side / n
-    # Column and row of each point, 1 <= j <= i <= n, and how many points of the square it stands for.
+    # 1 <= j <= i <= n, and each point's multiplicity in the square.
     i, j = (k + 1 for k in np.tril_indices(n))
     size, weight = i.size, 8.0 / (2.0 ** (i == j) * 2.0 ** ((i == n).astype(int) + (j == n)))
     limit = np.asarray(yield_stress * h * j, dtype=float)
 
     def problem() -> MixedLCP:
-        """Five-point differences over h^2 in the weights of the points, which keeps them symmetric."""
-        # Neighbours on all four sides, by reflection at the middle and at the diagonal; on the surface u is zero.
+        """Five-point differences times multiplicity, which keeps symmetry."""
+        # Neighbours reflect at the middle and the diagonal; u = 0 on the surface.
         a, b = (n - np.abs(n - np.add.outer(ways, k)) for ways, k in (((1, -1, 0, 0), i), ((0, 0, 1, -1), j)))
         a, b = np.maximum(a, b), np.minimum(a, b)
         row, inside = np.broadcast_to(np.arange(size), a.shape)[b > 0], b > 0
@@ -61,22 +56,20 @@ def Torsion(
         return x >= yield_stress * h * j * (1.0 - 1e-9)
 
     def answer(solution: Any) -> Quantities:
-        """The torque, and the part of the section in which it yields."""
         x = solution.x
         return {
             "torque": 2.0 * h * h * float(weight @ x), "plastic part": float(weight @ yields(x)) / (2 * n) ** 2,
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """As long as nothing yields (Saint-Venant); the rest has no closed form."""
+        """Saint-Venant's torque holds until the bar yields."""
         elastic = {"torque": 0.14057701495515551 * modulus * twist * side**4, "plastic part": 0.0}
         return {} if 0.6753 * modulus * twist * side > yield_stress else elastic
 
     def drawn(solution: Any) -> Picture:
-        """The stress function on the whole section, and where it yields."""
         quarter = np.zeros((2, n + 1, n + 1))
         quarter[:, i, j] = quarter[:, j, i] = solution.x, yields(solution.x)
-        # On the surface the stress is that of the points beside it.
+        # Surface points copy their neighbours.
         quarter[1, 0], quarter[1, :, 0] = quarter[1, 1], quarter[1, :, 1]
         whole, plastic = (np.block([[k, k[:, -2::-1]], [k[-2::-1], k[-2::-1, -2::-1]]]) for k in quarter)
         place = np.linspace(0.0, side, 2 * n + 1)
@@ -90,7 +83,6 @@ def Torsion(
 
     return Scene(
         units={"torque": "N m", "plastic part": ""},
-        # The square's eight symmetries leave a triangle.
         unknowns=(Unknown("stress function", size, "stresses are its slopes, the torque its volume"),),
         problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
     )  # fmt: skip

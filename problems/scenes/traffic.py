@@ -1,4 +1,4 @@
-"""Traffic on a grid of streets, where everybody takes the quickest way."""
+"""Traffic equilibrium on a grid."""
 
 from __future__ import annotations
 
@@ -18,46 +18,42 @@ from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at
 def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
     """A grid of streets whose times grow with their loads: which ways do drivers take from corner to corner?
 
-    Beckmann's program: its multipliers are the times from the crossings to the goal. Every street has times of its own,
-    drawn at random, so that no symmetry makes the model smaller.
+    Beckmann's program; its multipliers are times to the goal. Random street times exclude symmetry.
 
     Parameters
     ----------
-    side : int
-        Crossings in a row.
+    side, seed : int
+        Crossings per row; seed of the times.
     cars : float
-        An hour, in hundreds.
-    seed : int
-        Of the times.
+        Hundreds per hour.
 
     References
     ----------
     Beckmann, McGuire and Winsten, Studies in the Economics of Transportation, 1956.
     """
     place, streets = np.arange(side**2).reshape(side, side), 2 * side * (side - 1)
-    # From and to which crossing.
     begin = np.concatenate([place[:, :-1].ravel(), place[:-1].ravel()])
     end = np.concatenate([place[:, 1:].ravel(), place[1:].ravel()])
-    # Minutes on an empty street, and by how many each hundred cars lengthens them.
+    # Minutes when empty, and per hundred cars.
     random = np.random.default_rng(seed)
     empty, slope = random.uniform(1.0, 5.0, streets), random.uniform(0.1, 1.0, streets)
 
     def problem() -> Program:
-        """Min sum of slope load^2 / 2 + empty load: what leaves a crossing less what comes is what starts there."""
+        """Min sum slope load^2 / 2 + empty load; outflow - inflow = source."""
         one, street = np.ones(streets), np.arange(streets)
         whole = sp.coo_array((np.concatenate([one, -one]), (np.concatenate([begin, end]), np.tile(street, 2))))
         starts = np.append(cars, np.zeros(side**2 - 2))
         return from_qp(sp.diags_array(slope, format="csr"), empty, A_eq=whole.tocsr()[:-1], b_eq=starts, lower=0.0)
 
     def answer(solution: Any) -> Quantities:
-        """The mean time of the cars, which is that of the quickest way, and the loads."""
+        """At equilibrium the mean time is that of the quickest way."""
         loads = np.maximum(np.asarray(solution.x)[:streets], 0.0)
         minutes = empty + slope * loads
         quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]
         return {"time": float(minutes @ loads) / cars, "quickest way": float(quickest), "loads": loads}
 
     def exact() -> Quantities:
-        """On two by two crossings the two ways share the cars so that they take the same time."""
+        """Two by two crossings: both ways take equal times."""
         if side > 2:
             return {}
         fixed, each = (part[[0, 2]] + part[[3, 1]] for part in (empty, slope))
@@ -66,7 +62,6 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
         return {"time": time, "quickest way": time, "loads": np.array([first, cars - first, cars - first, first])}
 
     def drawn(solution: Any) -> Picture:
-        """The streets, as wide as their loads."""
         found = answer(solution)
         (y0, x0), (y1, x1) = (np.divmod(ends, side) for ends in (begin, end))
         across, down = np.meshgrid(range(side), range(side))
@@ -80,7 +75,7 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
 
     return Scene(
         units={"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"},
-        # Loads of streets, not of routes, of which there are far more; one goal, so one flow.
+        # Streets, not routes: there are far more routes.
         unknowns=(
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),

@@ -1,4 +1,4 @@
-"""Bars that yield one after another, up to the collapse."""
+"""Bars that yield until collapse."""
 
 from __future__ import annotations
 
@@ -22,32 +22,28 @@ def Truss(
 ) -> Scene:
     """A rigid beam that hangs on parallel bars of different strength: how do they yield as the load grows?
 
-    Each bar is elastic, then plastic with linear hardening. Without hardening the path of plastic strains ends at the
-    collapse load, the most that the bars can bear: it goes on along a ray with no more load.
+    Bars are elastic, then plastic with linear hardening. Without hardening the path of plastic strains ends in a ray at
+    the collapse load.
 
     Parameters
     ----------
     limits : sequence of float
-        Forces at which the bars yield.
-    stiffness : float
-        Force per elongation, of each bar.
-    hardening : float
-        Force per plastic elongation; 0 is perfect plasticity.
+        Yield forces.
+    stiffness, hardening : float
+        Force per elastic and per plastic elongation; hardening 0 is perfect plasticity.
     load : float
 
     References
     ----------
-    Maier, "A matrix structural theory of piecewise linear elastoplasticity", Meccanica 5 (1970).
+    Maier, Meccanica 5 (1970).
     """
     n, most = len(limits), np.array(limits)
     A = (stiffness + hardening) * np.eye(n) - stiffness / n * np.ones((n, n))
 
     def loaded(strain: Array) -> Quantities:
-        """Plastic elongations, and the forces that they leave."""
         return {"plastic elongations": strain, "forces": load / n - stiffness * (strain - strain.mean())}
 
     def answer(solution: Any) -> Quantities:
-        """At the load, where the bars can bear it."""
         if not isinstance(solution, Path):
             return loaded(np.asarray(solution.x))
         end, v = solution.endpoint, solution.steps[-1].tangent
@@ -61,7 +57,7 @@ def Truss(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """The bars stretch alike: elastic to their limit, then by what hardening leaves."""
+        """All bars stretch equally."""
         soft, stretches = stiffness * hardening / (stiffness + hardening), np.sort(most) / stiffness
 
         def forces(stretch: float) -> Array:
@@ -69,14 +65,13 @@ def Truss(
             return whole
 
         yields = np.array([forces(stretch).sum() for stretch in stretches])
-        # Behind the last yield the load grows by the hardening of all bars.
+        # Beyond the last yield only hardening carries load.
         beyond = max(load - yields[-1], 0.0) / (soft * n) if soft else 0.0
         stretch = beyond + float(np.interp(load, [0.0, *yields], [0.0, *stretches]))
         known = {"yield loads": yields} if hardening else {"forces": forces(stretch), "collapse load": most.sum()}
         return {"plastic elongations": stretch - forces(stretch) / stiffness, **known}
 
     def drawn(solution: Any) -> Picture:
-        """The load against the stretch of the bars, with a kink wherever one yields."""
         u, v = solution.u, solution.steps[-1].tangent
         u = np.vstack([u, u[-1] + v / np.abs(v).max() * 0.2 * np.abs(u).max()])
         stretch, loads = u[:, -1] / n / stiffness + u[:, :-1].mean(axis=1), [kink.lam for kink in solution.kinks]
@@ -90,11 +85,10 @@ def Truss(
 
     return Scene(
         units={"plastic elongations": "length", "forces": "force", "collapse load": "force", "yield loads": "force"},
-        # Bars are pulled, never pressed: one yield limit each.
+        # Bars only pull: one limit each.
         unknowns=(Unknown("plastic elongations", n, "which bars have yielded; forces follow from them"),),
-        # At the load: what is left up to each limit.
+        # Distance to each limit.
         problem=lambda: LCP(A, most - load / n),
-        # The path as the load grows from zero.
         solve=lambda: along(LCP(A, most), np.full(n, -1.0 / n), (0.0, inf), x=np.zeros(n)),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A spectrum as a sum of known ones: how much of each substance is there?"""
+"""Spectral unmixing."""
 
 from __future__ import annotations
 
@@ -30,18 +30,15 @@ def Unmixing(
 ) -> Scene:  # fmt: skip
     """A spectrum of several substances whose own spectra overlap: how much of each is there?
 
-    Nonnegative least squares. Each spectrum is one peak; every third substance is not there at all.
+    Nonnegative least squares. Each substance has one peak; every third is absent.
 
     Parameters
     ----------
-    substances : int
-    channels : int
-        Of the spectrometer.
+    substances, channels, seed : int
     width : float
-        Of a peak, in distances of peaks.
+        Of a peak, in peak distances.
     noise : float
         Standard deviation.
-    seed : int
 
     References
     ----------
@@ -49,17 +46,14 @@ def Unmixing(
     """
     place, k = np.linspace(-1.0, substances, channels), np.arange(substances)
     amounts = np.where(k % 3 == 2, 0.0, 1.0 + 0.5 * np.sin(2.0 * k))
-    # The known spectra, one a column, and the one that is measured.
     spectra = np.exp(-0.5 * ((place[:, None] - k) / width) ** 2)
     measured = spectra @ amounts + noise * np.random.default_rng(seed).normal(size=channels)
 
     def answer(solution: Any) -> Quantities:
-        """Amounts, and what they leave unexplained."""
         x = np.asarray(solution.x)
         return {"amounts": x, "misfit": float(np.linalg.norm(spectra @ x - measured))}
 
     def drawn(solution: Any) -> Picture:
-        """The measured spectrum, and its parts."""
         x = np.asarray(solution.x)
         return picture(
             mark("plot", place, measured, "k.", markersize=2, label="measured"),
@@ -73,12 +67,9 @@ def Unmixing(
 
     return Scene(
         units={"amounts": "", "misfit": ""},
-        # The misfit of the channels follows.
         unknowns=(Unknown("amounts", substances, "how much of each substance"),),
-        # The normal equations as inequalities.
         problem=lambda: LCP(spectra.T @ spectra, -spectra.T @ measured),
         answer=answer, picture=drawn,
-        # What the spectrum was made of, where there is no noise.
         exact=lambda: {} if noise else {"amounts": amounts, "misfit": 0.0},
         rivals=(Rival("nnls (scipy)", "", lawson_hanson), GAUSS_SEIDEL, LEMKE, *QUADRATIC),
     )  # fmt: skip
