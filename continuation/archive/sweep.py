@@ -1,8 +1,7 @@
-"""`trace_many`: many paths, one after another or over any executor, kept whatever happens to some of them.
+"""`trace_many`: many paths, one after another or over any executor.
 
-A worker, or this process itself, traces one homotopy and gives back its path, as a share of columns where there is an
-archive. This process alone writes: what is lost with a worker is one path, and a kill of this process leaves those that
-came, in files that are put in order at the end.
+Workers return paths, as columns if there is an archive; only this process writes. A lost worker costs one path; if this
+process is killed, finished paths remain in part files.
 """
 
 from __future__ import annotations
@@ -36,15 +35,15 @@ from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
 Result = Path | Share | BaseException
-"""What came of a homotopy."""
+"""A homotopy's path, or its exception."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""What a homotopy raises costs its own path; Ctrl-C alone ends the sweep."""
+"""Exceptions that cost only the homotopy's own path; Ctrl-C ends the sweep."""
 
 
 @frozen(eq=False)
 class Task:
-    """A homotopy for a worker, and its number in the sweep."""
+    """A homotopy for a worker, with its number in the sweep."""
 
     homotopy: Any
     number: int
@@ -61,44 +60,43 @@ def trace_many(
     timeout: float | None = None,
     **options: Unpack[Options],
 ) -> Sequence[Path]:
-    """Trace many homotopies.
+    """Trace many homotopies, in order.
 
-    A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
-    worker costs its own path only: that one is RAISED, with the exception's text as its message. The order is that of
-    the homotopies. Ctrl-C keeps the paths that are finished, and ends within about a second.
+    A homotopy that raises, exits, kills its worker, exceeds the timeout or cannot be pickled costs only its own path,
+    which gets the status RAISED and the exception as message. Ctrl-C keeps finished paths and ends within about a
+    second.
 
     Parameters
     ----------
     homotopies : iterable of Homotopy
-        To be picklable where the executor needs it. Where there is an archive those of another number of unknowns than
-        the first have the status RAISED.
+        Picklable if the executor needs it. With an archive, those of another number of unknowns than the first become
+        RAISED.
     executor : concurrent.futures.Executor, optional
-        A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
+        A process pool, dask's ``Client.get_executor()``, ...; default: this process.
     archive : path, optional
-        One file with all paths. They are kept in ``name.sweep-xxxxxxxx.1.h5`` as they come (each number of unknowns
-        has a file), and are put in order at the end. If this process is killed they stay there, and the sweep can be
-        run again.
+        One file for all paths. Finished paths go to ``name.sweep-xxxxxxxx.1.h5`` (one file for each number of
+        unknowns), and are sorted at the end. A kill leaves these parts.
     progress : callable, optional
-        ``progress(done, total)``, called in this process; `continuation.step.progress.SweepProgress` shows it.
+        ``progress(done, total)``, such as `continuation.step.progress.SweepProgress`.
     timeout : float, optional
-        Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
-        looked at between steps, and so never where a homotopy does not come back.)
+        Seconds for one homotopy in a process pool; then its process is killed. (`Budget.seconds` acts only between
+        steps.)
     **options
-        As for `continuation.trace`, the same for all; `start` is every homotopy's own.
+        As for `continuation.trace`, except `start`.
 
     Returns
     -------
     sequence of Path
-        The open `Archive` where there is one (lazy, and to be closed), else a list.
+        The open `Archive`, to be closed, or a list.
 
     Raises
     ------
     TypeError, ValueError
-        For an option that `continuation.Tracer` does not have, for what is no homotopy, or for none and an archive.
+        For unknown options, objects that are no homotopy, or an archive without homotopies.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
-        After Ctrl-C, when everything finished is in the archive.
+        After Ctrl-C, when finished paths are in the archive.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
     if timeout is not None and not (is_number(timeout) and timeout > 0):
@@ -143,7 +141,7 @@ def _swept(
             _end_processes(executor)
             for future, number in futures.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
-                    # Ctrl-C reaches the workers too, in a terminal.
+                    # In a terminal, Ctrl-C reaches workers too.
                     with suppress(KeyboardInterrupt):
                         kept.add(number, future.result())
     if target is not None and kept.parts:
@@ -159,7 +157,7 @@ def _swept(
 
 @define(eq=False)
 class _Kept:
-    """The paths that came, in memory or in a file for each layout."""
+    """The paths so far, in memory or in one file for each layout."""
 
     tasks: Sequence[Task]
     target: File | None
@@ -169,7 +167,7 @@ class _Kept:
     parts: dict[Layout, Store] = field(factory=dict)
 
     def add(self, number: int, found: Result) -> None:
-        """Put a path where it stays; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
+        """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
         task = self.tasks[number]
         if isinstance(found, KeyboardInterrupt):
             raise found
@@ -184,9 +182,9 @@ class _Kept:
             raise KeyboardInterrupt
 
     def _part(self, share: Share, task: Task) -> Store:
-        """The file for all paths of a layout."""
+        """The file for a layout."""
         assert self.target is not None
-        # A homotopy that has points was harmless to make a tracer of.
+        # Its worker made a tracer without harm.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
@@ -200,10 +198,9 @@ class _Kept:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all of it and wait; `futures` are those on their way. A pool's workers that hang are ended.
+    """Submit all tasks and wait; `futures` are those under way. Hanging pool workers are killed.
 
-    What was lost with a worker is done again, each in a process of its own: one that ends its process takes no other
-    with it.
+    Tasks lost with a worker run again, each in its own process.
     """
     lost: dict[int, BaseException] = {}
     for task in tasks:
@@ -215,11 +212,11 @@ def _spread(
     while futures:
         ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
         if not ended:
-            # All that run have run for that long, since a worker that ends one begins the next.
+            # All running tasks have exceeded the timeout, since an idle worker starts the next.
             _end_processes(executor)
             ended = wait(futures).done
         while ended:
-            # Dask does again what is lost with a worker while somebody holds its future.
+            # Dask repeats lost tasks while their future is held.
             future = ended.pop()
             number, raised = futures.pop(future), future.exception()
             if isinstance(raised, BrokenExecutor):
@@ -232,7 +229,7 @@ def _spread(
 
 
 def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
-    """What comes of a homotopy in a process of its own."""
+    """The result of a task in its own process."""
     alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
     try:
         future = alone.submit(traced, task)
@@ -245,7 +242,7 @@ def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
 
 
 def _end_processes(executor: Executor | None) -> None:
-    """End the processes of a pool, whose homotopies do not come back; threads end by themselves."""
+    """Kill a pool's processes; threads end by themselves."""
     if isinstance(executor, ProcessPoolExecutor):
         for process in list((executor._processes or {}).values()):
             process.kill()
@@ -253,7 +250,7 @@ def _end_processes(executor: Executor | None) -> None:
 
 
 def traced(task: Task) -> Path | Share:
-    """The path of a homotopy, whatever that raises: what a worker does."""
+    """The path of a homotopy, whatever it raises; workers run this."""
     path, controller = Path(), tuple[float, ...]()
     try:
         tracer = Tracer(task.homotopy, **task.options)
@@ -272,5 +269,5 @@ def traced(task: Task) -> Path | Share:
 
 
 def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
-    """A path as it is sent back: as columns where there is an archive."""
+    """A path, as columns if there is an archive."""
     return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path
