@@ -1,7 +1,7 @@
 """The path archive: HDF5 files written during a trace, which `resume` continues exactly.
 
-An archive holds a table of points and one of paths. Each commit appends a block: rows, checksums, a checkpoint and a
-record that the block is complete. Readers check each block. Every netCDF-4 tool (h5py, xarray) reads these files.
+An archive holds a table of points and one of paths. Each commit appends a checked block of rows and a checkpoint. Every
+netCDF-4 tool (h5py, xarray) reads these files.
 """
 
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError

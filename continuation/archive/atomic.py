@@ -1,7 +1,7 @@
-"""Files and locks: one-line errors, files that appear only when complete, locks that end with their process.
+"""Files and locks.
 
-New data goes into ``.NAME.xxxxxxxx.part`` and reaches the disk before it is renamed. After a kill, the next writer of
-the name removes the part.
+New data goes into ``.NAME.xxxxxxxx.part`` and reaches the disk before it is renamed. After a kill, the next writer
+removes the part.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from continuation.arguments.checks import complain
 
 
 class ArchiveError(OSError):
-    """A file that cannot be read, written or resumed; the message is one line with file and reason.
+    """A file that cannot be read, written or resumed; the message is one line.
 
-    Unprintable characters become "?", since the file may supply part of the text.
+    Unprintable characters become "?", since a file may supply the text.
     """
 
     def __init__(self, message: str) -> None:
@@ -34,20 +34,16 @@ class ArchiveError(OSError):
 
 
 class ArchiveExistsError(ArchiveError, FileExistsError):
-    """The file exists already; archives are never overwritten."""
+    """The file exists already."""
 
 
 _ABANDONED = 60.0
-"""Age in seconds at which an unlocked part is removed: writers lock theirs at once."""
+"""Seconds after which an unlocked part is removed; writers lock theirs at once."""
 
 
 @contextmanager
 def beside(target: File) -> Iterator[File]:
-    """A new name beside `target` to write to; a part left in the end is removed.
-
-    Raises `ArchiveError` for errors of the operating system.
-    """
-    # Parts that killed writers left are only copies.
+    """A new name beside `target`; a part left in the end is removed."""
     for left in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
         with suppress(OSError):
             if time.time() - left.stat().st_mtime > _ABANDONED and not is_held(left):
@@ -65,10 +61,9 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name in one step.
+    """Give a complete file its name in one step; `replace` keeps the old file's mode and, if allowed, owner.
 
-    `replace`: take the place, mode and, if allowed, owner of the old file. Raises `ArchiveExistsError` if the name is
-    taken, `OSError` for other errors.
+    Raises `ArchiveExistsError` if the name is taken.
     """
     if replace and target.exists():
         status = target.stat()
@@ -85,7 +80,6 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
         # Without hard links, this reserves the name.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         os.replace(part, target)
-    # Syncs the directory too.
     with suppress(OSError):
         descriptor = os.open(target.parent, os.O_RDONLY)
         try:
@@ -95,21 +89,21 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
 
 
 def as_file(argument: str, value: Any) -> File:
-    """The path; `TypeError` if the argument is none."""
+    """The path; `TypeError` otherwise."""
     if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
         raise complain(TypeError, argument, "the name of a file", value)
     return File(value)
 
 
 def new_file(argument: str, value: Any) -> File:
-    """The path, checked by `as_file` and `check_new`."""
+    """The path of a file that can be made."""
     file = as_file(argument, value)
     check_new(file)
     return file
 
 
 def check_new(file: File) -> None:
-    """Raise `ArchiveError` if the file exists, or its directory is missing or not writable."""
+    """Raise `ArchiveError` unless the file can be made."""
     if "\0" in str(file):
         raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
@@ -130,12 +124,12 @@ _NAME_BYTES = 255 - len("..xxxxxxxx.part")
 
 
 def exists(file: File) -> ArchiveExistsError:
-    """The error for an existing file."""
+    """The error for it."""
     return ArchiveExistsError(f"{file}: exists already, and is never overwritten; choose another name or remove it")
 
 
 def short(error: BaseException) -> str:
-    """The reason of an error, in the operating system's words if HDF5 quotes them."""
+    """The error's reason, as the operating system gives it."""
     text = " ".join(str(error).split())
     found = re.search(r"errno = \d+, error message = '([^']*)'", text)
     if found:
@@ -143,8 +137,7 @@ def short(error: BaseException) -> str:
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
 
 
-# Open file description locks (Linux): HDF5 itself uses flock, and a POSIX lock ends when the process closes any
-# descriptor of the file.
+# Open file description locks (Linux): HDF5 uses flock; a POSIX lock ends when the process closes any descriptor.
 _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
@@ -152,7 +145,7 @@ _TAKEN = (errno.EAGAIN, errno.EACCES)
 class Lock:
     """A lock on a file until `close` or the end of the process; `taken` is False if another process holds it.
 
-    File systems without locks count as taken. Raises `ArchiveError` if the file is not writable.
+    On file systems without locks it is taken. Raises `ArchiveError` if the file is not writable.
     """
 
     def __init__(self, file: File) -> None:
@@ -177,7 +170,7 @@ class Lock:
 
 
 def is_held(file: File) -> bool:
-    """Whether a process writes the file; False if unknown."""
+    """Whether a process is known to write the file."""
     try:
         lock = Lock(file)
     except ArchiveError:
@@ -187,10 +180,9 @@ def is_held(file: File) -> bool:
 
 
 def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """The right to replace a file; `force` ignores a live writer.
+    """The right to replace a file that was read as `descriptor` and last written by process `writer`.
 
-    `descriptor`: the file as it was read. `writer`: process that last wrote it. Raises `ArchiveError` if the file is
-    not writable, is being written or was replaced.
+    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, is being written or was replaced.
     """
     # The mode too: root may write everything.
     if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:

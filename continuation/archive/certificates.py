@@ -1,7 +1,4 @@
-"""Proofs of paths, in the group `/certificate`, that can be checked without a trace.
-
-Files are untrusted: stored numbers prove nothing until `recheck` has tested every condition.
-"""
+"""Proofs of paths, in the group `/certificate`: untrusted numbers until `recheck` has tested every condition."""
 
 from __future__ import annotations
 
@@ -68,7 +65,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:
-    """The cells of a stored proof, or None; `ArchiveError` if they are damaged."""
+    """The cells of a stored proof, or None."""
     try:
         root = archive.contents.root
         if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
@@ -83,7 +80,6 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 
 
 def _check(columns: dict[str, Any]) -> None:
-    """Check that the columns are finite numbers of fitting shapes."""
     # Cells may be wider than the path (`continuation.certificate.lifting`).
     count, width = columns["begin"].shape
     for name in NAMES:
@@ -96,7 +92,7 @@ def _check(columns: dict[str, Any]) -> None:
 
 
 _MOST_SLABS = 64
-"""Our files hold fewer; more would take long to check."""
+"""Our files hold fewer; more take long."""
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:

@@ -1,4 +1,4 @@
-"""The stepper's state as bytes, from which a trace resumes."""
+"""The stepper's state as bytes, to resume from."""
 
 from __future__ import annotations
 
@@ -32,10 +32,9 @@ _INLINE_BYTES = 1 << 16
 
 @frozen(eq=False)
 class Checkpoint:
-    """A point from which a path continues exactly.
+    """A point from which a path continues exactly, after `rows` rows.
 
-    `sequence`: number of the checkpoint. `rows`: the path's rows before the state. `counts`, `seconds`: work so far.
-    `run`: options, homotopy and index in a sweep.
+    `counts`, `seconds`: work so far. `run`: options, homotopy, index in a sweep.
     """
 
     sequence: int
@@ -48,13 +47,13 @@ class Checkpoint:
 
 
 def major(version: str) -> str:
-    """The part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
+    """Versions that share it resume each other's paths: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
     return first if first != "0" else f"0.{second}"
 
 
 def _fetched(raw: bytes) -> Callable[[Any], Any]:
-    """Arrays by number; identical arrays stay one object."""
+    """Arrays by number, each one object."""
     made: list[np.ndarray[Any, Any]] = []
 
     def fetch(place: Any) -> Any:
@@ -68,10 +67,7 @@ def _fetched(raw: bytes) -> Callable[[Any], Any]:
 
 
 def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
-    """The first bytes as an array, not copied.
-
-    Raises `ValueError` if it is not numeric or needs more bytes.
-    """
+    """The first bytes as an array; `ValueError` if it is not numeric or longer."""
     kind = np.dtype(dtype)
     count = math.prod(shape)
     if kind.kind not in "fiubc" or min(shape, default=0) < 0 or count * kind.itemsize > len(raw):
@@ -80,9 +76,9 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
 
 
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Options and homotopy as JSON; "unstorable" gives the reason why a value is not stored.
+    """Options and homotopy as JSON, or the reasons why they are "unstorable".
 
-    `member`: index in a sweep. `homotopy`: its description if the problem group holds its arrays.
+    `homotopy`: its description if the problem group holds it.
     """
     values = {name: getattr(tracer.settings, name) for name in OPTIONS}
     own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
@@ -115,10 +111,7 @@ def whole(place: Any) -> Any:
 
 
 def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
-    """Head, then JSON, run description and arrays.
-
-    `run`: JSON of ``checkpoint.run``, constant along a path, if already made.
-    """
+    """Head, JSON, run, arrays; `run` is JSON of ``checkpoint.run``, if already made."""
     arrays: dict[int, np.ndarray[Any, Any]] = {}
 
     def place(name: str, array: Any) -> Any:
@@ -141,14 +134,14 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
 
 
 def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in its slot of a new file; the next one uses the other slot."""
+    """The checkpoint in its slot of a new file."""
     return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
     """The checkpoint; None if it is missing, torn or of another major version.
 
-    Then only resuming fails; the points stay valid. Nothing that the bytes name is created.
+    Nothing that the bytes name is created.
     """
     try:
         sequence, length, crc = HEAD.unpack_from(raw)
@@ -170,7 +163,6 @@ def unpack(raw: bytes) -> Checkpoint | None:
 
 
 def _consistent(state: State) -> bool:
-    """Whether all vectors are float64 and equally long."""
     knots = (*state.history, state.origin)
     vectors = [state.weights, *state.anchor, state.origin_weights, *(v for k in knots for v in (k.u, k.tangent))]
     return bool(state.history) and all(v.dtype == float and v.shape == (vectors[0].size,) for v in vectors)

@@ -1,10 +1,9 @@
-"""Checksums of blocks of rows, by column, and the records of commits.
+"""Checksums of blocks of rows, and the records of commits.
 
 A block is one commit's rows. Its row in ``/checks`` holds its end and one checksum for each column, sorted by name.
 
-A commit has two records: the *intent*, written with the rows, and the *commit*, written after them; each alternates
-between two places. A kill tears at most one record and the other three determine it, so damage is never mistaken for an
-unfinished commit.
+A commit writes two records, *intent* and *commit*, each alternating between two places. A kill tears at most one; the
+other three determine it, so damage never looks like an unfinished commit.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ PLACES = 2
 RECORD_BYTES = 7 * 8 + 4
 _BOUNDS = struct.Struct("<QQ")
 STOP = 2
-"""Words that hold a block's end."""
+"""Words of a block's end."""
 
 _LARGE = 1 << 16
 """Bytes from which a matrix is checked by sums of rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40."""
@@ -33,12 +32,12 @@ Array = np.ndarray[Any, Any]
 
 
 class DamageError(ValueError):
-    """Data that differ from those written; the message names damaged rows."""
+    """Data that differ from those written."""
 
 
 @frozen
 class Committed:
-    """The valid part of a file: number of the commit; counts of rows, blocks and event names; last checkpoint."""
+    """The valid part of a file: number of the commit; counts of rows, blocks, event names; last checkpoint."""
 
     sequence: int = 0
     points: int = 0
@@ -55,12 +54,12 @@ class Committed:
 
 
 def blank() -> Array:
-    """The records of a new file, intents then commits, shape (4, bytes), older than any commit."""
+    """The records of a new file, shape (4, bytes): intents, then commits."""
     return np.array([Committed(sequence=k % PLACES).pack() for k in range(2 * PLACES)])
 
 
 def latest(records: Array) -> Committed:
-    """The last complete commit; `DamageError` if the records do not determine it."""
+    """The last complete commit."""
     sound = [zlib.crc32(raw[:-4]) == int.from_bytes(raw[-4:].tobytes(), "little") for raw in records]
     found = [Committed(*np.frombuffer(raw[:-4], "<u8").tolist()) if ok else None for raw, ok in zip(records, sound)]
     commits = [one for one in found[PLACES:] if one is not None]
@@ -75,7 +74,7 @@ def latest(records: Array) -> Committed:
 
 
 def digest(values: Any, seed: int = 0) -> int:
-    """CRC-32, for large matrices of their row and column sums."""
+    """CRC-32, for large matrices of row and column sums."""
     whole: Any = np.ascontiguousarray(values)
     if whole.ndim == 2 and whole.nbytes >= _LARGE and whole.itemsize == 8:
         words = whole.view("u8")
@@ -84,7 +83,7 @@ def digest(values: Any, seed: int = 0) -> int:
 
 
 def seal(block: Mapping[str, Array], start: int) -> Array:
-    """The checksum row of a block that starts at row `start`."""
+    """The checksum row of a block from row `start`."""
     stop = start + len(next(iter(block.values())))
     seed = zlib.crc32(_BOUNDS.pack(start, stop))
     sums = [digest(block[name], seed) for name in sorted(block)]
@@ -94,8 +93,7 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
 class Ledger:
     """The checksums of a table of `size` rows, one row (`seal`) for each block.
 
-    `size` None (file cut off): blocks count up to the first invalid one. Raises `DamageError` if blocks and size
-    disagree.
+    For `size` None (file cut off), blocks end at the first invalid one.
     """
 
     def __init__(self, rows: Array, columns: Sequence[str], size: int | None) -> None:
@@ -110,7 +108,7 @@ class Ledger:
         self._sums, self._place = rows[:, STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
-        """Rows of a column, checked; `fetch` reads whole blocks. `DamageError` names damaged rows."""
+        """Rows of a column, checked; `fetch` reads whole blocks."""
         if rows.stop <= rows.start:
             return fetch(rows)
         first, last = (int(k) for k in np.searchsorted(self.bounds, (rows.start + 1, rows.stop)))

@@ -22,7 +22,7 @@ GROUP = "problem"
 
 
 def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
-    """JSON of the homotopy, or of the reason why it is "unstorable"; and its arrays."""
+    """JSON and arrays of the homotopy, or the reason why it is "unstorable"."""
     arrays: dict[str, Any] = {}
     names: dict[int, str] = {}
 
@@ -58,14 +58,14 @@ def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> Non
 
 
 def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
-    """Write arrays, each with a checksum."""
+    """Write arrays with checksums."""
     for name, array in arrays.items():
         stored = group.create_dataset(name, data=array)
         set_attributes(stored, {"order": order(array), "checksum": np.uint32(digest(array))})
 
 
 def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, Any]:
-    """The arrays; `DamageError` if a checksum differs."""
+    """The arrays, checked."""
     arrays = {}
     for name in group:
         found = dataset(group, name, None, None, allowance)
@@ -77,7 +77,7 @@ def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, An
 
 
 def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
-    """Description and arrays; `DamageError` if a checksum differs."""
+    """Description and arrays, checked."""
     if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
     description = str(group.attrs["description"])
@@ -114,11 +114,11 @@ class SupportsArchive(Protocol):
 
 
 class UnstorableError(TypeError):
-    """An object that JSON cannot describe; the message gives the reason."""
+    """An object that JSON cannot describe."""
 
 
 def path_of(thing: Any) -> str:
-    """``module:name`` of a class or function; `UnstorableError` if no import finds it."""
+    """``module:name`` of an importable class or function."""
     module, name = str(getattr(thing, "__module__", None)), str(getattr(thing, "__qualname__", repr(thing)))
     found: Any = sys.modules.get(module)
     for part in name.split("."):
@@ -132,8 +132,8 @@ def path_of(thing: Any) -> str:
 def encode(value: Any, place: Place, name: str = "value") -> Any:
     """JSON for a value; `place` stores arrays.
 
-    Raises `UnstorableError` if a part is no number, text, container, array, attrs class, importable function or
-    `SupportsArchive`.
+    Raises `UnstorableError` unless all parts are numbers, texts, containers, arrays, attrs classes, importable
+    functions or `SupportsArchive`.
     """
     value = value.item() if isinstance(value, np.generic) else value
     match value:

@@ -1,4 +1,4 @@
-"""The open file: its structure, tables and problem, read piece by piece and checked."""
+"""The open file, read piece by piece and checked."""
 
 from __future__ import annotations
 
@@ -53,17 +53,16 @@ FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError
 """Exceptions that h5py raises for a damaged file."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
-"""Seconds for which a file under a live writer may seem damaged, and seconds between retries."""
+"""Seconds during which a live writer's file may seem damaged, and between retries."""
 
 TABLES = ("point", "path")
 
 
 class Contents:
-    """An open file.
+    """An open file; any fault raises `ArchiveError`.
 
-    `limit`: bytes of memory (`Allowance`). `salvage`: continue if the end of the file, its attributes, names or problem
-    are damaged; rows are checked all the same. `checked`: the file has checksums. `flaws`: damage passed over.
-    `cut_off`: committed rows without checksums, by table. All methods raise `ArchiveError` for a faulty file.
+    `limit`: bytes of memory (`Allowance`). `salvage`: accept damage outside rows. `checked`: the file has checksums.
+    `flaws`: accepted damage. `cut_off`: committed rows without checksums, by table.
     """
 
     root: Any = None
@@ -87,7 +86,7 @@ class Contents:
         self.root = self._image = None
 
     def _guarded(self, read: Callable[[], _T]) -> _T:
-        """The result of `read`, retried while a writer is at work."""
+        """The result of `read`, retried under a live writer."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -112,7 +111,7 @@ class Contents:
         return ArchiveError(f"{self.file}: truncated or damaged, {short(error)}{hint}")
 
     def _or_else(self, what: str, read: Callable[[], _T], lost: _T) -> _T:
-        """The result of `read`; if salvaging, `lost` in its place, unless the disk itself failed."""
+        """The result of `read`, or `lost` if salvaging and the disk works."""
         try:
             return read()
         except FAULTS as error:
@@ -125,8 +124,6 @@ class Contents:
         if not self._salvage:
             raise DamageError(text)
         self.flaws.append(text)
-
-    # -- structure --
 
     def _open(self) -> None:
         self._image = image = Image(self.file)
@@ -153,7 +150,6 @@ class Contents:
         self.attributes: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(file.attrs), {})
         if self.checked and of_attributes(self.attributes) != int(subgroup(file, GROUP).attrs["attributes"]):
             self._flaw("its attributes are not what was written")
-            # Replaces characters that could not be written again.
             plain = {
                 k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in self.attributes.items()
             }
@@ -174,7 +170,7 @@ class Contents:
         return Committed(points=points, paths=paths)
 
     def _read_ledger(self, table: str) -> int:
-        """Read a table's checksums; the number of rows that they cover."""
+        """Read a table's checksums; return how many rows they cover."""
         columns, rows = list(self._columns[table]), getattr(self.committed, f"{table}s")
         blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
         sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
@@ -185,7 +181,7 @@ class Contents:
         return ledger.rows
 
     def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
-        """The first rows of a dataset; if the file is cut off, the chunks that HDF5 finds."""
+        """The first rows of a dataset, as far as HDF5 finds its chunks."""
         found = dataset(group, name, kind, shape, self.allowance, count)
         step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
         parts: list[Array | None] = [np.empty((0, *found.shape[1:]), found.dtype)]
@@ -205,8 +201,6 @@ class Contents:
         named = [name.decode(errors="replace") for name in raw]
         return (*named, *(f"event {k}, whose name is lost" for k in range(len(named), count)))
 
-    # -- tables --
-
     def table(self, name: str) -> Table:
         """The committed rows of ``"point"`` or ``"path"``."""
         return Table(self.layout, name, getattr(self.committed, f"{name}s"), partial(self.read, name))
@@ -222,7 +216,6 @@ class Contents:
     def _fetch(self, column: Column, rows: slice) -> Array:
         if column.name not in self._datasets:
             shape = (None, *self.layout.width(column))
-            # The ledger counts its rows.
             found = dataset(self.root, column.name, column.storage, shape, self.allowance, 0)
             self._datasets[column.name] = found.astype(column.storage) if column.length else found
         found = self._datasets[column.name]
@@ -243,10 +236,8 @@ class Contents:
         doubtful = [some for some in several if not is_sound(some[0][0], some[-1][1])]
         return [block for some in doubtful for block in some if not is_sound(*block)]
 
-    # -- resuming --
-
     def slots(self) -> list[bytes]:
-        """The stored checkpoints, perhaps damaged."""
+        """The stored checkpoints, perhaps torn."""
 
         def read() -> list[bytes]:
             found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
@@ -255,7 +246,7 @@ class Contents:
         return self._guarded(read) if RESUME in set(self.root) else []
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """The first homotopy's description (JSON) and arrays."""
+        """The problem group."""
 
         def read() -> tuple[str, Mapping[str, Any]]:
             group = subgroup(self.root, PROBLEM) if PROBLEM in set(self.root) else None
@@ -266,7 +257,7 @@ class Contents:
 
 
 _BLOCKS = 64
-"""Blocks (256 rows, at most 4 MiB each) checked together, since most are sound."""
+"""Blocks (at most 4 MiB each) checked together, since most are sound."""
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:

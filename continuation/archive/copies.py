@@ -24,8 +24,8 @@ from continuation.path import Path
 class Share:
     """Some paths and their points.
 
-    `paths`: rows of the path table. `points`: a point table that holds their points in `rows`. `names`: events that
-    `event_index` numbers. `first`: number of the first path in `path_index`. `origin`: the open file, if any.
+    `paths`: rows of the path table. `points`, `rows`: a point table and their rows in it. `names`: events by
+    `event_index`. `first`: first number in `path_index`. `origin`: the open file, if any.
     """
 
     layout: Layout
@@ -43,7 +43,7 @@ class Share:
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
-    """Paths `first` to `last` - 1 of an archive (default: all) with `points` points (default: all)."""
+    """Paths `first` to `last` - 1 of an archive with `points` points (default: all)."""
     stop, contents = len(archive) if last is None else last, archive.contents
     about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
     # Time, process and name replace a missing identifier.
@@ -71,7 +71,7 @@ def share_of_path(
 
 
 def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
-    """The share with missing homotopies and sources filled in, numbered from `first`."""
+    """The share with missing homotopies and sources filled in."""
     count, begin = len(share.paths["path"]), share.first if first is None else first
     said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
     paths = dict(share.paths)
@@ -83,7 +83,7 @@ def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first:
 
 
 def leading(shares: Sequence[Share]) -> Contents:
-    """The archive of the first point, whose settings a copy keeps."""
+    """The archive of the first point."""
     found = next((share for share in shares if share.size), shares[0]).origin
     assert found is not None
     return found
@@ -106,8 +106,7 @@ def write_copy(
 ) -> Store:
     """Concatenate shares of open files into a new file, which stays open.
 
-    It keeps the attributes of the first point's archive; `what` extends the history. Raises `ArchiveError` if numbers
-    of unknowns differ.
+    It keeps the attributes of the first point's archive; `what` extends the history.
     """
     head = leading(shares)
     for share in shares:
@@ -155,7 +154,7 @@ def _joined(blocks: Sequence[Block]) -> Block:
 
 
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
-    """Points with the store's event numbers and with path numbers from `path`."""
+    """Points in the store's numbering, paths from `path`."""
     numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
     block = share.points.block(rows)
     block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
@@ -173,7 +172,7 @@ def _rows(share: Share, store: Store, path: int) -> Block:
 
 
 def filled(block: Mapping[str, Any], layout: Layout, table: str, rows: int) -> Block:
-    """The block with all columns of the layout, filled with `Column.missing`."""
+    """All columns of the layout, filled with `Column.missing`."""
     whole = {}
     for column in layout.columns(table):
         values, shape = block.get(column.name), (rows, *layout.width(column))

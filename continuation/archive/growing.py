@@ -1,4 +1,4 @@
-"""Finished paths as tables: for xarray, pandas and new archives."""
+"""Finished paths as tables."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def dataset_of(path: Path) -> Any:
 
 
 def dataframe_of(path: Path) -> Any:
-    """The path as a `pandas.DataFrame` with the names of unknowns and events."""
+    """The path as a `pandas.DataFrame` with names."""
     share = share_of_path(path)
     frame = dataframe(share.points)
     frame["event"] = [share.names[k] if k >= 0 else "" for k in share.points["event_index"]]
@@ -56,11 +56,7 @@ def _add(store: Store, share: Share, file: File) -> int:
 
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
-    """Write paths of one homotopy to a new archive.
-
-    `many`: at least one path; equal numbers of unknowns and equal observed scalars. Raises `ArchiveError` if writing
-    fails.
-    """
+    """Write paths of one homotopy, with equal observed scalars, to a new archive."""
     target = new_file("file", file)
     pieces = any(event.switches for path in many for event in path.events)
     shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
@@ -76,9 +72,9 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
 
 @define(eq=False)
 class Growing:
-    """An archive of finished paths, safe from kills, closed by its context manager.
+    """An archive of finished paths, safe from kills.
 
-    `pieces`: store switches and rays of kinks. `keep`: which steps stay in memory, "all" or the "ends".
+    `pieces`: store switches and rays of kinks. `keep`: steps in memory, "all" or "ends".
     """
 
     file: File
@@ -88,7 +84,7 @@ class Growing:
     _store: Store | None = None
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
-        """The paths of an existing file, whole and as kept; then the file is replaced by a copy that grows."""
+        """The paths of an existing file, whole and as kept; then a growing copy replaces it."""
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
@@ -106,7 +102,7 @@ class Growing:
             self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:
-        """Append a path and return it as kept; the first makes the file."""
+        """Append a path, in a new file if necessary, and return it as kept."""
         share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
         if self._store is None:
             about = _attributes(path, self.title)

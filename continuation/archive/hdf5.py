@@ -1,7 +1,7 @@
-"""HDF5 files from anybody: a file driver for h5py (`Image`), and datasets whose type, storage and size are checked.
+"""Untrusted HDF5 files: a file driver for h5py (`Image`), and datasets of checked type, storage and size.
 
-HDF5 itself hangs at FIFOs and at files that SWMR left without a checksum. Links, virtual or external storage and
-foreign filters are refused; an `Allowance` limits memory. HDF5 2.0 checks the remaining structure.
+HDF5 itself hangs at FIFOs and at files without the checksum that SWMR omits. Links, external storage and foreign
+filters are refused. HDF5 2.0 checks the remaining structure.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _HEAP = b"GCOL"
 class Image:
     """A file opened for reading, as if its writer had closed it.
 
-    `missing`: bytes cut off its end, which read as zeros. `failure`: the disk's error. Raises `ArchiveError` if it is
-    no readable regular file or not HDF5.
+    `missing`: bytes cut off, read as zeros. `failure`: the disk's error. Raises `ArchiveError` unless it is a readable
+    HDF5 file.
     """
 
     def __init__(self, file: File) -> None:
@@ -70,8 +70,6 @@ class Image:
         closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
         return closed + struct.pack("<I", lookup3(closed))
 
-    # -- for h5py --
-
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         """Move to a byte."""
         self.at = offset + (0, self.at, self.length)[whence]
@@ -82,7 +80,7 @@ class Image:
         return self.at
 
     def read(self, size: int) -> bytes:
-        """Read bytes; h5py recognises files by this method but uses `readinto`."""
+        """Read bytes; h5py requires this method, but uses `readinto`."""
         buffer = bytearray(size)
         self.readinto(buffer)
         return bytes(buffer)
@@ -118,9 +116,7 @@ def stated_length(head: bytes) -> int:
 
 
 def _check_heap(heap: memoryview) -> None:
-    """Raise `OSError` unless the objects fill the global heap, which has no checksum: HDF5 loops forever in a heap of
-    zeros.
-    """
+    """Raise `OSError` unless the objects fill the global heap: HDF5 loops forever in a heap of zeros."""
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16
     while size <= len(heap) and size - at >= 16:
@@ -150,30 +146,30 @@ def _turned(x: int, k: int) -> int:
 
 
 LEAST_BYTES = 1 << 27
-"""Bytes that any file may take. Copying takes three times as much, with numpy and scipy 500 MB; half as many would
-refuse a compressed path of 50,000 points."""
+"""Bytes that any file may take. Copying takes three times as much; half of it would refuse a compressed path of 50,000
+points."""
 
 UNFOLDING = 32
-"""Memory that a larger file may take, relative to its size. A point of two unknowns takes 120 bytes or more, its `Step`
-1.5 KiB (13 times), twice that if compressed; gzip shrinks zeros to a thousandth."""
+"""Memory of a larger file over its size. A point of two unknowns takes 120 bytes, its `Step` 1.5 KiB (13 times), twice
+that if compressed; gzip shrinks zeros to a thousandth."""
 
 COLUMN_BYTES = 1 << 14
-"""HDF5's chunk cache of an open dataset: tables are read sequentially."""
+"""HDF5's chunk cache of a dataset: tables are read sequentially."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
 """Filters of h5py itself; others would load a library."""
 
 
 class StructureError(ValueError):
-    """Something that no archive contains; the message names it."""
+    """Something that no archive contains."""
 
 
 class LimitError(StructureError):
-    """A file that exceeds its memory limit; the message gives the option."""
+    """A file that needs more memory than its limit."""
 
 
 class Allowance:
-    """The memory in bytes, arrays and Python objects, that one file may take.
+    """The bytes of memory that one file may take.
 
     `limit`: default `UNFOLDING` times `size`, at least `LEAST_BYTES`.
     """
@@ -184,7 +180,7 @@ class Allowance:
         self._total = 0
 
     def take(self, what: str, claimed: int) -> None:
-        """Count memory, a repeated item once at its latest size; `LimitError` above the limit."""
+        """Count memory, a repeated item once."""
         total = self._total - self._taken.get(what, 0) + claimed
         if total > self.limit:
             raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
@@ -192,7 +188,7 @@ class Allowance:
 
 
 def member(group: Any, name: str) -> Any:
-    """A group or dataset behind a hard link; `StructureError` otherwise."""
+    """A group or dataset behind a hard link."""
     raw = name.encode()
     if not group.id.links.exists(raw) or group.id.links.get_info(raw).type != h5l.TYPE_HARD:
         raise StructureError(f"it has no {name}, or a link to somewhere else")
@@ -202,7 +198,7 @@ def member(group: Any, name: str) -> Any:
 
 
 def subgroup(group: Any, name: str) -> Any:
-    """A group in a group; `StructureError` otherwise."""
+    """A group in a group."""
     found = member(group, name)
     if not isinstance(found, h5py.Group):
         raise StructureError(f"{name} is no group")
@@ -217,10 +213,9 @@ def dataset(
     allowance: Allowance,
     rows: int | None = None,
 ) -> Any:
-    """A dataset with its storage checked; its memory, or that of `rows` rows, counts in the allowance.
+    """A dataset of checked type, shape and storage; `rows` rows (default: all) count in the allowance.
 
-    `kind` None admits any numbers, a length None any length. Raises `StructureError` for other data, too few rows, or
-    excess memory.
+    `kind` None admits any numbers, a length None any length.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
@@ -241,7 +236,7 @@ def dataset(
     for what, wrong in refused.items():
         if wrong:
             raise StructureError(f"{name} {what}")
-    # HDF5 unpacks whole chunks; each of two filters copies it.
+    # HDF5 unpacks whole chunks; two filters copy each.
     if 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
         raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
     read = lengths if rows is None else (rows, *lengths[1:])

@@ -19,7 +19,7 @@ from continuation.status import Status
 
 UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED, _LISTED, _SHOWN, _WIDTH, _LINES = 3, 12, 4, 92, 5
-"""Limits: paths with their own section, listed events or paths, components, columns, lines of a text."""
+"""Limits: paths with a section, listed events or paths, components, columns, lines."""
 _SOFTWARE = {
     "continuation": "library", "Python": "python", "numpy": "numpy", "scipy": "scipy", "h5py": "h5py", "HDF5": "hdf5",
 }  # fmt: skip
@@ -27,7 +27,7 @@ _SETTINGS = ("predictor", "corrector", "controller", "metric", "tolerance", "bud
 
 
 def describe(archive: Archive) -> str:
-    """The page, with one section for each path if there are few.
+    """The page.
 
     Parameters
     ----------

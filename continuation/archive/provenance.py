@@ -1,4 +1,4 @@
-"""Root attributes of an archive: what ran, with which software, and when."""
+"""Root attributes of an archive: what ran, when, with which software."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
 
 @lru_cache
 def software() -> dict[str, str]:
-    """Versions of the software; BLAS and its threads decide the last bits."""
+    """Versions; BLAS and its threads decide the last bits."""
     blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
     given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
     return {
@@ -80,7 +80,7 @@ def _entry_point(path: str) -> metadata.EntryPoint | None:
 
 
 def process() -> dict[str, Any]:
-    """The writing process: time, number, software."""
+    """The writing process."""
     return {"created": now(), "process": np.int64(os.getpid()), **software()}
 
 
@@ -90,7 +90,7 @@ def class_path(thing: Any) -> str:
 
 
 def parameters(homotopy: Any) -> dict[str, Any]:
-    """The homotopy's parameters: public fields of attrs or a dataclass, else its public attributes."""
+    """The homotopy's parameters: public fields or attributes."""
     cls = type(homotopy)
     if attrs.has(cls):
         names = [a.name for a in attrs.fields(cls)]
@@ -105,7 +105,7 @@ def parameters(homotopy: Any) -> dict[str, Any]:
 
 
 def scalars(homotopy: Any) -> dict[str, float]:
-    """The homotopy's numeric parameters; None becomes NaN."""
+    """Numeric parameters; None becomes NaN."""
     return {
         name: np.nan if value is None else float(value)
         for name, value in parameters(homotopy).items()
@@ -120,13 +120,12 @@ def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
         tree = json.loads(str(attributes.get("parameters", "{}")))
         for name, value in tree.get("dict", tree).items():
             with suppress(UnknownError):
-                # A large array stored by its shape raises too.
                 found[str(name)] = decode(value, lambda place: np.array(place["values"], dtype=place["dtype"]))
     return found
 
 
 def readable(value: Any) -> Any:
-    """JSON for people; the repr if it cannot be encoded."""
+    """JSON, or the repr if there is none."""
     try:
         return encode(value, inline)
     except UnstorableError:
@@ -134,7 +133,7 @@ def readable(value: Any) -> Any:
 
 
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
-    """The attributes of a new archive; without a tracer, those of the library.
+    """The attributes of a new archive.
 
     `made_with`: parameters that the homotopy's attributes lack.
     """

@@ -1,4 +1,4 @@
-"""`open_archive`: an archive as tables and paths, read on demand, and path steps that stay in the file."""
+"""`open_archive`: an archive as tables and paths, read on demand."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from continuation.status import Status
 _T = TypeVar("_T")
 
 _STEP_BYTES, _COPIES = 1400, 6
-"""Bytes of a step's objects, and number of copies of its vectors."""
+"""Bytes of a step's objects, and copies of its vectors."""
 
 
 class Archive(Sequence[Path]):
@@ -70,8 +70,6 @@ class Archive(Sequence[Path]):
         except BaseException:
             self.close()
             raise
-
-    # -- the sequence --
 
     def __len__(self) -> int:
         return len(self._first_rows) - 1
@@ -183,10 +181,10 @@ class Archive(Sequence[Path]):
         return dataframe(self.points)
 
     def checkpoint(self) -> Checkpoint | None:
-        """The latest point from which the last path can be resumed, or None."""
+        """The latest point to resume the last path from, or None."""
         valid = []
         for found in filter(None, map(unpack, self.contents.slots())):
-            # A checkpoint is written before its rows are committed.
+            # A checkpoint precedes the commit of its rows.
             rows = self.rows(found.path) if found.path < len(self) else slice(0, 0)
             valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
@@ -211,7 +209,7 @@ class Archive(Sequence[Path]):
         """A row for the unfinished path, from its checkpoint."""
         number = self.paths.size
         member = int(self.paths["member"][-1]) + 1 if number else 0
-        # An older checkpoint resumes, but its counts are out of date.
+        # Counts of an older checkpoint are out of date.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         row |= {"path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
@@ -244,8 +242,6 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
     return Archive(file, limit=limit)
 
 
-# -- stored steps --
-
 _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 """Step fields that every file holds."""
 
@@ -253,8 +249,7 @@ _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 class StoredSteps(Sequence[Step]):
     """The steps of a path: the first and last in memory, others read from the file.
 
-    During a trace, uncommitted steps stay in memory too. Steps that are read have segments only if the archive holds
-    tangents.
+    During a trace, uncommitted steps are in memory too. Segments need stored tangents.
     """
 
     def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
@@ -269,7 +264,7 @@ class StoredSteps(Sequence[Step]):
         self._count += 1
 
     def committed(self) -> None:
-        """Drop all but the first and last steps, since the file holds all."""
+        """Keep only the ends in memory, since the file holds all."""
         self._last = self._last[-1:]
 
     def __len__(self) -> int:
@@ -319,7 +314,7 @@ class StoredSteps(Sequence[Step]):
 
 
 def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps `start` to `stop` - 1 of a path and the events among them."""
+    """Steps `start` to `stop` - 1, and their events."""
     rows = archive.rows(path)
     accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
     begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))
@@ -328,13 +323,12 @@ def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[St
 
 
 def _stored(archive: Archive, path: int) -> tuple[StoredSteps, list[LocatedEvent]]:
-    """The steps of a path, kept by their ends, and its events."""
     rows = archive.rows(path)
     accepted, numbers = archive.points.some("role", rows) == ACCEPTED, archive.points.some("event_index", rows)
     count = int(np.count_nonzero(accepted))
     # A kink's rows follow its step's.
     eventful = np.unique((np.cumsum(accepted) - 1)[numbers >= 0] // ROWS_AT_ONCE).tolist() if count else []
     events = [event for k in eventful for event in _window(archive, path, k * ROWS_AT_ONCE, (k + 1) * ROWS_AT_ONCE)[1]]
-    # The last segment needs the step before.
+    # With the step before, for the segment.
     last = _window(archive, path, max(count - 2, 0), count)[0][-1:] if count else []
     return StoredSteps(archive.file, path, _window(archive, path, 0, min(count - 1, 1))[0] + last, count), events

@@ -169,10 +169,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
-    """The homotopy that the file describes; `known` is the `registry`.
-
-    Raises `ArchiveError` if it was not stored or is not trusted.
-    """
+    """The homotopy that the file describes; `known` is the `registry`."""
     tree: Any = checkpoint.run.get("homotopy")
     if not isinstance(tree, dict) or not tree.get("problem"):
         return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
@@ -188,7 +185,6 @@ def _made(
     known: Mapping[str, Any],
     hint: str,
 ) -> Any:
-    """The described object; `ArchiveError` says what to pass instead."""
     try:
         described = tree()
         if isinstance(described, dict) and "unstorable" in described:
@@ -232,7 +228,6 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
 
 
 def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
-    """A copy of the file up to the checkpoint, ready to grow."""
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)

@@ -44,7 +44,7 @@ Record = dict[str, Any]
 @frozen
 class Row:
     """A row to write: a step, perhaps with its event; an event between steps; or a switching function or ray of the
-    kink before it.
+    kink before.
     """
 
     point: Step | LocatedEvent
@@ -55,10 +55,7 @@ class Row:
 
 
 def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
-    """Rows of a step and its events; an event at the step shares its row.
-
-    A kink adds rows for its switches and rays.
-    """
+    """Rows of a step, which an event at its point shares, of earlier events, and of a kink's switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
@@ -91,7 +88,7 @@ def layout_of(
     pieces: bool = False,
     early: Iterable[Record] = (),
 ) -> Layout:
-    """The layout of a new file; `early` are rows of paths without points."""
+    """The layout of a new file; `early` are rows without points."""
     held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
     said = {PARAMETER + name for name in scalars(homotopy)}
     said |= {name for row in early for name in row if name.startswith(PARAMETER)}
@@ -100,7 +97,7 @@ def layout_of(
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
-    """Rows of one path as columns; `number` numbers event names."""
+    """Rows of one path as columns."""
     points, events = [row.point for row in rows], [row.event for row in rows]
     block: dict[str, Any] = {
         "path_index": np.full(len(rows), path, dtype="i4"),
@@ -110,7 +107,6 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
         _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
         **_split("parameter", "y", [point.u for point in points]),
     }
-    # Events lack some of these numbers.
     block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
     block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
     block["orientation"][block["role"] == KINK_PART] = 0
@@ -124,7 +120,7 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
 
 
 def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
-    """The last components, and the others as a matrix, both contiguous for HDF5."""
+    """Last components and others, both contiguous for HDF5."""
     whole = np.array(vectors)
     return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
 
@@ -173,9 +169,6 @@ def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]
         evolve(after, segment=hermite(before.u, v, after.u, after.tangent, v))
         for before, v, after in zip(steps, begins, steps[1:])
     ]
-
-
-# -- path table --
 
 
 counted = attrgetter(*COUNT_NAMES)

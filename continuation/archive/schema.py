@@ -1,4 +1,4 @@
-"""The schema `continuation-path-2`: names, types, units and meanings of all columns, and their datasets."""
+"""The schema `continuation-path-2`: columns with types, units and meanings, and their datasets."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
 UNCHECKED = "continuation-path-1"
-"""The older schema, without checksums."""
+"""The schema without checksums."""
 
 TEXT = 240
 """Bytes (UTF-8) of a path's message."""
@@ -29,7 +29,7 @@ NAME = 64
 """Bytes (UTF-8) of an event's name."""
 
 ACCEPTED, LOCATED, KINK_PART = 0, 1, 2
-"""Roles of a row: accepted step, event between steps, part of the kink before it."""
+"""Roles of a row: accepted step, event between steps, part of the kink before."""
 
 NO_EVENT = -1
 CONTROLLER_STATE = 4
@@ -38,10 +38,7 @@ CONTROLLER_STATE = 4
 
 @frozen
 class Column:
-    """A variable of the archive.
-
-    `dtype` is NumPy's; ``utf8:n`` is text of at most n bytes.
-    """
+    """A variable; `dtype` is NumPy's, ``utf8:n`` text of at most n bytes."""
 
     name: str
     dtype: str
@@ -165,7 +162,7 @@ COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component"
 
 OPTIONAL = (*TANGENT_COLUMNS, *KINK_COLUMNS, *ORIGIN_COLUMNS)
 OBSERVED, PARAMETER = "observed_", "homotopy_"
-"""Prefixes of the homotopy's columns: scalars at each point, parameters of each path."""
+"""Prefixes of the homotopy's columns: scalars of points, parameters of paths."""
 
 
 def _names(columns: Iterable[Column]) -> frozenset[str]:
@@ -214,7 +211,7 @@ def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
-    """Raise `ValueError` unless all names are 1 to 100 bytes, printable, without slash."""
+    """Raise `ValueError` unless names have 1 to 100 printable bytes, no slash."""
     for name in names:
         plain = isinstance(name, str) and name.isprintable() and "/" not in name and name == name.strip()
         if not plain or not 1 <= len(name.encode()) <= _COLUMN_NAME:
@@ -232,9 +229,6 @@ def text(value: str, length: int) -> bytes:
     return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()
 
 
-# -- datasets --
-
-
 SLOTS = 2
 RESUME = "resume"
 LIBVER = ("v110", "v110")
@@ -247,7 +241,7 @@ _CHUNK_BYTES = 1 << 13
 
 @lru_cache(maxsize=16)
 def empty(layout: Layout, compression: int) -> bytes:
-    """The bytes of a file without rows; `compression` is the gzip level."""
+    """The bytes of a file without rows; `compression` is gzip's level."""
     made = BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
         _build(file, layout, compression)
@@ -262,7 +256,7 @@ def _build(file: Any, layout: Layout, compression: int) -> None:
         chunks = (min(chunk, 1 << (fitting.bit_length() - 1)), *width)
         return file.create_dataset(name, (0, *width), dtype, maxshape=(None, *width), chunks=chunks, **more)
 
-    # netCDF dimensions without and with a variable.
+    # netCDF dimensions without and with variables.
     for name in ("point", "event"):
         grows(name, ">f4", _CHUNKS[name]).make_scale(_NO_VARIABLE.format(0))
     file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))

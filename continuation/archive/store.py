@@ -1,6 +1,6 @@
-"""The file being written: created whole, grown by blocks, committed in two phases.
+"""The file being written.
 
-A commit writes data and intent, flushes, writes the record, flushes: a kill leaves complete rows. SWMR keeps the
+A commit writes data and intent, flushes, writes its record, flushes: a kill leaves complete rows. SWMR keeps the
 structure readable.
 """
 
@@ -32,8 +32,7 @@ _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
     """Write a new file beside `target`, then rename it: a kill leaves the old file, none, or the new one.
 
-    `write`: from a name to the open store. `replace`: replace an old file. `grows`: leave it open; otherwise it is on
-    the disk before it is renamed. Raises `ArchiveError` if writing fails.
+    `write`: opens a store of that name. `grows`: leave it open; otherwise it is on the disk before it is renamed.
     """
     if not replace:
         check_new(target)
@@ -56,8 +55,7 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 class Store:
     """A file being written: readable while it grows, safe from kills, locked until closed.
 
-    `problem`: result of `problem_data`. `compression`: gzip level or 0. `durable`: wait for the disk at each commit.
-    `file`: name in messages. Raises `ArchiveError` if writing fails.
+    `problem`: result of `problem_data`. `compression`: gzip's level. `durable`: wait for the disk at each commit.
     """
 
     def __init__(
@@ -102,15 +100,10 @@ class Store:
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
         self._h5.swmr_mode = True
 
-    # -- writing --
-
     def commit(
         self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
     ) -> None:
-        """Write rows and checkpoints (by slot), and only then make them valid.
-
-        Repeating an interrupted commit is harmless.
-        """
+        """Write rows and checkpoints (by slot), and only then make them valid; repetition is harmless."""
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
         before, raw = self.committed, dict(checkpoints or {})
@@ -152,7 +145,6 @@ class Store:
             raise ArchiveError(f"{self.file}: {reason}") from error
 
     def _record(self, committed: Committed, first: int) -> None:
-        """Write a record in its alternate place."""
         _write(
             self._data[_RECORDS],
             (2 * PLACES, RECORD_BYTES),
@@ -161,7 +153,7 @@ class Store:
         )
 
     def name_event(self, name: str) -> int:
-        """The number of an event name; a new name becomes valid with its first rows."""
+        """The number of an event name, new ones included."""
         name = text(name, NAME).decode()
         if name not in self.events:
             count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)
@@ -173,7 +165,6 @@ class Store:
 
     @staticmethod
     def _put(dataset: Any, start: int, values: np.ndarray[Any, Any]) -> None:
-        """Write rows from `start` on."""
         extent = (start + len(values), *values.shape[1:])
         dataset.set_extent(extent)
         _write(dataset, extent, (start, *(0,) * (values.ndim - 1)), values)
@@ -202,9 +193,9 @@ class Store:
         return self._process == os.getpid()
 
     def abandon(self, *, ends: bool = True) -> None:
-        """Redirect HDF5's pending writes to nowhere, since a write that fails during close ends the process.
+        """Redirect HDF5's pending writes to nowhere: a write that fails during close ends the process.
 
-        `ends`: leave the file as a kill would; a forked child leaves it to its parent.
+        `ends`: leave the file as a kill would; a forked child leaves it alone.
         """
         if not self._h5:
             return
@@ -224,7 +215,7 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 
 
 def _in_child() -> None:
-    """Abandon inherited stores: at its end a forked child would write to them, and it would hold their locks."""
+    """A forked child would write to inherited stores at its end, and keep their locks."""
     for store in list(_LIVE):
         store.abandon(ends=False)
         store._lock.close()
@@ -235,14 +226,13 @@ os.register_at_fork(after_in_child=_in_child)
 
 @lru_cache(maxsize=64)
 def _spaces(extent: tuple[int, ...], place: tuple[int, ...], shape: tuple[int, ...]) -> tuple[Any, Any]:
-    """HDF5 data spaces of values in memory and of their place in a dataset, cached."""
     space = h5s.create_simple(extent)
     space.select_hyperslab(place, shape)
     return h5s.create_simple(shape), space
 
 
 def _write(dataset: Any, extent: tuple[int, ...], place: tuple[int, ...], values: np.ndarray[Any, Any]) -> None:
-    """Write values into a dataset; h5py's slicing costs several times as much."""
+    """Write values; h5py's slicing costs several times as much."""
     kind = dataset.get_type() if values.dtype.kind == "S" else None
     dataset.write(*_spaces(extent, place, values.shape), values, kind)
 

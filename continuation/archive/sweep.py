@@ -1,7 +1,6 @@
 """`trace_many`: many paths, one after another or over any executor.
 
-Workers return paths, as columns if there is an archive; only this process writes. A lost worker costs one path; if this
-process is killed, finished paths remain in part files.
+Only this process writes. A lost worker costs one path; if this process is killed, finished paths remain in part files.
 """
 
 from __future__ import annotations
@@ -38,12 +37,12 @@ Result = Path | Share | BaseException
 """A homotopy's path, or its exception."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""Exceptions that cost only the homotopy's own path; Ctrl-C ends the sweep."""
+"""Exceptions that cost only their path; Ctrl-C ends the sweep."""
 
 
 @frozen(eq=False)
 class Task:
-    """A homotopy for a worker, with its number in the sweep."""
+    """A homotopy and its number in the sweep."""
 
     homotopy: Any
     number: int
@@ -157,8 +156,6 @@ def _swept(
 
 @define(eq=False)
 class _Kept:
-    """The paths so far, in memory or in one file for each layout."""
-
     tasks: Sequence[Task]
     target: File | None
     stack: ExitStack
@@ -182,7 +179,6 @@ class _Kept:
             raise KeyboardInterrupt
 
     def _part(self, share: Share, task: Task) -> Store:
-        """The file for a layout."""
         assert self.target is not None
         # Its worker made a tracer without harm.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
@@ -198,10 +194,7 @@ class _Kept:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all tasks and wait; `futures` are those under way. Hanging pool workers are killed.
-
-    Tasks lost with a worker run again, each in its own process.
-    """
+    """Submit all tasks and wait, then repeat those lost with a worker, each in its own process."""
     lost: dict[int, BaseException] = {}
     for task in tasks:
         try:
@@ -212,7 +205,7 @@ def _spread(
     while futures:
         ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
         if not ended:
-            # All running tasks have exceeded the timeout, since an idle worker starts the next.
+            # Idle workers start the next task, so all running ones have exceeded the timeout.
             _end_processes(executor)
             ended = wait(futures).done
         while ended:
@@ -229,7 +222,6 @@ def _spread(
 
 
 def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
-    """The result of a task in its own process."""
     alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
     try:
         future = alone.submit(traced, task)
@@ -250,7 +242,7 @@ def _end_processes(executor: Executor | None) -> None:
 
 
 def traced(task: Task) -> Path | Share:
-    """The path of a homotopy, whatever it raises; workers run this."""
+    """The path of a homotopy, whatever it raises."""
     path, controller = Path(), tuple[float, ...]()
     try:
         tracer = Tracer(task.homotopy, **task.options)
@@ -269,5 +261,4 @@ def traced(task: Task) -> Path | Share:
 
 
 def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
-    """A path, as columns if there is an archive."""
     return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path

@@ -95,7 +95,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
 
 def kept_whole(keep: str) -> bool:
-    """Whether `keep` is ``"all"``; `ValueError` unless it is that or ``"ends"``."""
+    """Whether `keep` is ``"all"``, not ``"ends"``."""
     if keep not in ("all", "ends"):
         raise complain(ValueError, "keep", '"all" or "ends"', keep)
     return keep == "all"
@@ -121,7 +121,7 @@ def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, a
 
 
 def flat(block: Mapping[str, Any]) -> dict[str, Any]:
-    """The columns, a matrix as one column for each component."""
+    """The columns, a matrix as one for each component."""
     columns = {}
     for name, values in block.items():
         parts = {name: _text(values)} if values.ndim == 1 else {f"{name}_{i}": v for i, v in enumerate(values.T)}

@@ -1,4 +1,4 @@
-"""Work on whole archives: `merge`, `export`, `recover`, and sorting the parts of a sweep."""
+"""`merge`, `export`, `recover`, and sorting the parts of a sweep."""
 
 from __future__ import annotations
 
@@ -78,11 +78,10 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 
 
 def gather(files: Sequence[File], target: File) -> None:
-    """Merge the parts of a sweep in member order; paths of another size than the first lose their points."""
+    """Merge the parts of a sweep in member order; paths of another size lose their points."""
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
-        # Runs of members in one part are copied together.
         runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
         shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
         head, made = leading(shares), []
@@ -95,7 +94,6 @@ def gather(files: Sequence[File], target: File) -> None:
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:
-    """The share; paths of another size become RAISED, as in one file."""
     found = share.layout.unknowns
     if found == unknowns or not share.size:
         return share
@@ -104,9 +102,6 @@ def _of_size(share: Share, unknowns: int, target: File) -> Share:
     for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
         paths[name] = np.where(had, np.array(value, paths[name].dtype), paths[name])
     return evolve(share, paths=paths, rows=slice(0, 0))
-
-
-# -- export --
 
 
 def export(file: str | PathLike[str], target: str | PathLike[str], *, compression: int = 4) -> list[File]:
@@ -154,7 +149,6 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     with beside(points) as first, beside(paths) as second:
         for part, table in ((first, archive.points), (second, archive.paths)):
             _write_text(part, table, points.suffix == ".gz")
-        # Points last: then both exist.
         publish(second, paths)
         publish(first, points)
     return [points, paths]
@@ -167,13 +161,9 @@ def _write_text(part: File, table: Table, compressed: bool) -> None:
         for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
             columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
             writer.writerows([[*columns]] if not start else [])
-            # Python prints full precision.
             writer.writerows(zip(*(values.tolist() for values in columns.values())))
     with part.open("rb") as written:
         os.fsync(written.fileno())
-
-
-# -- recovery --
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
@@ -232,10 +222,7 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 
 
 def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]]) -> list[Share]:
-    """The sound rows of each path from its first point; `lost` holds damaged blocks.
-
-    Without sound rows there is one empty share. Paths that lost rows become INTERRUPTED.
-    """
+    """The sound rows of each path from its first point, or one empty share; `lost` holds damaged blocks."""
     committed, layout = contents.committed, contents.layout
     points, paths = contents.table("point"), contents.table("path")
     sound = {"point": np.ones(committed.points, dtype=bool), "path": np.ones(committed.paths, dtype=bool)}
@@ -257,7 +244,7 @@ def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]])
 
 
 def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
-    """Number and rows of each path with a sound first point, up to its first damaged block."""
+    """Number and rows of each path up to its first damaged block."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1"))).reshape(-1, 2)
     for start, stop in edges.tolist():
         paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))

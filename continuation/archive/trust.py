@@ -1,8 +1,7 @@
-"""From JSON to objects of trusted classes only: nothing else that a file names is imported, called or made.
+"""From JSON to objects of trusted classes; nothing else that a file names is imported, called or made.
 
-Trusted are this library's parts, the homotopy classes that installed packages register as entry points of the group
-`continuation.homotopies` (or annotate as return type), the classes in the annotations of their fields, and the caller's
-`trust`. Functions need the latter.
+Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`, or
+their return annotations), classes in annotations of their fields, and the caller's `trust`; functions need the latter.
 """
 
 from __future__ import annotations
@@ -33,14 +32,11 @@ _MODULES = (
 
 
 class UnknownError(LookupError):
-    """A description that yields no object; the message gives the reason."""
+    """A description that yields no object."""
 
 
 def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
-    """Objects that may be made, by path: the library's parts and the caller's `trust`.
-
-    Raises `TypeError` if an item is not callable or has no importable name.
-    """
+    """Objects that may be made, by path; `TypeError` if `trust` holds others than importable classes and functions."""
     parts = [thing for module in _MODULES for thing in vars(module).values()]
     found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
     for thing in trust:
@@ -55,7 +51,7 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
 @lru_cache
 def _registered(path: str) -> type | None:
-    """The class of that path if it is a registered homotopy or its metric."""
+    """The registered homotopy or its metric."""
     points = metadata.entry_points(group=ENTRY_POINTS)
     for point in sorted(points, key=lambda point: point.value != path):
         try:
@@ -78,8 +74,7 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
     """The value that `continuation.archive.codec.encode` described.
 
     `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
-    may be made. Raises `UnknownError` if a class or function is not trusted, a value has the wrong type, or the
-    description is invalid.
+    may be made. Raises `UnknownError` for other types or classes.
     """
     try:
         return _decode(tree, fetch, known or {}, hint, "")
@@ -141,11 +136,7 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     return made
 
 
-# -- types --
-
-
 def _hints(thing: Any) -> dict[str, Any]:
-    """The annotations; none if they cannot be evaluated."""
     try:
         return typing.get_type_hints(thing)
     except (NameError, TypeError, AttributeError):
@@ -153,7 +144,6 @@ def _hints(thing: Any) -> dict[str, Any]:
 
 
 def _items(hint: Any, count: int) -> tuple[Any, ...]:
-    """The types of a container's items."""
     for option in _options(hint):
         arguments = typing.get_args(option)
         if typing.get_origin(option) is tuple and len(arguments) == count and ... not in arguments:

@@ -45,7 +45,7 @@ class Limits:
 
 @define(eq=False)
 class OpenPath:
-    """The path being written: number, first row in the point table, points to resume from."""
+    """The path being written."""
 
     tracer: Tracer
     number: int
@@ -98,7 +98,7 @@ class PathLog:
     file: File
     member: int | None = None
     _rows: tuple[int, list[Row]]
-    """Number of the first uncommitted row, and these rows: one object, so that one assignment commits."""
+    """Number of the first uncommitted row, and these rows: one assignment commits."""
     _early: list[Record]
     _many = _closed = False
     _store: Store | None = None
@@ -155,8 +155,6 @@ class PathLog:
         log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, None, mark, mark)
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
-
-    # -- the observer --
 
     def step(self, tracer: Tracer, step: Step) -> None:
         """See `continuation.Observer`."""

@@ -1,4 +1,4 @@
-"""What every command uses: a parser with one-line error messages, and the exception that becomes such a line."""
+"""Parser and exceptions of all commands, with one-line messages."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 T = TypeVar("T")
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
-"""Exit statuses: done or solved; not solved; an argument could not be used."""
+"""Exit statuses: done or solved; not solved; bad argument."""
 
 Run = Callable[[argparse.Namespace], int]
-"""A command: its parsed arguments to its exit status. Set with ``parser.set_defaults(run=...)``."""
+"""A command, from parsed arguments to exit status, set by ``parser.set_defaults(run=...)``."""
 
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
-"""The names of an argument, and the options of `add_argument`."""
+"""Names and options for `add_argument`."""
 
 
 class UsageError(ValueError):
-    """An argument that cannot be used; the command line prints one line and ends with status 2.
+    """A bad argument: the command prints one line and ends with status 2.
 
     Attributes
     ----------
     argument : str
         As the user typed it: ``FILE``, ``--x0``.
     complaint : str
-        What was expected and what was found.
+        What was expected and found.
     """
 
     status = BAD_INPUT
@@ -44,7 +44,7 @@ class UsageError(ValueError):
 
 
 class PlugInError(UsageError):
-    """An exception of a plug-in's own: no bad input, so that the command ends with status 1, after one line."""
+    """An exception of a plug-in: the command ends with status 1."""
 
     status = FAILURE
 
@@ -58,7 +58,7 @@ def told(error: BaseException) -> str:
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser with one-line error messages, without the usage before them."""
+    """An argument parser with one-line error messages."""
 
     def error(self, message: str) -> NoReturn:
         """Write the message to stderr and exit with status 2."""
@@ -66,28 +66,27 @@ class Parser(argparse.ArgumentParser):
 
 
 class Subparsers(Protocol):
-    """What a command registers itself with: the `add_parser` of argparse."""
+    """The `add_parser` of argparse."""
 
     def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """A parser for a new command.
+        """Add the parser of a command.
 
         Parameters
         ----------
         name : str
-            Of the command.
         **options
-            As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
+            As for `argparse.ArgumentParser`; `help` is the line in the list of commands.
         """
         ...
 
 
 def argument(*names: str, **options: Any) -> Argument:
-    """An argument of a command, as `add_argument` takes it."""
+    """An argument for `add_command`."""
     return names, options
 
 
 def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argument, **options: Any) -> None:
-    """Add a command: what it does, its name, its arguments, and its line in the list of commands (`help`)."""
+    """Add a command."""
     parser = subparsers.add_parser(name, **options)
     for names, about in arguments:
         parser.add_argument(*names, **about)
@@ -95,7 +94,7 @@ def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argumen
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
-    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org)."""
+    """The text, green or red on a terminal unless NO_COLOR is set (https://no-color.org)."""
     stream = sys.stdout if stream is None else stream
     if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return text
@@ -103,7 +102,7 @@ def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
 
 
 def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:
-    """The value of an argument, for its `type`; a sentence where it cannot be read or is not fine."""
+    """The value of an argument, for its `type`."""
     try:
         value = convert(text)
         if fine(value):
@@ -114,17 +113,17 @@ def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], ex
 
 
 def above_zero(text: str) -> float:
-    """A positive number, for the `type` of an argument."""
+    """A positive number, for `type`."""
     return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def positive(text: str) -> int:
-    """A positive integer, for the `type` of an argument."""
+    """A positive integer, for `type`."""
     return parsed(text, int, lambda value: value >= 1, "a positive integer")
 
 
 def new_folder(option: str, name: str) -> Path:
-    """The directory that an option names, made if it is not there."""
+    """The directory that an option names, created if missing."""
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
