@@ -1,14 +1,13 @@
-"""What installed packages offer under a name: homotopies, the entry points of the group `continuation.homotopies`, and
-scenes, those of `continuation.scenes`.
+"""Homotopies and scenes of installed packages: entry points of `continuation.homotopies` and `continuation.scenes`.
 
 In the ``pyproject.toml`` of a package::
 
     [project.entry-points."continuation.homotopies"]
     truss = "snapthrough:VonMisesTruss"
 
-The object is a class, or a function, whose call gives a homotopy; its parameters are the options. The first line of its
-docstring is its summary, its attributes `problem_class` and `references` say what it is for and where it is from.
-Nothing is imported before it is asked for, and what cannot be imported hides nothing else.
+The object is a class or function that returns a homotopy; its parameters are the options. The first line of its
+docstring is its summary; its attributes `problem_class` and `references` give purpose and sources. Nothing is imported
+before it is needed.
 """
 
 from __future__ import annotations
@@ -31,19 +30,19 @@ COMMANDS = "continuation.commands"
 _KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
-"""What an entry point names: options to homotopy."""
+"""An entry point's object: from options to homotopy."""
 
 
 class PluginError(LookupError):
-    """A name that gives no homotopy; the sentence says which name, and why."""
+    """A name that gives no homotopy; the message gives the reason."""
 
 
 @frozen
 class Option:
-    """A parameter of a plug-in's constructor.
+    """A parameter of a plug-in.
 
-    `default`: None where it is required, `attrs.NOTHING` where it is worked out from the other options. `annotation`:
-    Its type as written; empty where there is none.
+    `default`: None if required, `attrs.NOTHING` if computed from other options. `annotation`: its type as written, or
+    empty.
     """
 
     name: str
@@ -59,15 +58,15 @@ class Option:
 
 @frozen
 class Plugin:
-    """A name and what is registered under it.
+    """A registered name.
 
     Attributes
     ----------
     name : str
     points : tuple of EntryPoint
-        One; more where several packages register the name.
+        Several if several packages register the name.
     kind : str
-        What is made: a homotopy, a scene.
+        "homotopy", "scene", "study" or "command".
     """
 
     name: str
@@ -76,23 +75,23 @@ class Plugin:
 
     @property
     def origin(self) -> str:
-        """Distribution and object, of each that has the name."""
+        """Distribution and object of each entry point."""
         return " and ".join(f"{owner(point)} ({point.value})" for point in self.points)
 
     def load(self) -> Factory:
-        """The class or function; imports its module.
+        """Import the class or function.
 
         Raises
         ------
         PluginError
-            If two packages have the name, or the import fails with whatever error, or gives nothing to call.
+            If two packages share the name, or the import fails or gives no callable.
         """
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
         point = self.points[0]
         try:
             factory: Any = point.load()
-        except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+        except (Exception, SystemExit) as error:  # Imports may raise anything.
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {self.origin} cannot be loaded: {reason}") from error
         return _callable(self.name, factory, self.kind)
@@ -100,10 +99,9 @@ class Plugin:
 
 @frozen
 class Description:
-    """What a plug-in says of itself.
+    """A plug-in's description of itself.
 
-    `summary`: First line of the docstring. `problem_class`: The problems that it is for; empty where it does not say.
-    `references`: BibTeX entries.
+    `summary`: first line of the docstring. `problem_class`: its problems, or empty. `references`: BibTeX entries.
     """
 
     summary: str
@@ -113,7 +111,7 @@ class Description:
 
 
 def available(group: str = GROUP) -> dict[str, Plugin]:
-    """All registered names, sorted, without importing anything.
+    """All registered names, sorted, without imports.
 
     Parameters
     ----------
@@ -125,19 +123,19 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
 
 
 def find(name: str, group: str = GROUP) -> Factory:
-    """The class or function behind a name.
+    """The class or function of a name.
 
     Parameters
     ----------
     name : str
-        A registered name, or ``module:object`` for one that is not registered.
+        Registered, or ``module:object``.
     group : str
-        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
+        As for `available`.
 
     Raises
     ------
     PluginError
-        If there is none by that name, or it cannot be loaded.
+        If there is no such name, or it cannot be loaded.
     """
     if ":" in name:
         return _imported(name, _KINDS[group])
@@ -150,16 +148,15 @@ def find(name: str, group: str = GROUP) -> Factory:
 
 
 def describe(factory: Factory) -> Description:
-    """Summary, options, class of problems and references.
-
-    A function has no attributes of its own to look at; those of what it makes without arguments are taken instead.
+    """Summary, options, problem class and references; a function's attributes come from its product, if it needs no
+    arguments.
     """
     found = options(factory)
     source: Any = factory
     if not isinstance(factory, type) and not any(option.required for option in found):
         try:
             source = factory()
-        except Exception:  # A description is no place to fail: what it cannot say stays empty.
+        except Exception:  # A description must not fail.
             source = factory
     references = getattr(source, "references", ())
     return Description(
@@ -181,7 +178,7 @@ def options(factory: Factory) -> tuple[Option, ...]:
 
 
 def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """The homotopy of that name, with options by name.
+    """The homotopy of that name.
 
     Raises
     ------
@@ -194,19 +191,20 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
 
 
 def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None) -> Any:
-    """What a factory makes of options by name.
+    """The factory's product.
 
     Parameters
     ----------
     name : str
-        Of the factory, for messages.
+        Name of the factory, for messages.
     factory : callable
     values : mapping, optional
+        Options by name.
 
     Raises
     ------
     TypeError
-        If an option is unknown or missing, naming it and those that there are.
+        If an option is unknown or missing; the message lists all.
     """
     values = dict(values or {})
     known = options(factory)
@@ -222,7 +220,7 @@ def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None)
 
 
 def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
-    """Entry points by name; one that is found twice with the same meaning counts once."""
+    """Entry points by name, without duplicates."""
     found: dict[str, list[EntryPoint]] = defaultdict(list)
     for point in points:
         if all(point.value != other.value for other in found[point.name]):
@@ -231,7 +229,7 @@ def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
 
 
 def owner(point: EntryPoint) -> str:
-    """Distribution and version that an entry point comes from, or its object where that is not known."""
+    """Distribution and version of an entry point, or its object."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
 
 
@@ -241,7 +239,7 @@ def _imported(path: str, kind: str) -> Factory:
         found: Any = importlib.import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+    except (Exception, SystemExit) as error:  # Imports may raise anything.
         raise PluginError(f"{path}: cannot be loaded: {type(error).__name__}: {error}") from error
     return _callable(path, found, kind)
 
