@@ -1,4 +1,4 @@
-"""Checks of arguments: messages read ``name: expected ..., found ...``; a wrong type is a TypeError."""
+"""Checks of arguments: messages read ``name: expected ..., found ...``."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ Validator = Callable[[Any, "Attribute[Any]", Any], None]
 
 
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
-    """The exception about an argument, with the type after a TypeError."""
+    """The exception about an argument."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    # Keeps any repr to one short line.
+    # One short line, whatever the repr.
     found = " ".join(repr(value).split())
     shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
     return error(f"{name}: expected {expected}, found {shown}{kind}")
 
 
 def is_number(value: Any) -> bool:
-    """Whether `value` is a real number of Python or NumPy, not True or False."""
+    """Whether `value` is a real number, not True or False."""
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
@@ -36,14 +36,14 @@ def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> V
     Parameters
     ----------
     expected : str
-        Describes allowed numbers in the message.
+        Allowed numbers, for messages.
     allowed : callable
-        False for NaN, like every comparison.
+        False for NaN.
 
     Returns
     -------
     callable
-        Raises TypeError unless the value is a real number, ValueError unless it is allowed.
+        Raises TypeError or ValueError.
     """
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
@@ -91,7 +91,7 @@ def of_kind(expected: str, holds: Callable[[Any], bool]) -> Validator:
 
 
 def sign(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """An attrs validator for a direction: -1, 0 or 1."""
+    """An attrs validator for -1, 0 or 1."""
     check_sign(attribute.name, value)
 
 
@@ -117,7 +117,7 @@ FACTOR = number("a finite number above 1", lambda x: 1.0 < x < math.inf)
 
 
 def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:
-    """TypeError unless `value` is an object, not a class, with the attributes."""
+    """TypeError unless `value` is an object with the attributes, not a class."""
     if isinstance(value, type):
         raise TypeError(f"{name}: expected {expected}, found the class {value.__name__}; {value.__name__}() is one")
     missing = [attribute for attribute in attributes if not hasattr(value, attribute)]
@@ -128,7 +128,7 @@ def instance_with(name: str, value: Any, attributes: Sequence[str], expected: st
 def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """A copy of `value` as an array of floats.
 
-    Raises `ValueError` for complex or masked entries, which would silently lose imaginary parts or masks, and others.
+    Raises `ValueError` for complex or masked entries, which would silently lose imaginary parts or masks.
     """
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
@@ -140,5 +140,5 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
         found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
         raise ValueError(f"{name}: expected real numbers, found {found}")
     with np.errstate(over="ignore"):
-        # Too large longdoubles become infinite; callers refuse those.
+        # Too large longdoubles become infinite.
         return array.astype(float)

@@ -23,7 +23,7 @@ stack."""
 class Labels:
     """Names and units.
 
-    `names`: of the unknowns, in order. `units`: by name, of parameter, unknowns and observed scalars. All may be empty.
+    `names`: of the unknowns. `units`: by name, also of parameter and observed scalars.
     """
 
     parameter_name: str = ""
@@ -32,7 +32,7 @@ class Labels:
 
     @classmethod
     def of(cls, homotopy: Any) -> Labels:
-        """The homotopy's labels; `TypeError` for an attribute of the wrong type."""
+        """The homotopy's labels; `TypeError` for a wrong type."""
         name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
         if not isinstance(name, str | None):
             raise complain(TypeError, "parameter_name", "a text", name)
@@ -46,14 +46,14 @@ class Labels:
         return cls(name or "", tuple(names or ()), dict(units or {}))
 
     def attributes(self) -> dict[str, str]:
-        """The labels as texts, for an archive."""
+        """Texts for an archive."""
         texts = (self.parameter_name, json.dumps(self.names), json.dumps(dict(self.units)))
         said = (self.parameter_name, self.names, self.units)
         return {name: text for name, text, one in zip(ATTRIBUTES, texts, said) if one}
 
     @classmethod
     def from_attributes(cls, attributes: Mapping[str, Any]) -> Labels:
-        """Labels from an archive; invalid ones are left out."""
+        """Labels from an archive, without invalid ones."""
         found: dict[str, Any] = {}
         for name in ATTRIBUTES:
             text = attributes.get(name)
@@ -69,7 +69,7 @@ class Labels:
         return said if max(map(len, texts)) <= _LONGEST else cls()
 
     def parameter(self, symbol: str = "lam") -> str:
-        """The parameter's label for axes and columns."""
+        """The parameter's label."""
         return self.with_unit(self.parameter_name) if self.parameter_name else symbol
 
     def unknown(self, i: int) -> str:
@@ -77,11 +77,11 @@ class Labels:
         return self.names[i] if i < len(self.names) else ""
 
     def with_unit(self, name: str) -> str:
-        """A name with its unit in brackets, if known."""
+        """A name with its known unit in brackets."""
         return f"{name} [{self.units[name]}]" if name in self.units else name
 
     def index(self, name: str) -> int:
-        """The number of an unknown, -1 for the parameter; `ValueError` for other names."""
+        """The number of an unknown, -1 for the parameter."""
         if name in ("lam", self.parameter_name):
             return -1
         if name in self.names:

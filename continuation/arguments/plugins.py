@@ -1,13 +1,12 @@
-"""Homotopies and scenes of installed packages: entry points of `continuation.homotopies` and `continuation.scenes`.
+"""Entry points of installed packages: homotopies (`continuation.homotopies`), scenes (`continuation.scenes`).
 
 In the ``pyproject.toml`` of a package::
 
     [project.entry-points."continuation.homotopies"]
     truss = "snapthrough:VonMisesTruss"
 
-The object is a class or function that returns a homotopy; its parameters are the options. The first line of its
-docstring is its summary; its attributes `problem_class` and `references` give purpose and sources. Nothing is imported
-before it is needed.
+The object is a class or function that returns a homotopy; its parameters are the options. The docstring's first line is
+its summary; the attributes `problem_class` and `references` give purpose and sources. Imports wait until needed.
 """
 
 from __future__ import annotations
@@ -30,19 +29,18 @@ COMMANDS = "continuation.commands"
 _KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
-"""An entry point's object: from options to homotopy."""
+"""From options to homotopy."""
 
 
 class PluginError(LookupError):
-    """A name that gives no homotopy; the message gives the reason."""
+    """A name that gives no homotopy."""
 
 
 @frozen
 class Option:
     """A parameter of a plug-in.
 
-    `default`: None if required, `attrs.NOTHING` if computed from other options. `annotation`: its type as written, or
-    empty.
+    `default`: None if required, `attrs.NOTHING` if computed from other options. `annotation`: type as written.
     """
 
     name: str
@@ -84,7 +82,7 @@ class Plugin:
         Raises
         ------
         PluginError
-            If two packages share the name, or the import fails or gives no callable.
+            If packages share the name, the import fails, or the object is not callable.
         """
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
@@ -99,9 +97,9 @@ class Plugin:
 
 @frozen
 class Description:
-    """A plug-in's description of itself.
+    """A plug-in's description.
 
-    `summary`: first line of the docstring. `problem_class`: its problems, or empty. `references`: BibTeX entries.
+    `summary`: first line of the docstring. `references`: BibTeX.
     """
 
     summary: str
@@ -130,12 +128,11 @@ def find(name: str, group: str = GROUP) -> Factory:
     name : str
         Registered, or ``module:object``.
     group : str
-        As for `available`.
 
     Raises
     ------
     PluginError
-        If there is no such name, or it cannot be loaded.
+        If it cannot be found or loaded.
     """
     if ":" in name:
         return _imported(name, _KINDS[group])
@@ -148,9 +145,7 @@ def find(name: str, group: str = GROUP) -> Factory:
 
 
 def describe(factory: Factory) -> Description:
-    """Summary, options, problem class and references; a function's attributes come from its product, if it needs no
-    arguments.
-    """
+    """The description; a function's attributes are those of its result, if it needs no arguments."""
     found = options(factory)
     source: Any = factory
     if not isinstance(factory, type) and not any(option.required for option in found):
@@ -168,7 +163,7 @@ def describe(factory: Factory) -> Description:
 
 
 def options(factory: Factory) -> tuple[Option, ...]:
-    """The parameters that can be given by name."""
+    """Parameters with names."""
     named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return tuple(
         Option(p.name, p.default is p.empty, None if p.default is p.empty else p.default, _written(p.annotation))
@@ -182,21 +177,19 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
 
     Raises
     ------
-    PluginError
-        As `find`.
-    TypeError
-        As `called`.
+    PluginError, TypeError
+        As `find` and `called`.
     """
     return called(name, find(name), values)
 
 
 def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None) -> Any:
-    """The factory's product.
+    """The factory's result.
 
     Parameters
     ----------
     name : str
-        Name of the factory, for messages.
+        For messages.
     factory : callable
     values : mapping, optional
         Options by name.
@@ -204,7 +197,7 @@ def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None)
     Raises
     ------
     TypeError
-        If an option is unknown or missing; the message lists all.
+        If an option is unknown or missing.
     """
     values = dict(values or {})
     known = options(factory)

@@ -18,7 +18,7 @@ _MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
 
 @runtime_checkable
 class Traced(Protocol):
-    """A traced path: the attributes that show its methods."""
+    """A traced path: attributes that show its methods."""
 
     winding_number: int | None
     events: list[Any]
@@ -26,22 +26,22 @@ class Traced(Protocol):
 
 
 def cite(source: Any) -> str:
-    """BibTeX of the library, the methods that a run used, and the homotopy's sources.
+    """BibTeX of the library, a run's methods and the homotopy's sources.
 
     Parameters
     ----------
     source : Path or Homotopy
-        A path knows its methods; a homotopy gives only its own references.
+        A homotopy gives only its own references.
 
     Returns
     -------
     str
-        Entries, each once, with empty lines between.
+        Entries, each once.
 
     Raises
     ------
     TypeError
-        If `source` is neither.
+        For anything else.
     """
     if isinstance(source, Traced):
         ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
@@ -53,7 +53,7 @@ def cite(source: Any) -> str:
 
 
 def references_of(*parts: Any) -> tuple[str, ...]:
-    """The BibTeX `references` of all parts, each key once."""
+    """The parts' BibTeX `references`, each key once."""
     found = [getattr(part, "references", ()) for part in parts]
     for given in found:
         if not isinstance(given, (tuple, list)) or not all(isinstance(entry, str) for entry in given):
@@ -62,7 +62,7 @@ def references_of(*parts: Any) -> tuple[str, ...]:
 
 
 def entries(text: str) -> tuple[str, ...]:
-    """The BibTeX entries of a text that separates them by empty lines."""
+    """BibTeX entries separated by empty lines."""
     return tuple(entry for entry in re.split(r"\n{2,}(?=@)", text.strip()) if entry)
 
 

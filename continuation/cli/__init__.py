@@ -18,12 +18,12 @@ INTERRUPTED = 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; each exception becomes one line on stderr.
+    """Run one command; exceptions become one line on stderr.
 
     Parameters
     ----------
     argv : sequence of str, optional
-        Arguments without the program's name; default: the process's.
+        Default: the process's arguments.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
-    """The status and message after an exception."""
+    """Status and message after an exception."""
     if isinstance(error, UsageError):
         return error.status, str(error)
     if isinstance(error, BrokenPipeError):
@@ -77,7 +77,7 @@ def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
 
 
 def _let_go() -> None:
-    """Redirect a closed stdout to nowhere, so that Python's shutdown does not complain."""
+    """Redirect a closed stdout, so that Python's shutdown does not complain."""
     try:
         sys.stdout.flush()
     except OSError:

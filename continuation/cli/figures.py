@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def check_picture(option: str, file: str) -> None:
-    """Complain early if `file`, the argument `option`, cannot be written as a picture."""
+    """Raise `UsageError` early if `file`, the argument `option`, cannot be written."""
     from continuation.plot import require_matplotlib
 
     path = Path(file)
@@ -83,7 +83,7 @@ def check_picture(option: str, file: str) -> None:
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
-    """Save the axes that `draw` fills, above step sizes; no window opens."""
+    """Save the axes that `draw` fills, above step sizes."""
     from matplotlib.figure import Figure
 
     from continuation.plot import plot_steps

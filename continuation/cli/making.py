@@ -1,4 +1,4 @@
-"""Homotopies from names and options of the shell, with one-line errors."""
+"""Homotopies from names and options of the shell."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DOOR = (
 
 
 def importable(name: str) -> None:
-    """Make ``module:object`` importable from the working directory, which console scripts do not search."""
+    """Make ``module:object`` importable from the working directory."""
     if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
 
@@ -28,10 +28,7 @@ def importable(name: str) -> None:
 def homotopy_of(
     name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None, group: str = plugins.GROUP
 ) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults.
-
-    Raises `UsageError` with the name of homotopy or option.
-    """
+    """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults."""
     importable(name)
     with unknown(name):
         factory = plugins.find(name, group)
@@ -62,7 +59,6 @@ def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, A
 
 
 def _literal(text: str) -> Any:
-    """A Python literal, or else the text."""
     try:
         return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
     except (ValueError, SyntaxError):

@@ -1,4 +1,4 @@
-"""Parser and exceptions of all commands, with one-line messages."""
+"""The parser and exceptions of all commands."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 T = TypeVar("T")
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
-"""Exit statuses: done or solved; not solved; bad argument."""
+"""Exit statuses: done or solved; not solved; bad input."""
 
 Run = Callable[[argparse.Namespace], int]
-"""A command, from parsed arguments to exit status, set by ``parser.set_defaults(run=...)``."""
+"""A command, from parsed arguments to exit status (``parser.set_defaults(run=...)``)."""
 
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
@@ -30,9 +30,8 @@ class UsageError(ValueError):
     Attributes
     ----------
     argument : str
-        As the user typed it: ``FILE``, ``--x0``.
+        As typed: ``FILE``, ``--x0``.
     complaint : str
-        What was expected and found.
     """
 
     status = BAD_INPUT
@@ -44,13 +43,13 @@ class UsageError(ValueError):
 
 
 class PlugInError(UsageError):
-    """An exception of a plug-in: the command ends with status 1."""
+    """A plug-in's exception; the status is 1."""
 
     status = FAILURE
 
 
 def told(error: BaseException) -> str:
-    """An exception in one line, with its place in the source."""
+    """An exception and its place in one line."""
     from continuation.step.verdict import sentence
 
     frames = traceback.extract_tb(error.__traceback__)
@@ -58,10 +57,10 @@ def told(error: BaseException) -> str:
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser with one-line error messages."""
+    """A parser with one-line error messages."""
 
     def error(self, message: str) -> NoReturn:
-        """Write the message to stderr and exit with status 2."""
+        """Write the message and exit with status 2."""
         self.exit(BAD_INPUT, f"{self.prog}: {message.removeprefix('argument ')}\n")
 
 
@@ -69,13 +68,13 @@ class Subparsers(Protocol):
     """The `add_parser` of argparse."""
 
     def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """Add the parser of a command.
+        """Add a command's parser.
 
         Parameters
         ----------
         name : str
         **options
-            As for `argparse.ArgumentParser`; `help` is the line in the list of commands.
+            As for argparse.
         """
         ...
 
@@ -102,7 +101,7 @@ def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
 
 
 def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:
-    """The value of an argument, for its `type`."""
+    """The value of an argument."""
     try:
         value = convert(text)
         if fine(value):
@@ -113,12 +112,12 @@ def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], ex
 
 
 def above_zero(text: str) -> float:
-    """A positive number, for `type`."""
+    """A positive number."""
     return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def positive(text: str) -> int:
-    """A positive integer, for `type`."""
+    """A positive integer."""
     return parsed(text, int, lambda value: value >= 1, "a positive integer")
 
 

@@ -9,16 +9,16 @@ from continuation.path.path import Path
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a trace; it keeps all that was traced.
+    """Ctrl-C during a trace.
 
     Attributes
     ----------
     path : Path
-        Accepted points, with the status INTERRUPTED.
+        The path so far.
     paths : sequence of Path
-        All paths of a sweep, `path` last.
+        The paths of a sweep.
     diagram : Diagram or None
-        Finished branches, from `diagram`.
+        Finished branches.
     """
 
     def __init__(self, path: Path, paths: Sequence[Path] = (), diagram: Any = None) -> None:

@@ -1,4 +1,4 @@
-"""Steps and events of parts, of reversed paths and of joined paths."""
+"""Steps and events of parts, reversed paths and joined paths."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.point.segment import Segment, hermite
 from continuation.status import Kind
 
 MEET = 1e-6
-"""Largest distance of two ends that count as one point, relative to the paths' extent."""
+"""Largest distance of equal ends, relative to the paths' extent."""
 
 StepsAndEvents: TypeAlias = tuple[list[Step], list[LocatedEvent]]
 """The steps and events of a path."""
@@ -29,7 +29,7 @@ class Backwards:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Interior nodes of the segment."""
+        """Interior nodes."""
         return tuple(1.0 - t for t in reversed(self.forwards.inside))
 
     def at(self, t: float) -> Array:
@@ -37,7 +37,7 @@ class Backwards:
         return self.forwards.at(1.0 - t)
 
     def derivative(self, t: float) -> Array:
-        """The derivative at t."""
+        """Its derivative."""
         return -self.forwards.derivative(1.0 - t)
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
@@ -50,10 +50,7 @@ class Backwards:
 
 
 def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> StepsAndEvents:
-    """Consecutive steps, or every k-th one, with the events between the first and the last.
-
-    Raises `ValueError` for a negative step.
-    """
+    """Some steps and the events between the first and the last; `ValueError` for a negative step."""
     numbers = range(*chosen.indices(len(steps)))
     if numbers.step < 0:
         raise ValueError("step: expected a positive one; path.reversed() turns a path round")
@@ -75,11 +72,11 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
     """The path from its end to its start."""
     old, last = list(steps), len(steps) - 1
     whole = old[-1].arclength if old else 0.0
-    # The tangent at a kink belongs to the arriving arc, which reversal exchanges.
+    # At a kink, the tangent is the arriving arc's.
     kinks = {e.step: -e.rays[1] for e in events if e.kind == Kind.KINK and e.rays is not None and len(e.rays) > 1}
     turned = []
     for k, step in enumerate(reversed(old)):
-        # An arc's fields belong to the step at its end, which reversal exchanges.
+        # An arc's fields are those of the step at its end.
         arc = old[last - k + 1] if k else None
         segment = None if arc is None or arc.segment is None else Backwards(arc.segment)
         kind = Kind.START if k == 0 else Kind.REGULAR if step.kind in (Kind.START, Kind.TARGET) else step.kind
@@ -114,9 +111,9 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
 def following(
     first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float
 ) -> StepsAndEvents:
-    """Steps behind the start of a second path, and its events, counted from the end of the first.
+    """Steps and events of a second path, counted from the end of the first.
 
-    `extent`: the larger extent of the two. Raises `ValueError` if the ends do not meet.
+    `extent`: the larger of the two extents. Raises `ValueError` if the ends do not meet.
     """
     a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
@@ -125,7 +122,7 @@ def following(
 
 
 def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
-    """Steps behind the start of a path, and its events, counted from step `a`."""
+    """Steps and events of a path, counted from step `a` at its start."""
     return (
         [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],
         [evolve(event, step=event.step + a.index, arclength=a.arclength + event.arclength) for event in events],

@@ -1,4 +1,4 @@
-"""The result of a trace: steps, events, counts, arrays and dense output."""
+"""The result of a trace, with arrays and dense output."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ class Path:
     Attributes
     ----------
     steps : sequence of Step
-        Accepted points from the start: a list or `continuation.archive.reader.StoredSteps`.
+        Accepted points: a list, or `continuation.archive.reader.StoredSteps`.
     events : list of LocatedEvent
         In path order.
     status : Status
     message : str
-        The status in a sentence with details.
+        The status in a sentence.
     counts : Counts
     seconds : float
         Wall-clock time.
     references : tuple of str
         BibTeX of homotopy and parts; see `continuation.cite`.
     end_error : float or None
-        At the target: bound of the largest component's absolute error, from the round-off level of the equations'
-        terms; after an endgame, its estimate.
+        At the target: bound of the components' absolute error, from round-off of the equations' terms; after an
+        endgame, its estimate.
     winding_number : int or None
         After an endgame: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
-        Failed attempts at the last point, if the path ended for lack of a step.
+        Failed attempts at the last point.
     proof : Proof or None
-        The proof of the path, if requested (`continuation.certify`).
+        If requested (`continuation.certify`).
     labels : Labels
-        Names and units of the homotopy.
+        Names and units.
     """
 
     steps: list[Step] = field(factory=list)
@@ -111,7 +111,7 @@ class Path:
 
     @property
     def arclength(self) -> Array:
-        """Arclengths as `Step` defines them, shape (m,)."""
+        """Arclengths (see `Step`), shape (m,)."""
         return _column(self.steps, "arclength")
 
     @property
@@ -121,7 +121,7 @@ class Path:
 
     @property
     def endpoint(self) -> Step:
-        """The last point; IndexError if there is none."""
+        """The last point."""
         if not self.steps:
             raise IndexError(f"the path has no point. {self.message}")
         return self.steps[-1]
@@ -138,7 +138,7 @@ class Path:
 
     @property
     def kinks(self) -> list[LocatedEvent]:
-        """Points where the path changes between smooth pieces of the map."""
+        """Points between smooth pieces of the map."""
         return [event for event in self.events if event.kind == Kind.KINK]
 
     def __call__(self, s: float | Array | None = None, *, t: float | None = None) -> Array:
@@ -147,7 +147,7 @@ class Path:
         Raises
         ------
         ValueError
-            If s is no number in [0, arclength[-1]], or the parameter is never t.
+            If s lies outside [0, arclength[-1]], or the parameter is never t.
         IndexError
             If the path has no points.
         """
@@ -170,9 +170,9 @@ class Path:
         return np.array(points) if wanted.ndim else points[0]
 
     def crossings(self, t: float) -> Array:
-        """All points of the path with parameter t, in order, shape (k, N + 1).
+        """All points with parameter t, in order, shape (k, N + 1).
 
-        If the parameter stays t from one point to the next, both are listed.
+        Both ends of an arc with constant parameter t count.
 
         Parameters
         ----------
@@ -213,7 +213,7 @@ class Path:
         return self._of(turned_round(self.steps, self.events))
 
     def join(self, other: Path) -> Path:
-        """Append a path that begins where this one ends.
+        """Append a path that begins here.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Path:
         return whole
 
     def refined(self, homotopy: Any, accuracy: float = 1e-3) -> Path:
-        """The path with more points, to the accuracy of `refined_path`.
+        """The path with more points (`refined_path`).
 
         Parameters
         ----------
@@ -259,13 +259,13 @@ class Path:
         return (plot_bifurcation if "value" in options else plot_components)(self, axes, **options)
 
     def to_xarray(self) -> Any:
-        """Points and located events as an `xarray.Dataset`, as `Archive.to_xarray`."""
+        """Points and events, as `Archive.to_xarray`."""
         from continuation.archive import growing
 
         return growing.dataset_of(self)
 
     def to_dataframe(self) -> Any:
-        """Points and located events as a `pandas.DataFrame`, with the homotopy's names."""
+        """Points and events as a `pandas.DataFrame`, with the homotopy's names."""
         from continuation.archive import growing
 
         return growing.dataframe_of(self)
@@ -303,7 +303,7 @@ class Path:
 
 @runtime_checkable
 class SupportsColumn(Protocol):
-    """Steps in an archive, which stores columns."""
+    """Steps stored as columns."""
 
     def column(self, name: str) -> Array:
         """A field of all steps."""
@@ -315,7 +315,7 @@ def _off(place: float, curve: Callable[[float], Array], t: float) -> float:
 
 
 def _curve(before: Step, after: Step) -> Callable[[float], Array]:
-    """The path between two points on [0, 1]; straight without segment."""
+    """The path between two points on [0, 1]."""
     if after.segment is not None:
         return after.segment.at
     return lambda place: before.u if place == 0.0 else before.u + place * (after.u - before.u)
@@ -326,7 +326,7 @@ def _column(steps: Any, name: str) -> Array:
 
 
 def require_path(path: Any) -> None:
-    """TypeError unless `path` is a path, ValueError unless it has two points."""
+    """Raise unless `path` is a path with two points."""
     if not isinstance(path, Path):
         raise complain(TypeError, "path", "a path, as `trace` gives it", path)
     if len(path) < 2:

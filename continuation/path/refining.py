@@ -1,4 +1,4 @@
-"""More points of a path, until cubics through them have a given accuracy."""
+"""More points of a path."""
 
 from __future__ import annotations
 
@@ -30,12 +30,10 @@ DEEPEST = 8
 def refined_path(
     homotopy: Any, path: Sequence[Step], events: Sequence[LocatedEvent], accuracy: float
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps and events of a path with more points.
+    """Steps and events of a path with more points, for a given accuracy.
 
-    Each arc's middle is corrected onto the path. If it moved farther than the accuracy (relative to each component's
-    range on the path), it becomes a step and both halves are examined.
-
-    New steps are REGULAR, with cubic segments. Raises `ValueError` unless the accuracy is positive.
+    Each arc's middle is corrected onto the path. If it moves farther than the accuracy (relative to each component's
+    range), it becomes a step and both halves are examined. New steps are REGULAR, with cubic segments.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
         raise complain(ValueError, "accuracy", "a positive number", accuracy)
@@ -59,7 +57,7 @@ def refined_path(
 
 
 def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:
-    """The points that an arc needs."""
+    """The steps that an arc needs."""
     guess, slope = segment.at(0.5), segment.derivative(0.5)
     weights = np.ones_like(guess) if after.weights is None else after.weights
     length = norm(weights, slope)

@@ -1,4 +1,4 @@
-"""Points of a path: steps and located events."""
+"""Steps and located events."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _one_line(name: str, point: Any) -> str:
 
 @frozen(eq=False, repr=False)
 class Step:
-    """One accepted point and how it was reached.
+    """One accepted point.
 
     Attributes
     ----------
@@ -30,8 +30,8 @@ class Step:
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
         Sum of the steps' lengths, each of the circular arc through two points with the angle between their tangents, in
-        the step's metric: the curve's length to a relative error of fourth order in the angle (`continuation.arclength`
-        measures it to 1e-9). It depends on the steps.
+        the step's metric: the curve's length to fourth order in the angle, so it depends on the steps
+        (`continuation.arclength` measures to 1e-9).
     step_length : float
         The predictor's step; 0 at the start.
     residual_norm : float
@@ -40,7 +40,7 @@ class Step:
         Sign of det [[H'], [tangent']].
     kind : Kind
     corrector_iterations, rejections : int
-        Iterations of the accepted attempt, and attempts before it.
+        Iterations, and attempts before.
     contraction, distance, angle, share : float
         First ratio of the corrector's increments; length of its correction; angle (radians) between the tangents; the
         parameter's share of the tangent.
@@ -49,7 +49,7 @@ class Step:
     weights : ndarray or None
         The step's metric.
     rejected : tuple of Rejected
-        Attempts before the accepted one: step length, contraction, reason. Not archived.
+        Attempts before, with reasons. Not archived.
     observed : mapping
         Extra scalars of the homotopy.
     """
@@ -98,7 +98,6 @@ class LocatedEvent:
     arclength : float
     u, tangent : ndarray, shape (N + 1,)
     residual_norm : float
-        Largest component of the residual.
     monitor : float
         The monitor's value at u.
     orientation : int
@@ -142,7 +141,7 @@ class LocatedEvent:
 
     @property
     def turns(self) -> bool:
-        """Whether the parameter turns; turning points of other numbers have other names."""
+        """Whether the parameter turns (not another number)."""
         return self.kind is Kind.TURNING_POINT and self.name == "turning point"
 
     @property

@@ -1,4 +1,4 @@
-"""Checks of Jacobian, differential, bordered solves and Taylor series."""
+"""Checks of derivatives."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 COMPARED_ORDER = 6
-"""Order of the compared Taylor coefficients: a wrong recurrence shows at order 2 or 3; jets cost order^2."""
+"""Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3; jets cost order^2."""
 
 SOLVE_ERROR = 1e-8
 """Largest relative residual of a bordered solve: half of the digits."""
 
 DERIVATIVE_ERROR = 1e-6
-"""Allowed relative error of a derivative, coefficient or step: difference quotients reach it, wrong formulas do not."""
+"""Relative error of a derivative, coefficient or step that difference quotients reach and wrong formulas miss."""
 
 CANCELLED_ENTRY = 1e-10
-"""Allowed error of an entry that cancels, relative to the largest entry."""
+"""Error of an entry that cancels, relative to the largest entry."""
 
 SURELY_REGULAR = 1e12
-"""Condition number up to which a determinant's computed sign is trusted."""
+"""Largest condition number for a trusted sign of a determinant."""
 
 
 @frozen(eq=False)
 class JacobianAlone:
-    """A homotopy with `jacobian` as its only capability."""
+    """A homotopy with `jacobian` only."""
 
     start: Any
     residual: Any
@@ -63,7 +63,7 @@ def differential(subject: Subject) -> None:
 
 
 def bordered(subject: Subject) -> None:
-    """`bordered` solves with [[H_y, H_lam], [border']] and gives its determinant's sign."""
+    """`bordered` solves with [[H_y, H_lam], [border']] and gives the determinant's sign."""
     for place in subject.places:
         matrix = subject.derivative(place)
         for border in random_directions(place.u.size, 2, 13):
@@ -81,7 +81,7 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
             z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
         require(z.shape == b.shape, f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
         # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term, since
-        # an equation may consist of round-off.
+        # it may be round-off alone.
         largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
         allowed = SOLVE_ERROR * (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
         _compare("bordered", place, "the solution's equation", whole @ z, b, allowed)
@@ -113,7 +113,7 @@ def taylor(subject: Subject) -> None:
 
 
 def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:
-    """The residual along the series vanishes to its order, and the series keeps its arclength."""
+    """The series solves the equations to its order and keeps its arclength."""
     along = c @ point.border
     for k in range(2, COMPARED_ORDER + 1):
         said = f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}"

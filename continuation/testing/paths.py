@@ -1,4 +1,4 @@
-"""Checks of whole paths: boundary of the domain, retraces, archive."""
+"""Checks of whole paths."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from continuation.testing.subject import Place, Subject, fail, random_directions
 
 
 def max_step(subject: Subject) -> None:
-    """`max_step` is consistent: after a share of the way to the boundary, the rest is left, in units of v."""
+    """After a share of the way to the boundary, `max_step` gives the rest, in units of v."""
     for place in subject.places:
         # Relative to the point, since interior points span orders of magnitude.
         size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
@@ -58,7 +58,7 @@ def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
 
 
 def audited(name: str, backwards: bool, subject: Subject) -> None:
-    """A retrace, with half the steps or backwards, gives the same path."""
+    """A retrace, with half steps or backwards, gives the same path."""
     if len(subject.regular) < 2:
         return
     with reporting(name, "along the path"):
@@ -71,9 +71,9 @@ def archive(subject: Subject) -> None:
     text, arrays = problem_data(subject.homotopy)
     tree = json.loads(text)
     if "unstorable" in tree:
-        # Its owner passes such a homotopy to `resume`.
+        # The owner passes it to `resume`.
         return
-    # The names were just made, so their modules are loaded.
+    # Their modules are loaded, since encoding just named them.
     named = re.findall(r'"(?:class|function)": "([\w.]+):([\w.]+)"', text)
     trusted = registry([attrgetter(name)(sys.modules[module]) for module, name in named])
     try:
@@ -111,7 +111,7 @@ def _same_path(name: str, wanted: Path, found: Path) -> None:
         for a, b in zip(p, q):
             if not np.array_equal(a.u, b.u):
                 fail(f"{name}: expected {a!r}, found {b!r}, which differs by {float(np.abs(a.u - b.u).max()):.3g}")
-            # By name, since archives order scalars otherwise; NaN equals NaN.
+            # By name: archives order scalars differently.
             scalars = list(a.observed.values()), [b.observed.get(key, math.inf) for key in a.observed]
             if len(a.observed) != len(b.observed) or not np.array_equal(*scalars, equal_nan=True):
                 fail(f"{name}: {a!r} observed {dict(a.observed)}, found {dict(b.observed)}")

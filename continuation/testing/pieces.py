@@ -1,4 +1,4 @@
-"""Checks of piecewise smooth maps: switches, pieces, and their agreement on borders."""
+"""Checks of piecewise smooth maps."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from continuation.testing.protocol import answers, difference
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 SAME_VALUE = 1e4
-"""Allowed difference of two formulas of one map, in units of round-off."""
+"""Allowed difference of two formulas, in units of round-off."""
 
 MOVED_ULPS = 64.0
-"""Ulps by which a point moves to sample round-off of the map."""
+"""Ulps by which a point moves to sample round-off."""
 
 SMOOTH = 1e-4
 """Relative difference of one-sided derivatives of a switch; difference quotients have eight digits."""
 
 
 def switches(subject: Subject) -> None:
-    """`switches` gives equally many finite real numbers everywhere, and is smooth."""
+    """`switches` gives equally many finite numbers everywhere, and is smooth."""
     _vectors(subject)
     for place in subject.places:
         _smooth(subject, place)
@@ -45,7 +45,7 @@ _vectors = answers(
 
 
 def _smooth(subject: Subject, place: Place) -> None:
-    """One-sided differences agree up to curvature, which shrinks with the step."""
+    """Differences from both sides agree up to curvature, which shrinks with the step."""
     v = random_directions(place.u.size, 1, 23)[0]
     values = Pieces(subject.homotopy).values
 
@@ -60,7 +60,7 @@ def _smooth(subject: Subject, place: Place) -> None:
 
 
 def pieces(subject: Subject) -> None:
-    """Each piece is a homotopy and equals the map where its signs hold; at a kink, so do all that meet there."""
+    """Each piece is a homotopy and equals the map where its signs hold, kinks included."""
     for place, signs in _met(subject):
         piece = _piece(subject, place, signs)
         with reporting("residual of the piece", place.where):
@@ -83,10 +83,10 @@ def _round_off(subject: Subject, place: Place, value: Array) -> Array:
 
 
 def derivatives_of_pieces(subject: Subject) -> None:
-    """Each piece's derivatives are right."""
+    """The pieces' derivatives are right."""
     for place, signs in _met(subject):
         piece = Subject(_piece(subject, place, signs))
-        # Only here: the piece's own start and path may lie beyond its border.
+        # The piece's own start and path may lie beyond its border.
         vars(piece)["places"] = (place,)
         for name in ("jacobian", "differential", "bordered"):
             if piece.has(name):
@@ -94,7 +94,7 @@ def derivatives_of_pieces(subject: Subject) -> None:
 
 
 def _met(subject: Subject) -> list[tuple[Place, Signs]]:
-    """The places with their pieces, and up to three kinks with the pieces on both sides of each switch."""
+    """Places and up to three kinks, with all pieces that meet there."""
     each = Pieces(subject.homotopy)
     found = []
     for place in subject.places:

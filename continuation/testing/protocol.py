@@ -1,4 +1,4 @@
-"""Checks of the protocol: shapes, types, and results that depend on arguments only."""
+"""Checks of shapes, types and repeatability."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
 def answers(
     name: str, ask: Callable[[Any, Place], Any], good: Callable[[Any, int], bool], wanted: str
 ) -> Callable[[Subject], None]:
-    """A check that `good(answer, N)` holds at every place; `wanted` describes the form."""
+    """A check that `good(answer, N)` holds at every place."""
 
     def examine(subject: Subject) -> None:
         for place in subject.places:
@@ -99,7 +99,7 @@ references = answers(
 
 
 def jacobian_types(subject: Subject) -> None:
-    """`jacobian` gives a matrix that the engine factors and a vector, of the right shapes."""
+    """`jacobian` gives a matrix that the engine factors, and a vector."""
     for place in subject.places:
         with reporting("jacobian", place.where):
             answer = subject.homotopy.jacobian(place.y, place.lam)
@@ -118,7 +118,7 @@ def jacobian_types(subject: Subject) -> None:
 
 
 def repeatable(subject: Subject) -> None:
-    """Equal arguments give equal bits; no call changes its arguments or an earlier answer."""
+    """Equal arguments give equal bits; calls change neither arguments nor earlier answers."""
     first, second = (subject.homotopy.start()[0] for _ in range(2))
     if isinstance(first, np.ndarray) and first.flags.writeable and np.shares_memory(first, second):
         fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
@@ -145,7 +145,7 @@ def picklable(subject: Subject) -> None:
 
 
 def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
-    """Both objects have the same residual, bit for bit."""
+    """Both residuals agree bit for bit."""
     for place in subject.places:
         with reporting(f"residual of {what}", place.where):
             found, wanted = (np.asarray(h.residual(place.y, place.lam)) for h in (other, subject.homotopy))
@@ -156,7 +156,6 @@ _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "obs
 
 
 def _asked(subject: Subject, place: Place, name: str) -> Any:
-    """A method's answer, if it leaves its arguments alone."""
     v, border = random_directions(place.u.size, 2, 1)
     more = {"bordered": (border,), "differential": (v,)}.get(name, ())
     arguments = (place.u, v) if name == "max_step" else (place.y, place.lam, *more)
@@ -169,7 +168,7 @@ def _asked(subject: Subject, place: Place, name: str) -> Any:
 
 
 def _numbers(answer: Any, place: Place) -> list[Array]:
-    """The numbers in an answer, or solutions of a factorisation."""
+    """The numbers in an answer."""
     n = place.u.size - 1
     if hasattr(answer, "solve"):
         return [np.array(answer.solve(np.ones(n), 1.0)), np.array([float(answer.sign)])]

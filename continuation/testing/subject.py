@@ -1,4 +1,4 @@
-"""The homotopy under test, with points near its path and a path that all checks share."""
+"""The homotopy under test, with points near its path and one traced path."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ FEWEST = 6
 """A path with fewer points before its end is traced again with shorter steps."""
 
 STEPS_WITHOUT_TARGET = 12
-"""Fewer without a target, since the path may leave the region for which the homotopy was written."""
+"""Fewer without a target: the path may leave the homotopy's region."""
 
 
 class CheckFailure(AssertionError):
-    """A broken promise of a homotopy; the message says which, where and by how much."""
+    """A broken promise of a homotopy."""
 
 
 def fail(sentence: str) -> NoReturn:
@@ -56,7 +56,7 @@ def require(fine: bool, sentence: str) -> None:
 
 @contextmanager
 def reporting(method: str, where: str) -> Iterator[None]:
-    """Report an exception of a method as a failed check."""
+    """Report an exception as a failed check."""
     try:
         with np.errstate(all="ignore"):
             yield
@@ -86,18 +86,18 @@ class Place:
 
 @frozen(eq=False, slots=False)
 class Subject:
-    """A homotopy under test, with cached results that several checks need."""
+    """A homotopy under test, with shared results."""
 
     homotopy: Any
     steps: int | None = field(default=None, validator=optional(integer(1)))
 
     def has(self, capability: str) -> bool:
-        """Whether the homotopy has this attribute, not None."""
+        """Whether the attribute is not None."""
         return getattr(self.homotopy, capability, None) is not None
 
     @cached_property
     def evaluator(self) -> Evaluator:
-        """Counted access to the homotopy."""
+        """Counted access."""
         with reporting("homotopy", "looked at"):
             return Evaluator(self.homotopy, Counts())
 
@@ -157,7 +157,7 @@ class Subject:
 
     @cached_property
     def path(self) -> Path:
-        """The path from the start, perhaps only its first steps."""
+        """The path, perhaps only its first steps."""
         with reporting("trace", "from the start"):
             path = self.traced()
         bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.RAISED, Status.PREDICTOR_FAILED)
@@ -167,7 +167,7 @@ class Subject:
 
     @cached_property
     def controller(self) -> Controller:
-        """The default controller, with shorter steps if the path would have few points."""
+        """The default controller, with shorter steps for short paths."""
         usual = DEFAULT.controller
         tracer = Tracer(self.homotopy, budget=self.limits)
         steps = list(tracer)
@@ -180,7 +180,7 @@ class Subject:
         return evolve(usual, bounds=Bounds(maximum=longest, initial=longest))
 
     def traced(self, **options: Any) -> Path:
-        """A trace from the start within the limits."""
+        """A trace within the limits."""
         tracer = Tracer(self.homotopy, **{"budget": self.limits, "controller": self.controller, **options})
         for _ in tracer:
             pass
@@ -188,7 +188,7 @@ class Subject:
 
     @cached_property
     def regular(self) -> Path:
-        """The path without an end that may be singular (boundary, endgame or `finish`)."""
+        """The path without a perhaps singular end (boundary, endgame, `finish`)."""
         path = self.path
         end = path.endpoint
         if end.kind != Kind.TARGET or not (self.has("max_step") or path.winding_number or end.segment is None):
@@ -206,7 +206,7 @@ class Subject:
                 yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
 
     def derivative(self, place: Place) -> Array:
-        """[H_y, H_lam] as a dense matrix, shape (N, N + 1), from `jacobian` or the residual."""
+        """[H_y, H_lam] as a dense matrix, shape (N, N + 1)."""
         if self.has("jacobian"):
             with reporting("jacobian", place.where):
                 H_y, H_lam = self.homotopy.jacobian(place.y, place.lam)
@@ -216,7 +216,7 @@ class Subject:
 
 
 def dense(H_y: Any, n: int) -> Array:
-    """A matrix of any type as an array."""
+    """A matrix as an array."""
     return np.asarray(H_y @ np.eye(n), dtype=float)
 
 
@@ -228,4 +228,4 @@ def random_directions(n: int, count: int, seed: int) -> list[Array]:
 
 
 Examination = Callable[[Subject], None]
-"""A check; it raises `CheckFailure`."""
+"""A check; raises `CheckFailure`."""

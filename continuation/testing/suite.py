@@ -1,4 +1,4 @@
-"""The suite: selection and execution of checks."""
+"""Selection and execution of checks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "n
 
 @frozen(eq=False)
 class Check:
-    """One check of one homotopy: call it; ``str(check)`` is its name.
+    """One check of one homotopy: call it.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Check:
     capability : str
         The attribute that is checked; empty if all homotopies have it.
     after : str
-        The check that must pass first; empty for the first.
+        The check that must pass first, or empty.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Check:
         Raises
         ------
         CheckFailure
-            An AssertionError: which promise is broken, where and by how much.
+            An AssertionError that names the broken promise.
         """
         if self._subject is not None:
             self._examine(self._subject)
@@ -77,7 +77,7 @@ CHECKS = (
     Check("archive", paths.archive, after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
-"""Basic, cheap checks first: correct the first failure first. Start, first point and path are computed once."""
+"""Basic, cheap checks first: correct the first failure first."""
 
 
 @frozen
@@ -92,7 +92,7 @@ class Result:
 def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, ...]:
     """The checks that the homotopy's capabilities select.
 
-    The homotopy is first called by a check, so a faulty one fails its tests and not their collection::
+    Only checks call the homotopy, so a fault fails its tests, not their collection::
 
         @pytest.mark.parametrize("check", homotopy_checks(Spring()), ids=str)
         def test_spring(check):
@@ -103,7 +103,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
     homotopy : Homotopy
         A small instance: matrices become dense, and the path is traced about ten times.
     steps : int, optional
-        Steps of the path: default 60, or 12 without a target.
+        Default: 60, or 12 without a target.
     """
     subject = Subject(homotopy, steps)
     called_for = (rule for rule in CHECKS if not rule.capability or subject.has(rule.capability))
@@ -113,7 +113,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
 def run_checks(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Run all checks that apply, and collect their outcomes.
+    """Run all checks that apply.
 
     Parameters
     ----------
@@ -125,7 +125,6 @@ def run_checks(
     Returns
     -------
     tuple of Result
-        In order of the checks.
 
     Raises
     ------
@@ -164,21 +163,19 @@ def check_homotopy(
     Parameters
     ----------
     homotopy : Homotopy
-        A small instance, as for `homotopy_checks`.
     expected_failed_checks : mapping of str to str, optional
         Checks known to fail, and why.
     steps : int, optional
-        Steps of the path: default 60, or 12 without a target.
+        Both other arguments as for `homotopy_checks`.
 
     Returns
     -------
     tuple of Result
-        One for each selected check.
 
     Raises
     ------
     CheckFailure
-        An AssertionError with one line for each unexpected failure.
+        An AssertionError, one line for each unexpected failure.
     ValueError
         If an expected failure is no check.
     """
