@@ -1,7 +1,6 @@
 """Files and locks.
 
-New data goes into ``.NAME.xxxxxxxx.part`` and reaches the disk before it is renamed. After a kill, the next writer
-removes the part.
+New data is synced as ``.NAME.xxxxxxxx.part``, then renamed. The next writer removes parts that a kill left.
 """
 
 from __future__ import annotations
@@ -143,9 +142,9 @@ _TAKEN = (errno.EAGAIN, errno.EACCES)
 
 
 class Lock:
-    """A lock on a file until `close` or the end of the process; `taken` is False if another process holds it.
+    """A lock on a file until `close` or the process ends; `taken` is False if another process holds it.
 
-    On file systems without locks it is taken. Raises `ArchiveError` if the file is not writable.
+    File systems without locks grant it. Raises `ArchiveError` if the file is not writable.
     """
 
     def __init__(self, file: File) -> None:
@@ -180,9 +179,9 @@ def is_held(file: File) -> bool:
 
 
 def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """The right to replace a file that was read as `descriptor` and last written by process `writer`.
+    """The right to replace a file, read as `descriptor` and last written by process `writer`.
 
-    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, is being written or was replaced.
+    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """
     # The mode too: root may write everything.
     if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:

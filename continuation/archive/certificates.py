@@ -28,7 +28,7 @@ GROUP = "certificate"
 
 
 def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
-    """Store a proof in a closed archive, replacing an older one.
+    """Store or replace a proof in a closed archive.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
         Replaced by a copy.
     proof : Proof
     path : int
-        Number of the proved path; default: the last.
+        Number of the proved path.
 
     Raises
     ------
@@ -96,7 +96,7 @@ _MOST_SLABS = 64
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:
-    """Check every condition of an archive's proofs again, without tracing.
+    """Check every condition of an archive's proofs again.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[
     Returns
     -------
     list of Proof
-        One for each path; without a certificate it is one gap.
+        One for each path; without a certificate, a gap.
 
     Raises
     ------

@@ -3,7 +3,7 @@
 A block is one commit's rows. Its row in ``/checks`` holds its end and one checksum for each column, sorted by name.
 
 A commit writes two records, *intent* and *commit*, each alternating between two places. A kill tears at most one; the
-other three determine it, so damage never looks like an unfinished commit.
+other three determine it.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class DamageError(ValueError):
 
 @frozen
 class Committed:
-    """The valid part of a file: number of the commit; counts of rows, blocks, event names; last checkpoint."""
+    """The valid part of a file: counts and sequence numbers."""
 
     sequence: int = 0
     points: int = 0
@@ -65,7 +65,7 @@ def latest(records: Array) -> Committed:
     commits = [one for one in found[PLACES:] if one is not None]
     last = max(commits, key=lambda one: one.sequence, default=None)
     if last is not None and len(commits) < PLACES:
-        # The intent shows whether a later commit was writing the other record.
+        # The intent shows whether a later commit had begun.
         intent = found[(last.sequence + 1) % PLACES]
         last = None if intent is None else max(last, intent, key=lambda one: one.sequence)
     if last is None:

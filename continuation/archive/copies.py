@@ -24,8 +24,8 @@ from continuation.path import Path
 class Share:
     """Some paths and their points.
 
-    `paths`: rows of the path table. `points`, `rows`: a point table and their rows in it. `names`: events by
-    `event_index`. `first`: first number in `path_index`. `origin`: the open file, if any.
+    `paths`: rows of the path table. `points`, `rows`: a point table and their rows in it. `names`: event names.
+    `first`: first number in `path_index`. `origin`: the open file.
     """
 
     layout: Layout

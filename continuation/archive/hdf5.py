@@ -1,7 +1,6 @@
-"""Untrusted HDF5 files: a file driver for h5py (`Image`), and datasets of checked type, storage and size.
+"""Untrusted HDF5 files: a file driver (`Image`), and datasets of checked type, storage and size.
 
-HDF5 itself hangs at FIFOs and at files without the checksum that SWMR omits. Links, external storage and foreign
-filters are refused. HDF5 2.0 checks the remaining structure.
+HDF5 itself hangs at FIFOs and at checksums that SWMR omits. Links, external storage and foreign filters are refused.
 """
 
 from __future__ import annotations
@@ -21,8 +20,7 @@ from h5py import h5d, h5l, h5o, h5z
 from continuation.archive.atomic import ArchiveError, short
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
-# Superblock, versions 2 and 3: version at byte 8, flags of a writer at 11 (version 3), stated length at 28, checksum of
-# all before at 44.
+# Superblock 2 and 3: version at byte 8, a writer's flags at 11 (version 3), length at 28, checksum at 44.
 _VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
 _WORD = 0xFFFFFFFF
 _HEAP = b"GCOL"
@@ -92,7 +90,7 @@ class Image:
             while done < len(view) and (count := os.preadv(self.descriptor, [view[done:]], self.at + done)):
                 done += count
         except OSError as error:
-            # Text, since a kept traceback would keep HDF5's buffer.
+            # A kept traceback would keep HDF5's buffer.
             self.failure = short(error)
             raise
         view[done:] = bytes(len(view) - done)
@@ -192,7 +190,7 @@ def member(group: Any, name: str) -> Any:
     raw = name.encode()
     if not group.id.links.exists(raw) or group.id.links.get_info(raw).type != h5l.TYPE_HARD:
         raise StructureError(f"it has no {name}, or a link to somewhere else")
-    # `group[name]` would open a new object of the file.
+    # `group[name]` would reopen the file.
     found = h5o.open(group.id, raw)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 

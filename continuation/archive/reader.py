@@ -35,7 +35,7 @@ _STEP_BYTES, _COPIES = 1400, 6
 class Archive(Sequence[Path]):
     """An archive open for reading: a sequence of paths, and two tables. Use it in a ``with`` statement.
 
-    It shows committed rows only, so the file may still grow. An unfinished path comes last, with the status TRACING.
+    It shows committed rows; the file may still grow. An unfinished path comes last, with the status TRACING.
 
     Attributes
     ----------
@@ -47,14 +47,14 @@ class Archive(Sequence[Path]):
     event_names : tuple of str
         Names that ``event_index`` numbers.
     closed_by_writer : bool
-        False if the file is growing or its writer was killed (see `recover`).
+        False if the file is growing or its writer was killed.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
         self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
-        # A snapshot, since the growing file may be opened anew.
+        # A snapshot; the growing file may be opened anew.
         self.points, self.paths = contents.table("point"), contents.table("path")
         try:
             lengths = self.paths["n_points"]
@@ -88,14 +88,14 @@ class Archive(Sequence[Path]):
     def path(self, index: int, *, keep: str = "all") -> Path:
         """One path as it was traced.
 
-        If the file holds no tangents, they are NaN and `Path.__call__` interpolates linearly.
+        Without stored tangents, they are NaN and `Path.__call__` interpolates linearly.
 
         Parameters
         ----------
         index : int
-            May be negative, as for lists.
+            May be negative.
         keep : str
-            "all" steps in memory, or the "ends"; other steps are then read on demand, even after the archive is closed.
+            "all" steps in memory, or the "ends", with others read on demand.
 
         Raises
         ------
@@ -154,7 +154,6 @@ class Archive(Sequence[Path]):
         Parameters
         ----------
         index : int
-            Number of the path, at least 0.
         """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
@@ -223,16 +222,15 @@ class Archive(Sequence[Path]):
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
-    """Open an archive for reading, even while it grows or after its writer was killed.
+    """Open an archive for reading, even while it grows or after a kill.
 
-    Nothing in the file is executed or imported; each block of rows is checked as it is read.
+    Nothing in the file is executed; each block of rows is checked.
 
     Parameters
     ----------
     file : path
     limit : int, optional
-        Bytes of memory, including Python objects, that reading may take. Default: 32 times the file's size, at least
-        128 MiB.
+        Bytes of memory, including Python objects. Default: 32 times the file's size, at least 128 MiB.
 
     Raises
     ------
@@ -247,9 +245,9 @@ _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 
 
 class StoredSteps(Sequence[Step]):
-    """The steps of a path: the first and last in memory, others read from the file.
+    """The steps of a path: ends (and uncommitted steps) in memory, others in the file.
 
-    During a trace, uncommitted steps are in memory too. Segments need stored tangents.
+    Segments need stored tangents.
     """
 
     def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
@@ -304,7 +302,7 @@ class StoredSteps(Sequence[Step]):
     def _between(self, start: int, stop: int) -> Iterator[Step]:
         begin = self._count - len(self._last)
         while start < min(stop, begin):
-            # One more row, for the first segment.
+            # One more row, for the segment.
             before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
             with open_archive(self._file) as archive:
                 steps, _ = _window(archive, self._path, before, end)

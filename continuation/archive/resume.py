@@ -56,8 +56,8 @@ def resume(
 ) -> Path:
     """Continue the last path of an archive; later points are bit for bit those of an uninterrupted trace.
 
-    The file is copied up to its last checkpoint and replaced by the copy, so a kill leaves a file to resume. Given
-    options replace the file's. A budget's seconds count from now.
+    A copy up to the last checkpoint replaces the file, so a kill leaves a file to resume. Given options replace the
+    file's. A budget's seconds count from now.
 
     Parameters
     ----------
@@ -66,18 +66,18 @@ def resume(
     homotopy : Homotopy, optional
         Needed if the file cannot rebuild it.
     archive : path, optional
-        A new file to write; default: continue in `file`.
+        A new file; default: `file`.
     observers : tuple of Observer
     trust : sequence of class or function
         Objects that the file may make, besides the library's parts and registered homotopies.
     keep : str
-        Steps in memory, as for `PathLog`.
+        As for `PathLog`.
     {options}
 
     Returns
     -------
     Path
-        The whole path. Earlier tangents are NaN unless the archive holds them.
+        The whole path. Earlier tangents are NaN unless archived.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def resume(
         tracer.path.steps, tracer.path.events[:] = before.steps, before.events
         tracer.observers = (log, *observers)
         steps = iter(tracer)
-        # A resumed tracer factors once more; restoring the counts discards that.
+        # The counts discard the resumed tracer's extra factorisation.
         next(steps)
         for counter, count in checkpoint.counts.items():
             setattr(tracer.counts, counter, count)
@@ -212,7 +212,7 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
     homotopy : Homotopy
     u : ndarray, shape (N + 1,)
     stored : float
-        Largest component of the residual.
+        Its largest component.
 
     Raises
     ------

@@ -32,7 +32,7 @@ _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
     """Write a new file beside `target`, then rename it: a kill leaves the old file, none, or the new one.
 
-    `write`: opens a store of that name. `grows`: leave it open; otherwise it is on the disk before it is renamed.
+    `write`: opens a store. `grows`: leave it open; otherwise it is synced first.
     """
     if not replace:
         check_new(target)
@@ -73,7 +73,7 @@ class Store:
         # Valid now or with the next commit.
         self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()
-        # In memory: HDF5 ends the process if writing fails while it closes a file.
+        # HDF5 ends the process if writing fails while it closes a file.
         made = BytesIO(empty(layout, compression))
         with h5py.File(made, "r+", libver=LIBVER) as new:
             set_attributes(new, attributes)
@@ -87,7 +87,7 @@ class Store:
                 os.fsync(file.fileno())
         self._lock = Lock(part)
         try:
-            # HDF5 then writes at once; its default cache, 1 MiB a column, would take 25 MiB.
+            # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
             self._h5 = h5py.File(part, "r+", libver=LIBVER, **({} if compression else {"rdcc_nbytes": 0}))
         except BaseException:
             self._lock.close()
@@ -133,7 +133,7 @@ class Store:
                 _write(slots, slots.shape, (slot, 0), np.frombuffer(written, "u1")[None])
             self._record(after, 0)
             self._flush()
-            # All is written: after an interrupt the next commit continues here.
+            # After an interrupt the next commit continues here.
             self.committed = after
             self._record(after, PLACES)
             for name, count in (("committed_points", after.points), ("committed_paths", after.paths)):

@@ -1,6 +1,6 @@
 """`trace_many`: many paths, one after another or over any executor.
 
-Only this process writes. A lost worker costs one path; if this process is killed, finished paths remain in part files.
+Only this process writes; if it is killed, finished paths remain in part files.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
 Result = Path | Share | BaseException
-"""A homotopy's path, or its exception."""
+"""A path or exception."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
 """Exceptions that cost only their path; Ctrl-C ends the sweep."""
@@ -61,32 +61,29 @@ def trace_many(
 ) -> Sequence[Path]:
     """Trace many homotopies, in order.
 
-    A homotopy that raises, exits, kills its worker, exceeds the timeout or cannot be pickled costs only its own path,
-    which gets the status RAISED and the exception as message. Ctrl-C keeps finished paths and ends within about a
-    second.
+    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled costs only its own path, which
+    becomes RAISED with the exception as message. Ctrl-C keeps finished paths.
 
     Parameters
     ----------
     homotopies : iterable of Homotopy
-        Picklable if the executor needs it. With an archive, those of another number of unknowns than the first become
-        RAISED.
+        With an archive, those of another number of unknowns than the first become RAISED.
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; default: this process.
     archive : path, optional
-        One file for all paths. Finished paths go to ``name.sweep-xxxxxxxx.1.h5`` (one file for each number of
-        unknowns), and are sorted at the end. A kill leaves these parts.
+        One file for all paths. Until all are finished, they are in ``name.sweep-xxxxxxxx.1.h5`` (one file for each
+        number of unknowns); a kill leaves these.
     progress : callable, optional
         ``progress(done, total)``, such as `continuation.step.progress.SweepProgress`.
     timeout : float, optional
-        Seconds for one homotopy in a process pool; then its process is killed. (`Budget.seconds` acts only between
-        steps.)
+        Seconds for each homotopy, enforced in process pools. (`Budget.seconds` acts only between steps.)
     **options
         As for `continuation.trace`, except `start`.
 
     Returns
     -------
     sequence of Path
-        The open `Archive`, to be closed, or a list.
+        The open `Archive`, or a list.
 
     Raises
     ------
@@ -95,7 +92,7 @@ def trace_many(
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
-        After Ctrl-C, when finished paths are in the archive.
+        After Ctrl-C, with finished paths archived.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
     if timeout is not None and not (is_number(timeout) and timeout > 0):
@@ -180,7 +177,7 @@ class _Kept:
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
-        # Its worker made a tracer without harm.
+        # With points, a tracer has been made before without failure.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
@@ -205,7 +202,7 @@ def _spread(
     while futures:
         ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
         if not ended:
-            # Idle workers start the next task, so all running ones have exceeded the timeout.
+            # Idle workers start the next task, so all running ones have timed out.
             _end_processes(executor)
             ended = wait(futures).done
         while ended:

@@ -32,10 +32,9 @@ from continuation.status import Kind, Status
 
 
 def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> File:
-    """Concatenate archives in the given order and renumber their paths.
+    """Concatenate archives and renumber their paths.
 
-    Each path keeps its homotopy and source as columns; settings and problem are the first file's. The new file cannot
-    be resumed.
+    Each path keeps its homotopy and source; settings and problem are the first file's. The result cannot be resumed.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
     ValueError
         If there are no files.
     ArchiveError
-        If a file is no archive, numbers of unknowns differ, two files share a path, or `target` exists.
+        If a file is no archive, numbers of unknowns differ, files share a path, or `target` exists.
     """
     if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
         raise complain(TypeError, "files", "names of archives, in a list", files)
@@ -70,7 +69,7 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
     known: dict[bytes, str] = {}
     for archive, share in zip(archives, shares):
         for k, source in enumerate(share.paths["source"]):
-            # Identifier and number; files may be renamed.
+            # Without the name, since files may be renamed.
             key = b" ".join(source.split(b" ", 2)[:2])
             if key in known:
                 raise ArchiveError(f"{archive.file}: its path {k} is {known[key]} as well; expected each path once")
@@ -86,7 +85,7 @@ def gather(files: Sequence[File], target: File) -> None:
         shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
         head, made = leading(shares), []
         for run, share in zip(runs, shares):
-            # Parts are deleted, so they are no source.
+            # Parts are no source: they are deleted.
             share.paths["source"][:] = b""
             whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
             made.append(_of_size(whole, head.layout.unknowns, target))
@@ -105,10 +104,10 @@ def _of_size(share: Share, unknowns: int, target: File) -> Share:
 
 
 def export(file: str | PathLike[str], target: str | PathLike[str], *, compression: int = 4) -> list[File]:
-    """Write an archive in the format of the suffix of `target`.
+    """Write an archive in another format.
 
-    ``.nc``, ``.nc4``, ``.h5``: netCDF-4. ``.csv``, ``.csv.gz``: ``name.csv`` for points, ``name.paths.csv`` for paths,
-    numbers in full precision.
+    The suffix of `target` decides: ``.nc``, ``.nc4``, ``.h5`` for netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
+    ``name.csv`` (points) and ``name.paths.csv``.
 
     Parameters
     ----------
@@ -119,7 +118,6 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     Returns
     -------
     list of pathlib.Path
-        The files written.
 
     Raises
     ------
@@ -167,16 +165,16 @@ def _write_text(part: File, table: Table, compressed: bool) -> None:
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
-    """Replace the file of a killed writer by a complete copy of its committed rows.
+    """Replace a killed writer's file by a copy of its committed rows.
 
-    An unfinished path becomes INTERRUPTED and can be resumed. Sound, closed files stay as they are. Of a damaged file,
-    each path is kept up to its first damaged row, and the file itself as ``NAME.damaged``.
+    An unfinished path becomes INTERRUPTED and can be resumed. Sound, closed files stay. In a damaged file, each path
+    ends before its first damaged row; the original becomes ``NAME.damaged``.
 
     Parameters
     ----------
     file : path
     force : bool
-        Recover even if its writer seems to be alive; a live writer would continue in the old file.
+        Ignore a live writer, which would continue in the old file.
 
     Returns
     -------
@@ -250,7 +248,7 @@ def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
         paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))
         changes = np.concatenate(([0], np.flatnonzero(np.diff(paths)) + 1, [stop - start])).tolist()
         for first, last in pairwise(changes):
-            # Without its beginning, the end of a path is useless.
+            # The end of a path alone is useless.
             if kinds[first] == Kind.START:
                 yield int(paths[first]), slice(start + first, start + last)
 

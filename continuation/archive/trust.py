@@ -1,7 +1,7 @@
 """From JSON to objects of trusted classes; nothing else that a file names is imported, called or made.
 
-Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`, or
-their return annotations), classes in annotations of their fields, and the caller's `trust`; functions need the latter.
+Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`),
+classes in annotations of their fields, and the caller's `trust`; functions need the latter.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
 def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any) -> Any:
     path = tree["class"]
     expected = (typing.get_origin(option) or option for option in _options(hint))
-    # An annotated class is found by name even after it moved to another module.
+    # The class may have moved to another module.
     named = (c for c in expected if isinstance(c, type) and attrs.has(c) and c.__qualname__ == path.partition(":")[2])
     cls: Any = next(named, None) or known.get(path) or (_registered(path) if known else None)
     if not isinstance(cls, type):
@@ -130,7 +130,7 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     fields = {key: _decode(item, fetch, known, kinds[key], f"{path}: {key} ") for key, item in tree["fields"].items()}
     if not hasattr(cls, "__attrs_init__"):
         return cls(**fields)
-    # Skips the class's own constructor, since the fields are complete.
+    # Skips the constructor: the fields are complete.
     made: Any = object.__new__(cls)
     made.__attrs_init__(**fields)
     return made

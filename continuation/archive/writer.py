@@ -36,7 +36,7 @@ Mark = tuple[State, tuple[int, ...], int]
 
 @frozen
 class Limits:
-    """Buffered rows are committed at so many rows, bytes or seconds since the last commit."""
+    """Rows, bytes or seconds after which buffered rows are committed."""
 
     rows: int = field(default=256, validator=integer(1))
     nbytes: int = field(default=4 << 20, validator=integer(1))
@@ -60,9 +60,8 @@ class OpenPath:
 class PathLog:
     """An observer that writes paths to an HDF5 file.
 
-    By default rows are committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses only later
-    rows. As a context manager, a log holds many paths, one after another; otherwise the end of the first closes the
-    file.
+    Rows are committed at 256 rows, 4 MiB or one second by default, and at the end of a path; a kill loses later rows. A
+    context manager's log holds many paths; otherwise the end of the first closes the file.
 
     Parameters
     ----------
@@ -71,14 +70,13 @@ class PathLog:
     durable : bool
         Wait for the disk at each commit, to survive power cuts.
     tangents : bool
-        Store unit tangents, for paths with dense output; without them a file is half as large. Piecewise homotopies
-        always store tangents and rays.
+        Store unit tangents for dense output, at twice the size; piecewise homotopies always store them.
     title : str
     parameters : mapping, optional
-        Parameters of the homotopies that their attributes lack, for `continuation resume`.
+        Parameters for `continuation resume` that the homotopies' attributes lack.
     limits : Limits
     keep : str
-        Steps that stay in memory: ``"all"``, or the ``"ends"`` with others read on demand.
+        Steps in memory: ``"all"``, or the ``"ends"`` with others read on demand.
     save_every : int
         Write every so many steps, and the first, the last and all events.
 
@@ -165,14 +163,14 @@ class PathLog:
             tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
-            # A resumed trace needs the point's row.
+            # A resumed trace needs the row.
             return
         ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
         for row in rows_at(step, ending[::-1], store.layout):
             self._add(row)
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
-            # The path may yet end at this point, so a trace resumes one point earlier, except at the start.
+            # The path may still end at this point, so a trace resumes one point earlier.
             mark = state, counted(tracer.counts), first + len(rows) - path.first
             path.resume, path.last = path.last or mark, mark
         limits = self._limits
@@ -186,7 +184,7 @@ class PathLog:
         self._add(Row(event, event, LOCATED, event.tangent))
 
     def end(self, tracer: Tracer) -> None:
-        """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
+        """See `continuation.Observer`; commits the path and, without context manager, closes the file."""
         if self._open is not None and (self._closed or (self._store is not None and not self._store.ours)):
             # The disk is full, or this process is a forked child.
             return

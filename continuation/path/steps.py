@@ -26,12 +26,11 @@ class Step:
     Attributes
     ----------
     index : int
-        0 at the start.
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
         Sum of the steps' lengths, each of the circular arc through two points with the angle between their tangents, in
-        the step's metric: the curve's length to fourth order in the angle, so it depends on the steps
-        (`continuation.arclength` measures to 1e-9).
+        the step's metric. It is the curve's length to fourth order in the angle and depends on the steps
+        (`continuation.arclength` is accurate to 1e-9).
     step_length : float
         The predictor's step; 0 at the start.
     residual_norm : float
@@ -47,9 +46,9 @@ class Step:
     segment : Segment or None
         The path from the point before.
     weights : ndarray or None
-        The step's metric.
+        The metric.
     rejected : tuple of Rejected
-        Attempts before, with reasons. Not archived.
+        Attempts before. Not archived.
     observed : mapping
         Extra scalars of the homotopy.
     """
@@ -99,7 +98,7 @@ class LocatedEvent:
     u, tangent : ndarray, shape (N + 1,)
     residual_norm : float
     monitor : float
-        The monitor's value at u.
+        The monitor's value.
     orientation : int
     step : int
         The event lies between steps step - 1 and step.
@@ -108,12 +107,12 @@ class LocatedEvent:
     switches : tuple of int
         At a kink: the vanishing switching functions.
     rays : ndarray, shape (k, N + 1), or None
-        At a kink or simple branch point: outward directions of all branches, of unit length in the metric. The first
+        At a kink or simple branch point: outward directions of all branches, of unit length in the metric; the first
         points back along the path, the second, if any, onward. Archives keep those of kinks.
     weights : ndarray, shape (N + 1,), or None
         The metric; None after reading.
     observed : mapping
-        Extra scalars of the homotopy.
+        Extra scalars.
     """
 
     name: str
