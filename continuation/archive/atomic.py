@@ -33,7 +33,7 @@ class ArchiveError(OSError):
 
 
 class ArchiveExistsError(ArchiveError, FileExistsError):
-    """The file exists already."""
+    """The file exists already; archives are never overwritten."""
 
 
 _ABANDONED = 60.0
@@ -123,7 +123,7 @@ _NAME_BYTES = 255 - len("..xxxxxxxx.part")
 
 
 def exists(file: File) -> ArchiveExistsError:
-    """The error for it."""
+    """The error for an existing file."""
     return ArchiveExistsError(f"{file}: exists already, and is never overwritten; choose another name or remove it")
 
 

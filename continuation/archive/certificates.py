@@ -92,7 +92,7 @@ def _check(columns: dict[str, Any]) -> None:
 
 
 _MOST_SLABS = 64
-"""Our files hold fewer; more take long."""
+"""Our files hold fewer; more would take long to check."""
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:

@@ -47,7 +47,7 @@ class Checkpoint:
 
 
 def major(version: str) -> str:
-    """Versions that share it resume each other's paths: "2" of 2.3.1, "0.2" of 0.2.5."""
+    """The part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
     return first if first != "0" else f"0.{second}"
 

@@ -23,10 +23,10 @@ PLACES = 2
 RECORD_BYTES = 7 * 8 + 4
 _BOUNDS = struct.Struct("<QQ")
 STOP = 2
-"""Words of a block's end."""
+"""Words of a row that hold the end of its block."""
 
 _LARGE = 1 << 16
-"""Bytes from which a matrix is checked by sums of rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40."""
+"""Bytes from which a matrix is checked by sums of its rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
 
 Array = np.ndarray[Any, Any]
 

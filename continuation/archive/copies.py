@@ -43,7 +43,7 @@ class Share:
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
-    """Paths `first` to `last` - 1 of an archive with `points` points (default: all)."""
+    """Paths `first` to `last` - 1 of an archive (default: all) with their first `points` points (default: all)."""
     stop, contents = len(archive) if last is None else last, archive.contents
     about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
     # Time, process and name replace a missing identifier.

@@ -148,11 +148,11 @@ LEAST_BYTES = 1 << 27
 points."""
 
 UNFOLDING = 32
-"""Memory of a larger file over its size. A point of two unknowns takes 120 bytes, its `Step` 1.5 KiB (13 times), twice
-that if compressed; gzip shrinks zeros to a thousandth."""
+"""Memory that a larger file may take, relative to its size. A point of two unknowns takes 120 bytes, its `Step` 1.5 KiB
+(13 times), twice that if compressed; gzip shrinks zeros to a thousandth."""
 
 COLUMN_BYTES = 1 << 14
-"""HDF5's chunk cache of a dataset: tables are read sequentially."""
+"""Bytes of HDF5's chunk cache for a dataset: tables are read sequentially."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
 """Filters of h5py itself; others would load a library."""

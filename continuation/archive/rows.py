@@ -55,7 +55,7 @@ class Row:
 
 
 def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
-    """Rows of a step, which an event at its point shares, of earlier events, and of a kink's switches and rays."""
+    """Rows of a step and its events; an event at the step shares its row, and a kink adds rows of switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None

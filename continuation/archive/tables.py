@@ -40,7 +40,15 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
     @classmethod
     def of(cls, layout: Layout, table: str, columns: Mapping[str, Any]) -> Table:
-        """A table in memory."""
+        """A table in memory.
+
+        Parameters
+        ----------
+        layout : Layout
+        table : str
+            "point" or "path".
+        columns : mapping of str to ndarray
+        """
         return cls(layout, table, len(next(iter(columns.values()))), partial(_part, columns))
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:

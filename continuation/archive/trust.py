@@ -74,7 +74,7 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
     """The value that `continuation.archive.codec.encode` described.
 
     `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
-    may be made. Raises `UnknownError` for other types or classes.
+    may be made. Raises `UnknownError` if a class is not trusted or a value has another type.
     """
     try:
         return _decode(tree, fetch, known or {}, hint, "")

@@ -60,8 +60,8 @@ class OpenPath:
 class PathLog:
     """An observer that writes paths to an HDF5 file.
 
-    Rows are committed at 256 rows, 4 MiB or one second by default, and at the end of a path; a kill loses later rows. A
-    context manager's log holds many paths; otherwise the end of the first closes the file.
+    By default rows are committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses later rows.
+    As a context manager, a log holds many paths; otherwise the end of the first closes the file.
 
     Parameters
     ----------

@@ -77,7 +77,7 @@ class Labels:
         return self.names[i] if i < len(self.names) else ""
 
     def with_unit(self, name: str) -> str:
-        """A name with its known unit in brackets."""
+        """A name, with its unit in brackets if known."""
         return f"{name} [{self.units[name]}]" if name in self.units else name
 
     def index(self, name: str) -> int:

@@ -213,7 +213,7 @@ class Path:
         return self._of(turned_round(self.steps, self.events))
 
     def join(self, other: Path) -> Path:
-        """Append a path that begins here.
+        """Append a path that begins at this one's end.
 
         Parameters
         ----------
@@ -259,7 +259,7 @@ class Path:
         return (plot_bifurcation if "value" in options else plot_components)(self, axes, **options)
 
     def to_xarray(self) -> Any:
-        """Points and events, as `Archive.to_xarray`."""
+        """Points and events as an `xarray.Dataset`, as `Archive.to_xarray`."""
         from continuation.archive import growing
 
         return growing.dataset_of(self)
@@ -271,7 +271,7 @@ class Path:
         return growing.dataframe_of(self)
 
     def save(self, file: str | PathLike[str], title: str = "") -> None:
-        """Write the path to a new archive; only ``trace(archive=...)`` can be resumed.
+        """Write the path to a new archive; `resume` needs one of ``trace(archive=...)``.
 
         Parameters
         ----------

@@ -20,7 +20,8 @@ SOLVE_ERROR = 1e-8
 """Largest relative residual of a bordered solve: half of the digits."""
 
 DERIVATIVE_ERROR = 1e-6
-"""Relative error of a derivative, coefficient or step that difference quotients reach and wrong formulas miss."""
+"""Largest relative error of a derivative, coefficient or step: difference quotients satisfy it, wrong formulas do
+not."""
 
 CANCELLED_ENTRY = 1e-10
 """Error of an entry that cancels, relative to the largest entry."""

@@ -42,14 +42,14 @@ def _double(x: Any, n: int) -> bool:
 
 
 def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """At the start, and later."""
+    """Weights at the start and later."""
     v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
 
 
 def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """There, and at the start."""
+    """Observed scalars there and at the start."""
     y, lam = homotopy.start()
     return homotopy.observe(place.y, place.lam), homotopy.observe(np.array(y, dtype=float), float(lam))
 
