@@ -1,12 +1,7 @@
-"""The path archive: HDF5 files written safely while paths are traced, resumed exactly, and read by anybody.
+"""The path archive: HDF5 files written during a trace, which `resume` continues exactly.
 
-The idea: an archive is two tables, of points and of paths, that grow by checked blocks. A block is what one commit
-writes: rows, a checksum of each column, a checkpoint; then a record that the block is whole (`store`, `checks`).
-A reader takes whole blocks and compares them (`contents`). All else is "read whole blocks, append them elsewhere"
-(`copies.Share`): merging, export and recovery (`transfer`), resuming, diagrams and the paths of a sweep.
-
-The schema is `continuation-path-2` (`continuation.archive.schema`): h5py, xarray (engines h5netcdf and netCDF4) and
-every netCDF-4 tool read it without this package.
+An archive holds a table of points and one of paths. Each commit appends a checked block of rows and a checkpoint. Every
+netCDF-4 tool (h5py, xarray) reads these files.
 """
 
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError

@@ -1,9 +1,6 @@
-"""Files and who may write them: errors in one line, names that appear whole, locks that die with their owner.
+"""Files and locks.
 
-A file is written beside its name, brought to the disk, then named.
-
-What is written beside is called ``.NAME.xxxxxxxx.part``; a kill may leave it, and the next writer of
-that name removes it.
+New data is synced as ``.NAME.xxxxxxxx.part``, then renamed. The next writer removes parts that a kill left.
 """
 
 from __future__ import annotations
@@ -26,9 +23,9 @@ from continuation.arguments.checks import complain
 
 
 class ArchiveError(OSError):
-    """A file that cannot be read, written or resumed; the message is one line that names the file and the reason.
+    """A file that cannot be read, written or resumed; the message is one line.
 
-    What the file itself says is in it, so that what cannot be printed, as a terminal's control codes, is a "?".
+    Unprintable characters become "?", since a file may supply the text.
     """
 
     def __init__(self, message: str) -> None:
@@ -36,20 +33,16 @@ class ArchiveError(OSError):
 
 
 class ArchiveExistsError(ArchiveError, FileExistsError):
-    """The file to be written exists already; an archive is never overwritten."""
+    """The file exists already; archives are never overwritten."""
 
 
 _ABANDONED = 60.0
-"""Seconds after which a part that nobody holds a lock on is litter: it is locked right after it is made."""
+"""Seconds after which an unlocked part is removed; writers lock theirs at once."""
 
 
 @contextmanager
 def beside(target: File) -> Iterator[File]:
-    """A new name beside `target`, to be written and then published; what is left under it in the end is removed.
-
-    Raises `ArchiveError` for whatever the operating system says while it is written.
-    """
-    # What killed writers of the same name left was never anything but a copy.
+    """A new name beside `target`; a part left in the end is removed."""
     for left in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
         with suppress(OSError):
             if time.time() - left.stat().st_mtime > _ABANDONED and not is_held(left):
@@ -58,7 +51,6 @@ def beside(target: File) -> Iterator[File]:
     try:
         yield part
     except ArchiveError as error:
-        # The name that people know.
         raise type(error)(str(error).replace(str(part), str(target))) from error
     except (OSError, RuntimeError) as error:
         raise ArchiveError(f"{target}: could not be written ({short(error)})") from error
@@ -68,10 +60,9 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name in the same directory, in one step.
+    """Give a complete file its name in one step; `replace` keeps the old file's mode and, if allowed, owner.
 
-    `replace`: It takes the place of an old file, whose mode it gets, and whose owner where that is allowed. Raises
-    `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
+    Raises `ArchiveExistsError` if the name is taken.
     """
     if replace and target.exists():
         status = target.stat()
@@ -85,10 +76,9 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
     except OSError as error:
         if replace or error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
             raise
-        # A file system without links: the name is taken first, so that nobody else can.
+        # Without hard links, this reserves the name.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         os.replace(part, target)
-    # The names too come to the disk, where the file system can do it.
     with suppress(OSError):
         descriptor = os.open(target.parent, os.O_RDONLY)
         try:
@@ -98,24 +88,21 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
 
 
 def as_file(argument: str, value: Any) -> File:
-    """The path that an argument is; `TypeError` if it is no name of a file."""
+    """The path; `TypeError` otherwise."""
     if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
         raise complain(TypeError, argument, "the name of a file", value)
     return File(value)
 
 
 def new_file(argument: str, value: Any) -> File:
-    """The path that an argument is, of a file that can be made; see `as_file`, `check_new`."""
+    """The path of a file that can be made."""
     file = as_file(argument, value)
     check_new(file)
     return file
 
 
 def check_new(file: File) -> None:
-    """Whether a file can be made there, asked before any work is done.
-
-    Raises `ArchiveError` if it exists, or its directory does not, or may not be written.
-    """
+    """Raise `ArchiveError` unless the file can be made."""
     if "\0" in str(file):
         raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
@@ -132,16 +119,16 @@ def check_new(file: File) -> None:
 
 
 _NAME_BYTES = 255 - len("..xxxxxxxx.part")
-"""Linux' limit, less what the name of a part adds."""
+"""Linux's limit less the part's additions."""
 
 
 def exists(file: File) -> ArchiveExistsError:
-    """The error for a file that is there already."""
+    """The error for an existing file."""
     return ArchiveExistsError(f"{file}: exists already, and is never overwritten; choose another name or remove it")
 
 
 def short(error: BaseException) -> str:
-    """The reason of an error, with the operating system's own words where HDF5 has buried them."""
+    """The error's reason, as the operating system gives it."""
     text = " ".join(str(error).split())
     found = re.search(r"errno = \d+, error message = '([^']*)'", text)
     if found:
@@ -149,17 +136,15 @@ def short(error: BaseException) -> str:
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
 
 
-# Locks of an open file description (Linux): flock is taken by HDF5 for its own ends, and the locks of POSIX, which
-# serve elsewhere, are lost when any descriptor of the file is closed by the process, as by one who reads it.
+# Open file description locks (Linux): HDF5 uses flock; a POSIX lock ends when the process closes any descriptor.
 _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
 
 class Lock:
-    """A lock on a file, held until `close`, or until the process is gone; `taken` is False where somebody else has it.
+    """A lock on a file until `close` or the process ends; `taken` is False if another process holds it.
 
-    Where the file system knows no locks it counts as taken. Raises `ArchiveError` if the file cannot be opened for
-    writing.
+    File systems without locks grant it. Raises `ArchiveError` if the file is not writable.
     """
 
     def __init__(self, file: File) -> None:
@@ -177,14 +162,14 @@ class Lock:
             self.taken = error.errno not in _TAKEN
 
     def close(self) -> None:
-        """Give it back; a second call does nothing."""
+        """Release it."""
         if self.descriptor >= 0:
             os.close(self.descriptor)
             self.descriptor = -1
 
 
 def is_held(file: File) -> bool:
-    """Whether some process writes the file; False also where that cannot be asked."""
+    """Whether a process is known to write the file."""
     try:
         lock = Lock(file)
     except ArchiveError:
@@ -194,12 +179,11 @@ def is_held(file: File) -> bool:
 
 
 def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """The right to replace a file (no link to it); by force also if its writer seems to be at work.
+    """The right to replace a file, read as `descriptor` and last written by process `writer`.
 
-    `descriptor` is of the file as it was read, `writer` the number of the process that wrote it last. Raises
-    `ArchiveError` if it may not be written, is being written, or was replaced since it was opened.
+    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """
-    # The mode too, since root may write everything: who took the right away meant it.
+    # The mode too: root may write everything.
     if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
     if not os.access(file.parent, os.W_OK):
@@ -210,7 +194,6 @@ def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Loc
     elif file.exists() and all(
         os.path.samestat(os.fstat(lock.descriptor), s) for s in (file.stat(), os.fstat(descriptor))
     ):
-        # The name, the file that was read and the file that is locked are one.
         return lock
     lock.close()
     raise ArchiveError(f"{file}: {said}")

@@ -1,8 +1,4 @@
-"""Proofs of paths in the group `/certificate`: what was found, so that it can be checked again without a trace.
-
-A file is a data source here as elsewhere: charts, radii and nodes are read as numbers, checked against their checksums
-and shapes, and prove nothing until every condition has been tested again (`recheck`).
-"""
+"""Proofs of paths, in the group `/certificate`: untrusted numbers until `recheck` has tested every condition."""
 
 from __future__ import annotations
 
@@ -32,20 +28,20 @@ GROUP = "certificate"
 
 
 def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
-    """Put a proof into a closed archive, in place of one that is there.
+    """Store or replace a proof in a closed archive.
 
     Parameters
     ----------
     file : path
-        It is copied, and the copy put in its place.
+        Replaced by a copy.
     proof : Proof
     path : int
-        Number of the path that it proves; the last one by default.
+        Number of the proved path.
 
     Raises
     ------
     ArchiveError
-        If the file cannot be read or replaced, or has no such path.
+        If the file cannot be read or replaced, or lacks that path.
     """
     name = File(os.path.realpath(as_file("file", file)))
     with (
@@ -69,7 +65,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:
-    """The cells of a stored proof; None where the path has none; `ArchiveError` if they are not what was written."""
+    """The cells of a stored proof, or None."""
     try:
         root = archive.contents.root
         if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
@@ -84,8 +80,7 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 
 
 def _check(columns: dict[str, Any]) -> None:
-    """Whether the columns are those of a proof: numbers that are finite, of shapes that fit."""
-    # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).
+    # Cells may be wider than the path (`continuation.certificate.lifting`).
     count, width = columns["begin"].shape
     for name in NAMES:
         shape = (count,) if name == "slabs" else (count, 2 if name == "place" else width)
@@ -97,29 +92,29 @@ def _check(columns: dict[str, Any]) -> None:
 
 
 _MOST_SLABS = 64
-"""More is in no file of ours, and would take long to check."""
+"""Our files hold fewer; more would take long to check."""
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:
-    """Check the proofs of an archive again, every condition, without tracing.
+    """Check every condition of an archive's proofs again.
 
     Parameters
     ----------
     file : path
     homotopy : Homotopy, optional
-        Needed where the file cannot say how to make it.
+        Needed if the file cannot rebuild it.
     trust : sequence of class or function
-        What may be made, as for `resume`.
+        As for `resume`.
 
     Returns
     -------
     list of Proof
-        One a path; a path without a certificate has a gap from its first point to its last.
+        One for each path; without a certificate, a gap.
 
     Raises
     ------
     ArchiveError
-        If the file cannot be read, its certificate is damaged, or its homotopy cannot be made.
+        If the file cannot be read, a certificate is damaged, or the homotopy cannot be made.
     """
     with open_archive(file) as source:
         if homotopy is None:

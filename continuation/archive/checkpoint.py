@@ -1,4 +1,4 @@
-"""The stepper's state as one block of bytes: what a resumed trace starts from."""
+"""The stepper's state as bytes, to resume from."""
 
 from __future__ import annotations
 
@@ -22,20 +22,19 @@ from continuation.step.tracer import Tracer
 from continuation.version import __version__
 
 HEAD = struct.Struct("<QQI")
-"""Sequence, length of the body, CRC-32 of the body."""
+"""Sequence, length and CRC-32 of the body."""
 
 OPTIONS = tuple(attrs.fields_dict(Settings))
-"""What determines a path, and is kept: all of them options of `continuation.Tracer`, completed."""
+"""The options of `continuation.Tracer` that determine a path."""
 
 _INLINE_BYTES = 1 << 16
 
 
 @frozen(eq=False)
 class Checkpoint:
-    """A point from which a path continues exactly.
+    """A point from which a path continues exactly, after `rows` rows.
 
-    `sequence` grows with each checkpoint written; `rows` of the path come before the state; `counts` and `seconds` are
-    what it has cost so far; `run` describes options, homotopy and index in a sweep.
+    `counts`, `seconds`: work so far. `run`: options, homotopy, index in a sweep.
     """
 
     sequence: int
@@ -48,17 +47,17 @@ class Checkpoint:
 
 
 def major(version: str) -> str:
-    """What two versions have in common that can resume each other's paths: "2" of 2.3.1, "0.2" of 0.2.5."""
+    """The part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
     return first if first != "0" else f"0.{second}"
 
 
 def _fetched(raw: bytes) -> Callable[[Any], Any]:
-    """From an array's place to the array: one object for each number, so that what was identical is so again."""
+    """Arrays by number, each one object."""
     made: list[np.ndarray[Any, Any]] = []
 
     def fetch(place: Any) -> Any:
-        # Arrays were numbered in the order in which the description names them first.
+        # Numbers follow the description's order.
         if place["number"] == len(made):
             offset = sum(array.nbytes for array in made)
             made.append(numbers(raw[offset:], place["dtype"], place["shape"]).copy())
@@ -68,10 +67,7 @@ def _fetched(raw: bytes) -> Callable[[Any], Any]:
 
 
 def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
-    """The first bytes as an array of numbers, not copied: never larger than they are.
-
-    Raises `ValueError` if it is to hold something else than numbers, or more than the bytes do.
-    """
+    """The first bytes as an array; `ValueError` if it is not numeric or longer."""
     kind = np.dtype(dtype)
     count = math.prod(shape)
     if kind.kind not in "fiubc" or min(shape, default=0) < 0 or count * kind.itemsize > len(raw):
@@ -80,14 +76,14 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
 
 
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Options and homotopy of a tracer as JSON; what cannot be stored is said in its place, under "unstorable".
+    """Options and homotopy as JSON, or the reasons why they are "unstorable".
 
-    `member` is the index in a sweep; `homotopy` describes one whose arrays are in the file's own problem group.
+    `homotopy`: its description if the problem group holds it.
     """
     values = {name: getattr(tracer.settings, name) for name in OPTIONS}
     own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
     if own:
-        # Without the homotopy's own events, which a new tracer adds again in the same order.
+        # A new tracer adds the homotopy's events again.
         first = 0 if own[0] in watched[:1] else 1
         values["events"] = watched[first + len(own) :]
     options = {name: _described(value) for name, value in values.items()}
@@ -95,7 +91,6 @@ def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any]
 
 
 def _described(value: Any) -> Any:
-    """Arrays in the JSON itself: options are small, and a homotopy with large ones belongs to the problem group."""
     try:
         return encode(value, _whole)
     except UnstorableError as error:
@@ -111,15 +106,12 @@ def _whole(name: str, array: Any) -> Any:
 
 
 def whole(place: Any) -> Any:
-    """The array again."""
+    """The array, from JSON."""
     return numbers(bytes.fromhex(place["hex"]), place["dtype"], place["shape"], place["order"]).copy("K")
 
 
 def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
-    """Head (sequence, length, CRC-32), JSON, a line end, the description of the run, a line end, the arrays.
-
-    `run` is the JSON of ``checkpoint.run``, if it is at hand: it does not change along a path.
-    """
+    """Head, JSON, run, arrays; `run` is JSON of ``checkpoint.run``, if already made."""
     arrays: dict[int, np.ndarray[Any, Any]] = {}
 
     def place(name: str, array: Any) -> Any:
@@ -142,15 +134,14 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
 
 
 def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in its slot of a new file, which is not the one that the next is written to."""
+    """The checkpoint in its slot of a new file."""
     return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint; None where the bytes are not a whole one, or one of another major version of the library.
+    """The checkpoint; None if it is missing, torn or of another major version.
 
-    It was never written, or torn by a kill: then the points are as good as ever, only resuming is over. The state is
-    read as numbers; nothing that the bytes name is made.
+    Nothing that the bytes name is created.
     """
     try:
         sequence, length, crc = HEAD.unpack_from(raw)
@@ -159,7 +150,7 @@ def unpack(raw: bytes) -> Checkpoint | None:
             return None
         head, described, arrays = body.split(b"\n", 2)
         tree, run = json.loads(head), dict(json.loads(described))
-        # Versions were not told apart before the second.
+        # Version 0.1 wrote no version.
         if major(str(tree.get("version", "0.1.0"))) != major(__version__):
             return None
         state = decode(tree["state"], _fetched(arrays), hint=State)
@@ -172,7 +163,6 @@ def unpack(raw: bytes) -> Checkpoint | None:
 
 
 def _consistent(state: State) -> bool:
-    """Whether all vectors of the state are float64 and of one length."""
     knots = (*state.history, state.origin)
     vectors = [state.weights, *state.anchor, state.origin_weights, *(v for k in knots for v in (k.u, k.tangent))]
     return bool(state.history) and all(v.dtype == float and v.shape == (vectors[0].size,) for v in vectors)

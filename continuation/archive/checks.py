@@ -1,11 +1,9 @@
-"""Checksums: of each block of rows, column by column, and of the records that say how much was committed.
+"""Checksums of blocks of rows, and the records of commits.
 
-A block is what one commit wrote. Its checksums stand in ``/checks``, one row a block: where the block ends, then one
-number a column in the order of their names. What a reader takes from the file, it compares.
+A block is one commit's rows. Its row in ``/checks`` holds its end and one checksum for each column, sorted by name.
 
-A commit has two records. The *intent* is written with the rows, the *commit* after all that is on its way to the disk;
-each has two places that are used in turn. A process killed anywhere tears one record at most, and then the other three
-tell what it said: so a damaged record is never taken for an unfinished one.
+A commit writes two records, *intent* and *commit*, each alternating between two places. A kill tears at most one; the
+other three determine it.
 """
 
 from __future__ import annotations
@@ -28,18 +26,18 @@ STOP = 2
 """Words of a row that hold the end of its block."""
 
 _LARGE = 1 << 16
-"""Bytes from which a matrix is checked by the sums of its rows and columns: a CRC-32 makes 2.7 GB/s here, sums 40."""
+"""Bytes from which a matrix is checked by sums of its rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
 
 Array = np.ndarray[Any, Any]
 
 
 class DamageError(ValueError):
-    """What was read is not what was written; the message says which rows of which column, and which are sound."""
+    """Data that differ from those written."""
 
 
 @frozen
 class Committed:
-    """How much of a file is valid: a commit's number; rows, blocks, event names and the last checkpoint up to it."""
+    """The valid part of a file: counts and sequence numbers."""
 
     sequence: int = 0
     points: int = 0
@@ -50,24 +48,24 @@ class Committed:
     checkpoint: int = 0
 
     def pack(self) -> Array:
-        """As bytes, with a CRC-32."""
+        """Bytes, with a CRC-32."""
         body = np.array(astuple(self), "<u8").tobytes()
         return np.frombuffer(body + struct.pack("<I", zlib.crc32(body)), "u1")
 
 
 def blank() -> Array:
-    """The records of a new file, shape (4, bytes): intents, then commits, each valid and older than the first."""
+    """The records of a new file, shape (4, bytes): intents, then commits."""
     return np.array([Committed(sequence=k % PLACES).pack() for k in range(2 * PLACES)])
 
 
 def latest(records: Array) -> Committed:
-    """The last commit that was completed; `DamageError` if the records do not tell."""
+    """The last complete commit."""
     sound = [zlib.crc32(raw[:-4]) == int.from_bytes(raw[-4:].tobytes(), "little") for raw in records]
     found = [Committed(*np.frombuffer(raw[:-4], "<u8").tolist()) if ok else None for raw, ok in zip(records, sound)]
     commits = [one for one in found[PLACES:] if one is not None]
     last = max(commits, key=lambda one: one.sequence, default=None)
     if last is not None and len(commits) < PLACES:
-        # The other is torn or damaged: the intent tells whether a later commit had come so far as to write there.
+        # The intent shows whether a later commit had begun.
         intent = found[(last.sequence + 1) % PLACES]
         last = None if intent is None else max(last, intent, key=lambda one: one.sequence)
     if last is None:
@@ -76,7 +74,7 @@ def latest(records: Array) -> Committed:
 
 
 def digest(values: Any, seed: int = 0) -> int:
-    """32 bits that differ for any damage that is likely: CRC-32, of large matrices that of their sums."""
+    """CRC-32, for large matrices of row and column sums."""
     whole: Any = np.ascontiguousarray(values)
     if whole.ndim == 2 and whole.nbytes >= _LARGE and whole.itemsize == 8:
         words = whole.view("u8")
@@ -85,7 +83,7 @@ def digest(values: Any, seed: int = 0) -> int:
 
 
 def seal(block: Mapping[str, Array], start: int) -> Array:
-    """The row of checksums of a block that begins at row `start`."""
+    """The checksum row of a block from row `start`."""
     stop = start + len(next(iter(block.values())))
     seed = zlib.crc32(_BOUNDS.pack(start, stop))
     sums = [digest(block[name], seed) for name in sorted(block)]
@@ -93,10 +91,9 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
 
 
 class Ledger:
-    """The checksums of one table of `size` rows, as read from a file: what `seal` returned, one row a block.
+    """The checksums of a table of `size` rows, one row (`seal`) for each block.
 
-    Without a size the blocks are those up to the first that cannot be one, as in a file that is cut off. Raises
-    `DamageError` if the blocks are not those of so many rows.
+    For `size` None (file cut off), blocks end at the first invalid one.
     """
 
     def __init__(self, rows: Array, columns: Sequence[str], size: int | None) -> None:
@@ -111,10 +108,7 @@ class Ledger:
         self._sums, self._place = rows[:, STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
-        """Rows of a column, checked; `fetch` reads them, in whole blocks.
-
-        Raises `DamageError` if some of their blocks are not what was written.
-        """
+        """Rows of a column, checked; `fetch` reads whole blocks."""
         if rows.stop <= rows.start:
             return fetch(rows)
         first, last = (int(k) for k in np.searchsorted(self.bounds, (rows.start + 1, rows.stop)))

@@ -1,7 +1,4 @@
-"""Objects as JSON: attrs classes by class path and fields, arrays put where the caller wants them.
-
-The way back, which makes only what is trusted, is `continuation.archive.trust`.
-"""
+"""Objects as JSON: attrs classes by class path and fields; `trust` is the inverse."""
 
 from __future__ import annotations
 
@@ -25,15 +22,12 @@ GROUP = "problem"
 
 
 def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
-    """The homotopy's description as JSON, and its arrays by name.
-
-    One that cannot be stored is described by the reason, under "unstorable".
-    """
+    """JSON and arrays of the homotopy, or the reason why it is "unstorable"."""
     arrays: dict[str, Any] = {}
     names: dict[int, str] = {}
 
     def place(name: str, array: Any) -> str:
-        # What occurs twice, as the matrix of a problem that two parts refer to, is stored once.
+        # An array that occurs twice is stored once.
         if id(array) not in names:
             names[id(array)] = name if name not in arrays else f"{name}_{len(arrays)}"
             arrays[names[id(array)]] = array
@@ -47,7 +41,7 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
 
 
 def set_attributes(thing: Any, attributes: Mapping[str, Any]) -> None:
-    """New attributes of a group or dataset, texts of any length; h5py's own way costs several times as much."""
+    """Create attributes; h5py's own way takes several times longer."""
     kind, one = h5t.py_create(h5py.string_dtype(), logical=True), h5s.create(h5s.SCALAR)
     for name, value in attributes.items():
         if isinstance(value, str):
@@ -57,21 +51,21 @@ def set_attributes(thing: Any, attributes: Mapping[str, Any]) -> None:
 
 
 def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
-    """Put them into a new file."""
+    """Write the problem group."""
     group = file.create_group(GROUP)
     set_attributes(group, {"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
     write_arrays(group, arrays)
 
 
 def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
-    """Arrays in a group, each with a checksum of its own."""
+    """Write arrays with checksums."""
     for name, array in arrays.items():
         stored = group.create_dataset(name, data=array)
         set_attributes(stored, {"order": order(array), "checksum": np.uint32(digest(array))})
 
 
 def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, Any]:
-    """The arrays of a group again; `DamageError` if they were changed."""
+    """The arrays, checked."""
     arrays = {}
     for name in group:
         found = dataset(group, name, None, None, allowance)
@@ -83,7 +77,7 @@ def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, An
 
 
 def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
-    """The same two things, from a file; no description where it has none; `ValueError` where they were changed."""
+    """Description and arrays, checked."""
     if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
     description = str(group.attrs["description"])
@@ -93,14 +87,14 @@ def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, 
 
 
 Place = Callable[[str, Any], Any]
-"""(name, array) -> the JSON that stands for the array."""
+"""(name, array) -> JSON in place of the array."""
 
 
 @runtime_checkable
 class SupportsArchive(Protocol):
-    """A homotopy that says itself what an archive must hold of it; without it attrs fields are stored, if it has them.
+    """A homotopy that chooses its stored data; otherwise attrs fields are stored.
 
-    The classmethod ``from_archive(data)`` takes the same mapping and returns an equal homotopy.
+    ``from_archive(data)`` returns an equal homotopy.
     """
 
     def archive_data(self) -> dict[str, Any]:
@@ -109,25 +103,22 @@ class SupportsArchive(Protocol):
 
     @classmethod
     def from_archive(cls, data: Mapping[str, Any]) -> Any:
-        """The homotopy again.
+        """Rebuild the homotopy.
 
         Parameters
         ----------
         data : mapping of str to object
-            What `archive_data` returned, as the file gives it back.
+            As `archive_data` returned it.
         """
         ...
 
 
 class UnstorableError(TypeError):
-    """An object that cannot be written as class path and fields; the message says which and why."""
+    """An object that JSON cannot describe."""
 
 
 def path_of(thing: Any) -> str:
-    """``module:name`` of a class or function that can be imported under that name.
-
-    Raises `UnstorableError` for one that is local to a function, made by lambda, or defined in a script.
-    """
+    """``module:name`` of an importable class or function."""
     module, name = str(getattr(thing, "__module__", None)), str(getattr(thing, "__qualname__", repr(thing)))
     found: Any = sys.modules.get(module)
     for part in name.split("."):
@@ -139,10 +130,10 @@ def path_of(thing: Any) -> str:
 
 
 def encode(value: Any, place: Place, name: str = "value") -> Any:
-    """JSON for a value; see the module's first line.
+    """JSON for a value; `place` stores arrays.
 
-    Raises `UnstorableError` if some part of it is neither number, text, container, array, attrs class, importable
-    function nor `SupportsArchive`.
+    Raises `UnstorableError` unless all parts are numbers, texts, containers, arrays, attrs classes, importable
+    functions or `SupportsArchive`.
     """
     value = value.item() if isinstance(value, np.generic) else value
     match value:
@@ -174,19 +165,19 @@ def _encode_object(value: Any, place: Place, name: str) -> Any:
     if attrs.has(cls):
         fields = {a.alias: encode(getattr(value, a.name), place, a.alias) for a in attrs.fields(cls) if a.init}
         return {"class": path, "fields": fields}
-    # A plain class without any state of its own; one of C's, which hides its state, has no __dict__ at all.
+    # Extension classes may hide state, but have no __dict__.
     if getattr(value, "__dict__", None) == {} and not any(getattr(c, "__slots__", ()) for c in cls.__mro__):
         return {"class": path, "fields": {}}
     raise UnstorableError(f"{path} has neither archive_data nor attrs fields")
 
 
 def order(array: Any) -> str:
-    """How a matrix lies in memory: "F" or "C". BLAS sums in another order for the one than for the other."""
+    """Memory order, "F" or "C", which decides BLAS's round-off."""
     return "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
 
 
 def inline(name: str, array: Any) -> Any:
-    """Place an array in the JSON itself: small ones with their values, to be read by people, large ones by shape."""
+    """A small array as JSON with values, a large one as its shape."""
     if array.size <= 64 and array.dtype.kind != "c":
         return {"dtype": array.dtype.str, "values": array.tolist()}
     return {"dtype": array.dtype.str, "shape": list(array.shape)}

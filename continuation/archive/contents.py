@@ -1,4 +1,4 @@
-"""What a file holds, taken from it piece by piece and checked: the one place where an archive is read from HDF5."""
+"""The open file, read piece by piece and checked."""
 
 from __future__ import annotations
 
@@ -50,27 +50,23 @@ Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
 FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
-"""What h5py raises for a file that is not what it should be."""
+"""Exceptions that h5py raises for a damaged file."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
-"""Seconds for which a file that is being written may seem to be damaged, since its writer is in the middle of
-something, and between two looks at it."""
+"""Seconds during which a live writer's file may seem damaged, and between retries."""
 
 TABLES = ("point", "path")
 
 
 class Contents:
-    """An open file.
+    """An open file; any fault raises `ArchiveError`.
 
-    `limit`: Bytes that all which is read may take, as `Allowance` has it. `salvage`: Whether to go on where the end of
-    the file is missing, or its attributes, names or problem are not what was written: rows are checked all the same.
-    `checked`: Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed
-    over. `cut_off`: Committed rows of each table whose checksums are missing. Raises `ArchiveError` for anything wrong
-    with it, here and in the methods.
+    `limit`: bytes of memory (`Allowance`). `salvage`: accept damage outside rows. `checked`: the file has checksums.
+    `flaws`: accepted damage. `cut_off`: committed rows without checksums, by table.
     """
 
     root: Any = None
-    """The root of the file, for groups that only some files have."""
+    """The root group."""
     closed_by_writer = True
     _image: Image | None = None
 
@@ -90,7 +86,7 @@ class Contents:
         self.root = self._image = None
 
     def _guarded(self, read: Callable[[], _T]) -> _T:
-        """What `read` returns; a file that is being written is given time to be read right."""
+        """The result of `read`, retried under a live writer."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -104,7 +100,7 @@ class Contents:
             time.sleep(_PAUSE)
 
     def damaged(self, error: BaseException) -> ArchiveError:
-        """The error for a file that cannot be read."""
+        """The error for an unreadable file."""
         if self._image is not None and self._image.failure:
             return ArchiveError(f"{self.file}: could not be read ({self._image.failure})")
         if isinstance(error, ArchiveError):
@@ -115,10 +111,7 @@ class Contents:
         return ArchiveError(f"{self.file}: truncated or damaged, {short(error)}{hint}")
 
     def _or_else(self, what: str, read: Callable[[], _T], lost: _T) -> _T:
-        """What `read` returns, or what stands for it where it is to be salvaged and cannot be read.
-
-        A disk that fails is not the file's fault, and may read it soon.
-        """
+        """The result of `read`, or `lost` if salvaging and the disk works."""
         try:
             return read()
         except FAULTS as error:
@@ -132,8 +125,6 @@ class Contents:
             raise DamageError(text)
         self.flaws.append(text)
 
-    # -- structure --------------------------------------------------------------------------------------------
-
     def _open(self) -> None:
         self._image = image = Image(self.file)
         self.closed_by_writer, self.size, self.descriptor = image.closed_by_writer, image.length, image.descriptor
@@ -141,7 +132,7 @@ class Contents:
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
         self.root = file = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
-        # Single things first: where these are damaged that is an error, and HDF5 1.14 ends the process that lists all.
+        # Single names first: if they are damaged, HDF5 1.14 ends a process that lists all.
         attributes = {name: file.attrs.get(name) for name in ("schema", "library_version")}
         _ = [name in file for name in ("committed_points", "committed_paths", GROUP)]
         present = set(file)
@@ -159,7 +150,6 @@ class Contents:
         self.attributes: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(file.attrs), {})
         if self.checked and of_attributes(self.attributes) != int(subgroup(file, GROUP).attrs["attributes"]):
             self._flaw("its attributes are not what was written")
-            # So that they can be written again, whatever happened to their text.
             plain = {
                 k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in self.attributes.items()
             }
@@ -170,7 +160,7 @@ class Contents:
         if self.checked:
             kind, shape = np.dtype("u1"), (2 * PLACES, RECORD_BYTES)
             return latest(dataset(subgroup(self.root, GROUP), RECORDS, kind, shape, self.allowance)[()])
-        # Paths first: their rows are counted after the points they need, so this order sees no path without its points.
+        # Paths first: their rows are counted after their points.
         paths, points = (
             int(dataset(self.root, f"committed_{name}", np.dtype("i8"), (), self.allowance)[()])
             for name in ("paths", "points")
@@ -180,7 +170,7 @@ class Contents:
         return Committed(points=points, paths=paths)
 
     def _read_ledger(self, table: str) -> int:
-        """The checksums of a table; how many of its rows they cover, which is all but where the file is cut off."""
+        """Read a table's checksums; return how many rows they cover."""
         columns, rows = list(self._columns[table]), getattr(self.committed, f"{table}s")
         blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
         sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
@@ -191,7 +181,7 @@ class Contents:
         return ledger.rows
 
     def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
-        """The first rows of a dataset; of a file that is cut off those chunks that HDF5 can still find."""
+        """The first rows of a dataset, as far as HDF5 finds its chunks."""
         found = dataset(group, name, kind, shape, self.allowance, count)
         step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
         parts: list[Array | None] = [np.empty((0, *found.shape[1:]), found.dtype)]
@@ -201,7 +191,7 @@ class Contents:
         return np.concatenate([part for part in parts if part is not None])
 
     def _read_names(self) -> tuple[str, ...]:
-        # Raw bytes: h5netcdf, netCDF4 and h5py each decode text in their own way, HDF5 only stores it.
+        # Raw bytes, since h5netcdf, netCDF4 and h5py decode text differently.
         count = self.committed.names if self.checked else self.root[EVENT_NAME.name].shape[0]
         raw = self._leading(self.root, EVENT_NAME.name, EVENT_NAME.storage, (None,), count).astype(EVENT_NAME.storage)
         if self.checked:
@@ -211,14 +201,12 @@ class Contents:
         named = [name.decode(errors="replace") for name in raw]
         return (*named, *(f"event {k}, whose name is lost" for k in range(len(named), count)))
 
-    # -- tables -----------------------------------------------------------------------------------------------
-
     def table(self, name: str) -> Table:
-        """The committed rows of the table ``"point"`` or ``"path"``, read when asked for, and checked."""
+        """The committed rows of ``"point"`` or ``"path"``."""
         return Table(self.layout, name, getattr(self.committed, f"{name}s"), partial(self.read, name))
 
     def read(self, table: str, name: str, rows: slice) -> Array:
-        """Committed rows of a column of the table ``"point"`` or ``"path"``, checked."""
+        """Committed rows of a column, checked."""
         return self._guarded(lambda: self._read(table, name, rows))
 
     def _read(self, table: str, name: str, rows: slice) -> Array:
@@ -228,7 +216,6 @@ class Contents:
     def _fetch(self, column: Column, rows: slice) -> Array:
         if column.name not in self._datasets:
             shape = (None, *self.layout.width(column))
-            # Its rows are counted with the table's.
             found = dataset(self.root, column.name, column.storage, shape, self.allowance, 0)
             self._datasets[column.name] = found.astype(column.storage) if column.length else found
         found = self._datasets[column.name]
@@ -238,7 +225,7 @@ class Contents:
         return values
 
     def unsound(self, table: str) -> list[tuple[int, int]]:
-        """The blocks of rows of which some column is not what was written, or cannot be read at all."""
+        """Blocks of rows with a damaged or unreadable column."""
         blocks = list(pairwise(self._ledgers[table].bounds.tolist())) if self.checked else []
 
         def is_sound(start: int, stop: int) -> bool:
@@ -249,10 +236,8 @@ class Contents:
         doubtful = [some for some in several if not is_sound(some[0][0], some[-1][1])]
         return [block for some in doubtful for block in some if not is_sound(*block)]
 
-    # -- for resuming -----------------------------------------------------------------------------------------
-
     def slots(self) -> list[bytes]:
-        """The two checkpoints, as far as they are there; each says itself whether it is whole."""
+        """The stored checkpoints, perhaps torn."""
 
         def read() -> list[bytes]:
             found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
@@ -261,7 +246,7 @@ class Contents:
         return self._guarded(read) if RESUME in set(self.root) else []
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """The first homotopy's description (JSON), and its arrays."""
+        """The problem group."""
 
         def read() -> tuple[str, Mapping[str, Any]]:
             group = subgroup(self.root, PROBLEM) if PROBLEM in set(self.root) else None
@@ -272,7 +257,7 @@ class Contents:
 
 
 _BLOCKS = 64
-"""That are looked at together where most are sound: of 4 MiB at most each, and of 256 rows mostly."""
+"""Blocks (at most 4 MiB each) checked together, since most are sound."""
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:

@@ -1,8 +1,4 @@
-"""Paths as columns, read from a file or held in memory, and appended elsewhere.
-
-A `Share` is some paths with their points; `append` adds one to a file that grows, `write_copy` makes a new file of
-several. Recovery, resuming, merging, export, diagrams and the parts of a sweep are shares and one of the two.
-"""
+"""Paths as columns (`Share`), appended to a growing file or copied to a new one."""
 
 from __future__ import annotations
 
@@ -28,9 +24,8 @@ from continuation.path import Path
 class Share:
     """Some paths and their points.
 
-    `paths`: Rows of the path table, by column. `points`: A point table, of which `rows` are theirs; of the last path it
-    may be the first ones only. `names`: What `event_index` counts. `first`: The number that the first path has in
-    `path_index`. `origin`: The open file, where it is of one.
+    `paths`: rows of the path table. `points`, `rows`: a point table and their rows in it. `names`: event names.
+    `first`: first number in `path_index`. `origin`: the open file.
     """
 
     layout: Layout
@@ -48,13 +43,10 @@ class Share:
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
-    """Paths of an archive from number `first` to before `last`, or all, and their points, or so many from the first on.
-
-    Each path has its homotopy and its source: those of the file, where its row does not say.
-    """
+    """Paths `first` to `last` - 1 of an archive (default: all) with their first `points` points (default: all)."""
     stop, contents = len(archive) if last is None else last, archive.contents
     about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
-    # Of files without an identifier the time, the process and the name must do.
+    # Time, process and name replace a missing identifier.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
     end = begin + points if points is not None else archive.rows(stop - 1).stop if stop > first else 0
     paths = {name: values.copy() for name, values in archive.paths.block(slice(first, stop)).items()}
@@ -65,7 +57,7 @@ def share_of(archive: Archive, first: int = 0, last: int | None = None, points: 
 def share_of_path(
     path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
 ) -> Share:
-    """A finished path as a share; with the switches and rays of kinks if `pieces`."""
+    """A finished path; `pieces` adds switches and rays of kinks."""
     first = path.steps[0] if path.steps else None
     tangents = first is not None and bool(np.isfinite(first.tangent).all())
     unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
@@ -79,10 +71,7 @@ def share_of_path(
 
 
 def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
-    """The share, of which each path says what it is of, and in which file it was first, where it does not say so yet.
-
-    `first`: The number of the first path there.
-    """
+    """The share with missing homotopies and sources filled in."""
     count, begin = len(share.paths["path"]), share.first if first is None else first
     said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
     paths = dict(share.paths)
@@ -94,14 +83,14 @@ def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first:
 
 
 def leading(shares: Sequence[Share]) -> Contents:
-    """The archive of the first point: its settings and problem stand for all; one of failures alone has none."""
+    """The archive of the first point."""
     found = next((share for share in shares if share.size), shares[0]).origin
     assert found is not None
     return found
 
 
 def append(store: Store, share: Share) -> None:
-    """Add a share that is in memory to a file, in one commit."""
+    """Append a share in one commit."""
     number = store.committed.paths
     store.commit(_numbered(share, store, share.rows, number) if share.size else None, _rows(share, store, number))
 
@@ -115,10 +104,9 @@ def write_copy(
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
-    """Concatenate shares of open files into a new one, which is still open.
+    """Concatenate shares of open files into a new file, which stays open.
 
-    Its attributes are those of the archive of the first point, of which `what` is said in the history, and `more`.
-    Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
+    It keeps the attributes of the first point's archive; `what` extends the history.
     """
     head = leading(shares)
     for share in shares:
@@ -127,7 +115,6 @@ def write_copy(
                 f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
                 f"{head.layout.unknowns}; one file holds one number"
             )
-    # A column that only some have is missing elsewhere.
     layouts = [share.layout for share in shares]
     width, names = max(layout.controller for layout in layouts), ORIGINS.union(*(layout.more for layout in layouts))
     about = {**head.attributes, **process(), **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
@@ -145,7 +132,7 @@ def write_copy(
 
 
 def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
-    """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
+    """The points in blocks of similar size."""
     waiting: list[Block] = []
     held = path = 0
     for share in shares:
@@ -167,26 +154,25 @@ def _joined(blocks: Sequence[Block]) -> Block:
 
 
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
-    """Points as a block of the store's columns, with its numbers of events, the share's first path being `path`."""
+    """Points in the store's numbering, paths from `path`."""
     numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
     block = share.points.block(rows)
     block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
     events = block["event_index"]
     if share.origin and (np.any(events >= len(share.names)) or np.any(events < -1)):
         raise share.origin.damaged(ValueError("its points refer to events that it does not name"))
-    # The number -1, no event, finds the last entry.
+    # Index -1 (no event) selects the last entry, -1.
     block["event_index"] = numbers[events]
     return filled(block, store.layout, "point", rows.stop - rows.start)
 
 
 def _rows(share: Share, store: Store, path: int) -> Block:
-    """The share's rows of the path table, numbered from `path` on."""
     count = len(share.paths["path"])
     return filled({**share.paths, "path": np.arange(path, path + count)}, store.layout, "path", count)
 
 
 def filled(block: Mapping[str, Any], layout: Layout, table: str, rows: int) -> Block:
-    """The block in the columns of the layout; what it lacks is missing (NaN)."""
+    """All columns of the layout, filled with `Column.missing`."""
     whole = {}
     for column in layout.columns(table):
         values, shape = block.get(column.name), (rows, *layout.width(column))

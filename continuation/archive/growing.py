@@ -1,4 +1,4 @@
-"""Finished paths as the tables of an archive: for xarray, for pandas, for a file that they are added to."""
+"""Finished paths as tables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,6 @@ from continuation.path import Path
 
 
 def _attributes(path: Path, title: str = "A path") -> dict[str, Any]:
-    """The root attributes of a file that begins with a path."""
     about = root_attributes(None, title, {})
     return {**about, **path.labels.attributes(), "references": "\n\n".join(path.references)}
 
@@ -39,7 +38,7 @@ def dataset_of(path: Path) -> Any:
 
 
 def dataframe_of(path: Path) -> Any:
-    """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names."""
+    """The path as a `pandas.DataFrame` with names."""
     share = share_of_path(path)
     frame = dataframe(share.points)
     frame["event"] = [share.names[k] if k >= 0 else "" for k in share.points["event_index"]]
@@ -50,18 +49,14 @@ def dataframe_of(path: Path) -> Any:
 
 
 def _add(store: Store, share: Share, file: File) -> int:
-    """Add a path to its file, and its number there."""
+    """Append a path; its number in the file."""
     number = store.committed.paths
     append(store, sourced(share, store.identifier, file.name, first=number))
     return number
 
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
-    """Write paths of one homotopy to a new archive.
-
-    `many`: At least one; all of one number of unknowns, with the same scalars observed. Raises `ArchiveError` if it
-    exists, or cannot be written.
-    """
+    """Write paths of one homotopy, with equal observed scalars, to a new archive."""
     target = new_file("file", file)
     pieces = any(event.switches for path in many for event in path.events)
     shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
@@ -77,10 +72,9 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
 
 @define(eq=False)
 class Growing:
-    """An archive of finished paths: a kill loses none that was added. As a context manager it is closed at the end.
+    """An archive of finished paths, safe from kills.
 
-    With `pieces` kinks are kept with their switches and rays. What of a path stays in memory is `keep`: "all" steps,
-    or the "ends".
+    `pieces`: store switches and rays of kinks. `keep`: steps in memory, "all" or "ends".
     """
 
     file: File
@@ -90,10 +84,7 @@ class Growing:
     _store: Store | None = None
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
-        """The paths of the file, if there is one, each whole and as it is kept; the file goes on from then on.
-
-        It goes on as a copy that takes its place when all paths have been read, in one go.
-        """
+        """The paths of an existing file, whole and as kept; then a growing copy replaces it."""
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
@@ -105,13 +96,13 @@ class Growing:
                 last = source[-1].endpoint
                 check_homotopy(homotopy, last.u, last.residual_norm)
             for number, path in enumerate(source):
-                # A point that was read is part of an array, which would stay in memory with it.
+                # A view would keep the whole array in memory.
                 yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
             copy = partial(write_copy, [share_of(source)], what="went on")
             self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:
-        """One more path, which comes back as it is kept; the first makes the file."""
+        """Append a path, in a new file if necessary, and return it as kept."""
         share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
         if self._store is None:
             about = _attributes(path, self.title)

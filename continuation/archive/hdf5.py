@@ -1,9 +1,6 @@
-"""HDF5 files that may come from anybody, as HDF5 is shown them, and what is taken out of them.
+"""Untrusted HDF5 files: a file driver (`Image`), and datasets of checked type, storage and size.
 
-An `Image` is the file as its writer would have closed it: HDF5 itself waits without end for a checksum that a file
-under SWMR does not have, and for a FIFO. A `dataset` is of the type expected, stored in the file itself, and as large
-as it says: external, soft and user-defined links, virtual and external storage, and filters not ours are refused.
-What is taken out of one file is counted by one `Allowance`. HDF5 2.0 checks the rest of a file's structure itself.
+HDF5 itself hangs at FIFOs and at checksums that SWMR omits. Links, external storage and foreign filters are refused.
 """
 
 from __future__ import annotations
@@ -23,25 +20,23 @@ from h5py import h5d, h5l, h5o, h5z
 from continuation.archive.atomic import ArchiveError, short
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
-# The superblock, versions 2 and 3: byte 8 is the version, byte 11 says whether and how a writer has the file open
-# (version 3), at byte 28 there is the length that the file is to have, at byte 44 a checksum of what is before.
+# Superblock 2 and 3: version at byte 8, a writer's flags at 11 (version 3), length at 28, checksum at 44.
 _VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
 _WORD = 0xFFFFFFFF
 _HEAP = b"GCOL"
 
 
 class Image:
-    """A file opened for reading, as it would be if its writer had closed it.
+    """A file opened for reading, as if its writer had closed it.
 
-    `missing` bytes, which the file should have at its end and has not, read as zeros. `failure` is what the disk said
-    when it could not be read. Raises `ArchiveError` if it is no regular file, may not be read, or is not HDF5 as far as
-    its first bytes tell.
+    `missing`: bytes cut off, read as zeros. `failure`: the disk's error. Raises `ArchiveError` unless it is a readable
+    HDF5 file.
     """
 
     def __init__(self, file: File) -> None:
         self.descriptor, self.at, self.failure, self.closed_by_writer, self.missing = -1, 0, "", True, 0
         try:
-            # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
+            # Without O_NONBLOCK a FIFO would block.
             self.descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
             status = os.fstat(self.descriptor)
             if not stat.S_ISREG(status.st_mode):
@@ -57,7 +52,7 @@ class Image:
             raise ArchiveError(f"{file}: {said}") from None
 
     def _closed(self, head: bytes) -> bytes:
-        """The head that the file would have if its writer had closed it."""
+        """The head as its writer would have closed it."""
         if not head.startswith(SIGNATURE):
             said = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
             raise StructureError(said)
@@ -73,19 +68,17 @@ class Image:
         closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
         return closed + struct.pack("<I", lookup3(closed))
 
-    # -- what h5py asks for -----------------------------------------------------------------------------------
-
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Move; the end is where it should be."""
+        """Move to a byte."""
         self.at = offset + (0, self.at, self.length)[whence]
         return self.at
 
     def tell(self) -> int:
-        """Where it is."""
+        """The current byte."""
         return self.at
 
     def read(self, size: int) -> bytes:
-        """So many bytes; h5py knows a file by this method, and uses `readinto`."""
+        """Read bytes; h5py requires this method, but uses `readinto`."""
         buffer = bytearray(size)
         self.readinto(buffer)
         return bytes(buffer)
@@ -97,7 +90,7 @@ class Image:
             while done < len(view) and (count := os.preadv(self.descriptor, [view[done:]], self.at + done)):
                 done += count
         except OSError as error:
-            # Its text: a traceback that is kept would keep a buffer of HDF5's.
+            # A kept traceback would keep HDF5's buffer.
             self.failure = short(error)
             raise
         view[done:] = bytes(len(view) - done)
@@ -109,27 +102,24 @@ class Image:
         return len(view)
 
     def close(self) -> None:
-        """Give the file back."""
+        """Close the file."""
         if self.descriptor >= 0:
             os.close(self.descriptor)
         self.descriptor = -1
 
 
 def stated_length(head: bytes) -> int:
-    """The bytes that a file is to have, as its superblock says."""
+    """The file's length according to its superblock."""
     return int(struct.unpack_from("<Q", head, _LENGTH)[0])
 
 
 def _check_heap(heap: memoryview) -> None:
-    """Whether the objects of a global heap, which has no checksum, fill it: in one of zeros HDF5 loops without end.
-
-    Raises `OSError` if they do not.
-    """
+    """Raise `OSError` unless the objects fill the global heap: HDF5 loops forever in a heap of zeros."""
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16
     while size <= len(heap) and size - at >= 16:
         index, length = struct.unpack_from("<H6xQ", heap, at)
-        # The object number 0 is the space that is free, its own head included.
+        # Object 0 is free space with its head.
         at += length if not index else 16 + (length + 7) // 8 * 8
         if at > size or (not index and at != size):
             raise OSError("a heap of texts is not sound")
@@ -142,7 +132,7 @@ def lookup3(head: bytes) -> int:
     for k in (0, 3, 6, 9):
         a, b, c = (a + words[k]) & _WORD, (b + words[k + 1]) & _WORD, (c + words[k + 2]) & _WORD
         for shift in (4, 6, 8, 16, 19, 4) if k < 9 else ():
-            # The three change places with each round, and are in their own again after six.
+            # a, b, c rotate, and return after six rounds.
             a, b, c = b, (c + b) & _WORD, ((a - c) & _WORD) ^ _turned(c, shift)
     for shift in (14, 11, 25, 16, 4, 14, 24):
         a, b, c = b, ((c ^ b) - _turned(b, shift)) & _WORD, a
@@ -154,32 +144,32 @@ def _turned(x: int, k: int) -> int:
 
 
 LEAST_BYTES = 1 << 27
-"""Bytes of memory that any file may ask for. Copying takes three times as much, with numpy and scipy 500 MB in all;
-with half as many a compressed path of 50,000 points is refused."""
+"""Bytes that any file may take. Copying takes three times as much; half of it would refuse a compressed path of 50,000
+points."""
 
 UNFOLDING = 32
-"""Times its own size that a larger file may ask for. Stored as it is, a point of two unknowns has 120 bytes or more,
-and as a `Step` 1.5 KiB: 13 times as many, and twice that where it is compressed. Of zeros gzip makes a thousandth."""
+"""Memory that a larger file may take, relative to its size. A point of two unknowns takes 120 bytes, its `Step` 1.5 KiB
+(13 times), twice that if compressed; gzip shrinks zeros to a thousandth."""
 
 COLUMN_BYTES = 1 << 14
-"""Bytes of chunks that HDF5 keeps of each open dataset, so what one costs: tables are read from end to end."""
+"""Bytes of HDF5's chunk cache for a dataset: tables are read sequentially."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
-"""Those that h5py brings itself; any other would be a library that is loaded to read the file."""
+"""Filters of h5py itself; others would load a library."""
 
 
 class StructureError(ValueError):
-    """Something that is in no archive; the message says what."""
+    """Something that no archive contains."""
 
 
 class LimitError(StructureError):
-    """A file that asks for more memory than it may; the message says how to let it."""
+    """A file that needs more memory than its limit."""
 
 
 class Allowance:
-    """The bytes of memory that all which is read from one file may take, in arrays and in Python's objects.
+    """The bytes of memory that one file may take.
 
-    `limit`: By default `LEAST_BYTES`, or `UNFOLDING` times the file of `size` bytes.
+    `limit`: default `UNFOLDING` times `size`, at least `LEAST_BYTES`.
     """
 
     def __init__(self, size: int, limit: int | None = None) -> None:
@@ -188,10 +178,7 @@ class Allowance:
         self._total = 0
 
     def take(self, what: str, claimed: int) -> None:
-        """Count what is to be read; the same thing again counts once, at its latest size.
-
-        Raises `LimitError` if all together is more than the limit.
-        """
+        """Count memory, a repeated item once."""
         total = self._total - self._taken.get(what, 0) + claimed
         if total > self.limit:
             raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
@@ -199,17 +186,17 @@ class Allowance:
 
 
 def member(group: Any, name: str) -> Any:
-    """A group or dataset in a group, by a hard link; `StructureError` if there is none."""
+    """A group or dataset behind a hard link."""
     raw = name.encode()
     if not group.id.links.exists(raw) or group.id.links.get_info(raw).type != h5l.TYPE_HARD:
         raise StructureError(f"it has no {name}, or a link to somewhere else")
-    # As `group[name]`, which makes a new object of the whole file each time.
+    # `group[name]` would reopen the file.
     found = h5o.open(group.id, raw)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
 def subgroup(group: Any, name: str) -> Any:
-    """A group in a group; `StructureError` if it is anything else."""
+    """A group in a group."""
     found = member(group, name)
     if not isinstance(found, h5py.Group):
         raise StructureError(f"{name} is no group")
@@ -224,10 +211,9 @@ def dataset(
     allowance: Allowance,
     rows: int | None = None,
 ) -> Any:
-    """A dataset in a group, its storage checked, and what is to be read of it counted: all, or its first `rows`.
+    """A dataset of checked type, shape and storage; `rows` rows (default: all) count in the allowance.
 
-    Without a `kind` it holds any numbers; a length of None may be any. Raises `StructureError` if it is something else,
-    has fewer rows, or claims more than what is left of the allowance.
+    `kind` None admits any numbers, a length None any length.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
@@ -248,7 +234,7 @@ def dataset(
     for what, wrong in refused.items():
         if wrong:
             raise StructureError(f"{name} {what}")
-    # A chunk is unfolded whole, and each of two filters makes a copy of it.
+    # HDF5 unpacks whole chunks; two filters copy each.
     if 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
         raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
     read = lengths if rows is None else (rows, *lengths[1:])

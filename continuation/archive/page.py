@@ -1,4 +1,4 @@
-"""The page that `continuation inspect` shows: what ran, when, with what, how it ended, its events and its work."""
+"""The page that `continuation inspect` prints."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from continuation.status import Status
 
 UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED, _LISTED, _SHOWN, _WIDTH, _LINES = 3, 12, 4, 92, 5
-"""Paths with a section of their own at most; events or paths listed; components shown; columns and lines of a text."""
+"""Limits: paths with a section, listed events or paths, components, columns, lines."""
 _SOFTWARE = {
     "continuation": "library", "Python": "python", "numpy": "numpy", "scipy": "scipy", "h5py": "h5py", "HDF5": "hdf5",
 }  # fmt: skip
@@ -27,7 +27,7 @@ _SETTINGS = ("predictor", "corrector", "controller", "metric", "tolerance", "bud
 
 
 def describe(archive: Archive) -> str:
-    """The page: one section a path where there are few, an overview where there are many.
+    """The page.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def describe(archive: Archive) -> str:
     TypeError
         For anything else.
     ArchiveError
-        If what the file says of itself makes no sense.
+        If the file is damaged.
     """
     if not isinstance(archive, Archive):
         raise complain(TypeError, "archive", "an open Archive, as open_archive(file) returns", archive)
@@ -50,7 +50,7 @@ def describe(archive: Archive) -> str:
         raise
     except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
         raise archive.contents.damaged(error) from error
-    # A title of somebody else's is no way to the terminal's control codes.
+    # A foreign title must not send control codes to the terminal.
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
 
 
@@ -75,7 +75,6 @@ def _head(archive: Archive) -> str:
 
 
 def _shown(tree: Any) -> str:
-    """A stored description as Python would print it."""
     if not isinstance(tree, dict):
         return f"{tree:g}" if isinstance(tree, float) else str(tree)
     if "class" in tree:
@@ -120,7 +119,6 @@ def _many_paths(archive: Archive) -> str:
     for number, name in enumerate(archive.event_names):
         at = paths[archive.points["event_index"] == number]
         lines.append(f"  {at.size:>8}  {name}, on {np.unique(at).size} of the paths")
-    # Paths that ended by an error, with its text.
     messages, members = archive.paths["message"], archive.paths["member"]
     unfinished = np.flatnonzero(np.isin(statuses, [int(status) for status in UNFINISHED]))
     lines += ["", _titled("Not finished", "-")] if unfinished.size else []
@@ -132,7 +130,6 @@ def _many_paths(archive: Archive) -> str:
 
 
 def _hint(archive: Archive) -> str:
-    """The next move, where there is one."""
     if not archive.closed_by_writer:
         return "Its writer is still at work, or was killed: then `continuation recover` makes the file whole."
     last, checkpoint = len(archive) - 1, archive.checkpoint()
@@ -152,7 +149,6 @@ def _titled(text: str, line: str) -> str:
 
 
 def _wrapped(name: str, text: str) -> str:
-    """The text after its name, in lines of the page's width; a matrix that would fill the page is cut."""
     indent = " " * (2 + len(name))
     return textwrap.fill(
         text, _WIDTH, initial_indent=f"  {name}", subsequent_indent=indent, max_lines=_LINES, placeholder=" ...",

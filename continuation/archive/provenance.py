@@ -1,4 +1,4 @@
-"""Where an archive comes from: the root attributes that say what ran, with what, and when."""
+"""Root attributes of an archive: what ran, when, with which software."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def now() -> str:
-    """The time in UTC, ISO 8601."""
+    """UTC time, ISO 8601."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
-    """The attribute `history` of CF, one line longer."""
+    """CF's `history` with a new line."""
     line = f"{now()} {what} (continuation {__version__})"
     return {"history": "\n".join(filter(None, (attributes.get("history", ""), line)))}
 
 
 @lru_cache
 def software() -> dict[str, str]:
-    """Versions of everything below us. BLAS decides the last bits, so it is named with its threads."""
+    """Versions; BLAS and its threads decide the last bits."""
     blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
     given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
     return {
@@ -64,37 +64,33 @@ def software() -> dict[str, str]:
 
 @lru_cache
 def _distribution(path: str) -> str:
-    """Distribution and version that a class belongs to; empty for a script."""
+    """Distribution and version of a class; empty for a script."""
     point, top = _entry_point(path), path.partition(":")[0].partition(".")[0]
     if point is not None and point.dist is not None:
         return f"{point.dist.name} {point.dist.version}"
     with suppress(metadata.PackageNotFoundError):
         return f"{top} {metadata.version(top)}"
-    # This looks through all that is installed, for an eighth of a second.
+    # This search takes an eighth of a second.
     return next((f"{name} {metadata.version(name)}" for name in metadata.packages_distributions().get(top, ())), "")
 
 
 @lru_cache
 def _entry_point(path: str) -> metadata.EntryPoint | None:
-    """The entry point that registers a class as a homotopy; None where it is not."""
     return next((point for point in metadata.entry_points(group=ENTRY_POINTS) if point.value == path), None)
 
 
 def process() -> dict[str, Any]:
-    """The process that writes: time, number, host and software."""
+    """The writing process."""
     return {"created": now(), "process": np.int64(os.getpid()), **software()}
 
 
 def class_path(thing: Any) -> str:
-    """``module:class`` of an object, for people."""
+    """``module:class`` of an object."""
     return f"{type(thing).__module__}:{type(thing).__qualname__}"
 
 
 def parameters(homotopy: Any) -> dict[str, Any]:
-    """What a homotopy was made with, as its class says: fields of attrs or a dataclass, else its own attributes.
-
-    Private names, which begin with an underscore, are left out.
-    """
+    """The homotopy's parameters: public fields or attributes."""
     cls = type(homotopy)
     if attrs.has(cls):
         names = [a.name for a in attrs.fields(cls)]
@@ -109,7 +105,7 @@ def parameters(homotopy: Any) -> dict[str, Any]:
 
 
 def scalars(homotopy: Any) -> dict[str, float]:
-    """The homotopy's numeric parameters (None reads NaN)."""
+    """Numeric parameters; None becomes NaN."""
     return {
         name: np.nan if value is None else float(value)
         for name, value in parameters(homotopy).items()
@@ -118,19 +114,18 @@ def scalars(homotopy: Any) -> dict[str, float]:
 
 
 def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out."""
+    """The archive's parameters except large arrays."""
     found = {}
     with suppress(ValueError, AttributeError):
         tree = json.loads(str(attributes.get("parameters", "{}")))
         for name, value in tree.get("dict", tree).items():
             with suppress(UnknownError):
-                # An array of which the file has the shape alone raises as one that makes no sense.
                 found[str(name)] = decode(value, lambda place: np.array(place["values"], dtype=place["dtype"]))
     return found
 
 
 def readable(value: Any) -> Any:
-    """A description for people: what cannot be stored is shown as text."""
+    """JSON, or the repr if there is none."""
     try:
         return encode(value, inline)
     except UnstorableError:
@@ -138,9 +133,9 @@ def readable(value: Any) -> Any:
 
 
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
-    """The attributes of a new archive; without a tracer (no path ever began) those of the library alone.
+    """The attributes of a new archive.
 
-    `made_with` holds parameters of the homotopy, where its attributes do not say them.
+    `made_with`: parameters that the homotopy's attributes lack.
     """
     attributes: dict[str, Any] = {
         "Conventions": "CF-1.11",

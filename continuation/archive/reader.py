@@ -1,6 +1,4 @@
-"""`open_archive`: an archive as tables and as paths, read when asked for; and steps of a path that stay in the file, so
-that a long path needs no memory.
-"""
+"""`open_archive`: an archive as tables and paths, read on demand."""
 
 from __future__ import annotations
 
@@ -31,33 +29,32 @@ from continuation.status import Status
 _T = TypeVar("_T")
 
 _STEP_BYTES, _COPIES = 1400, 6
-"""Of a step that is made of a row: its own and its segment's objects, and copies of its point and tangent."""
+"""Bytes of a step's objects, and copies of its vectors."""
 
 
 class Archive(Sequence[Path]):
     """An archive open for reading: a sequence of paths, and two tables. Use it in a ``with`` statement.
 
-    Only what was committed is seen, so a file may be read while it grows. A path without an end (still growing, or
-    left by a kill) comes last, with the status TRACING.
+    It shows committed rows; the file may still grow. An unfinished path comes last, with the status TRACING.
 
     Attributes
     ----------
     file : pathlib.Path
     attributes : dict
-        Where the file comes from.
+        Origin of the file.
     points, paths : Table
         Columns by name: ``archive.points["arclength"]``.
     event_names : tuple of str
-        What ``event_index`` counts.
+        Names that ``event_index`` numbers.
     closed_by_writer : bool
-        False for a file that is growing, or was left by a kill: `recover` makes it whole.
+        False if the file is growing or its writer was killed.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
         self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
-        # As they are now: the file may be read anew while it grows.
+        # A snapshot; the growing file may be opened anew.
         self.points, self.paths = contents.table("point"), contents.table("path")
         try:
             lengths = self.paths["n_points"]
@@ -74,8 +71,6 @@ class Archive(Sequence[Path]):
             self.close()
             raise
 
-    # -- the sequence -----------------------------------------------------------------------------------------
-
     def __len__(self) -> int:
         return len(self._first_rows) - 1
 
@@ -91,25 +86,23 @@ class Archive(Sequence[Path]):
         return self.path(index)
 
     def path(self, index: int, *, keep: str = "all") -> Path:
-        """One path, as it was traced: status, message, steps, events, counts.
+        """One path as it was traced.
 
-        With ``keep="ends"`` its steps are read from the file when they are asked for, also after the archive is closed.
-
-        Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
+        Without stored tangents, they are NaN and `Path.__call__` interpolates linearly.
 
         Parameters
         ----------
         index : int
-            0 is the first; from the end where it is negative.
+            May be negative.
         keep : str
-            "all" steps in memory, or its "ends".
+            "all" steps in memory, or the "ends", with others read on demand.
 
         Raises
         ------
         IndexError
             If there is no such path.
         ValueError
-            For another `keep` than ``"all"`` or ``"ends"``.
+            For another `keep`.
         """
         whole = kept_whole(keep)
         if not isinstance(index, Integral):
@@ -119,7 +112,6 @@ class Archive(Sequence[Path]):
         return self._sensible(partial(self._path, int(index) % len(self), whole))
 
     def _sensible(self, read: Callable[[], _T]) -> _T:
-        """What `read` makes of the file; `ArchiveError` if it cannot."""
         try:
             return read()
         except (ValueError, LookupError) as error:
@@ -157,49 +149,47 @@ class Archive(Sequence[Path]):
         return archive_page(self)
 
     def rows(self, index: int) -> slice:
-        """Where the path's rows are in the point table.
+        """The path's rows in the point table.
 
         Parameters
         ----------
         index : int
-            Of the path, at least 0.
         """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
     def status(self, index: int) -> Status:
-        """How a path ended.
+        """The path's status.
 
         Parameters
         ----------
         index : int
-            0 is the first.
 
         Raises
         ------
         ArchiveError
-            If the file says something that is no status.
+            If the stored number is no status.
         """
         return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:
-        """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
+        """The committed rows as an `xarray.Dataset`, equal to ``xarray.open_dataset(file)``."""
         return dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
-        """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
+        """The points as a `pandas.DataFrame`, with unknowns ``y_0``, ``y_1``, ..."""
         return dataframe(self.points)
 
     def checkpoint(self) -> Checkpoint | None:
-        """The latest point from which the last path can be resumed; None where there is none."""
+        """The latest point to resume the last path from, or None."""
         valid = []
         for found in filter(None, map(unpack, self.contents.slots())):
-            # The rows before it are all committed: it is written before the counters are.
+            # A checkpoint precedes the commit of its rows.
             rows = self.rows(found.path) if found.path < len(self) else slice(0, 0)
             valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """The first homotopy's description (JSON), and its arrays."""
+        """The first homotopy's description (JSON) and arrays."""
         return self.contents.problem()
 
     def close(self) -> None:
@@ -214,13 +204,11 @@ class Archive(Sequence[Path]):
     ) -> None:
         self.close()
 
-    # -- within -----------------------------------------------------------------------------------------------
-
     def _unended(self, rows: int) -> dict[str, Any]:
-        """The row of the path that has none, as far as its checkpoint tells."""
+        """A row for the unfinished path, from its checkpoint."""
         number = self.paths.size
         member = int(self.paths["member"][-1]) + 1 if number else 0
-        # An older checkpoint than the last is good to resume from, and tells the work of then.
+        # Counts of an older checkpoint are out of date.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         row |= {"path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
@@ -234,36 +222,32 @@ class Archive(Sequence[Path]):
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
-    """Open an archive for reading; also one that is still growing, or was left by a kill.
+    """Open an archive for reading, even while it grows or after a kill.
 
-    Nothing in the file is executed, imported or obeyed. Every block of rows is checked when it is read.
+    Nothing in the file is executed; each block of rows is checked.
 
     Parameters
     ----------
     file : path
     limit : int, optional
-        Bytes of memory that all which is read may take, Python's objects included. By default 128 MiB, or 32 times as
-        many as the file has.
+        Bytes of memory, including Python objects. Default: 32 times the file's size, at least 128 MiB.
 
     Raises
     ------
     ArchiveError
-        One line for a file that is missing, unreadable, not HDF5, foreign, truncated, damaged, or of a newer schema.
+        If the file is missing, unreadable, foreign, truncated, damaged or of a newer schema.
     """
     return Archive(file, limit=limit)
 
 
-# -- steps that stay in the file -------------------------------------------------------------------------------
-
 _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
-"""What of a step is a column of the file. A tangent may be in memory alone."""
+"""Step fields that every file holds."""
 
 
 class StoredSteps(Sequence[Step]):
-    """The steps of a path as a sequence: the first and the last ones in memory, the others read from the file.
+    """The steps of a path: ends (and uncommitted steps) in memory, others in the file.
 
-    While the path is traced, `append` adds to it, and what is not yet committed is in memory: all of `steps` at first.
-    A step that is read has the segment to the step before only if the archive holds tangents.
+    Segments need stored tangents.
     """
 
     def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
@@ -272,13 +256,13 @@ class StoredSteps(Sequence[Step]):
         self._last, self._count = (held, len(held)) if count is None else (held[-1:], count)
 
     def append(self, step: Step) -> None:
-        """The next step."""
+        """Add the next step."""
         self._first = self._first or step
         self._last.append(step)
         self._count += 1
 
     def committed(self) -> None:
-        """The file holds all of it: only the last step is still held, and the first."""
+        """Keep only the ends in memory, since the file holds all."""
         self._last = self._last[-1:]
 
     def __len__(self) -> int:
@@ -303,12 +287,12 @@ class StoredSteps(Sequence[Step]):
         return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
 
     def column(self, name: str) -> Any:
-        """One number or vector of all steps, as an array: ``u``, ``tangent`` or ``arclength``."""
+        """``u``, ``tangent`` or ``arclength`` of all steps, as an array."""
         fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
         if not fields or not begin:
             return np.array([getattr(step, name) for step in self])
         with open_archive(self._file) as archive:
-            # To make steps of them takes 14 times as long.
+            # Making steps takes 14 times as long.
             rows = archive.rows(self._path)
             steps = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[:begin]
             found = [archive.points.some(field, rows)[steps] for field in fields]
@@ -318,7 +302,7 @@ class StoredSteps(Sequence[Step]):
     def _between(self, start: int, stop: int) -> Iterator[Step]:
         begin = self._count - len(self._last)
         while start < min(stop, begin):
-            # One row more, for the segment from the step before.
+            # One more row, for the segment.
             before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
             with open_archive(self._file) as archive:
                 steps, _ = _window(archive, self._path, before, end)
@@ -328,7 +312,7 @@ class StoredSteps(Sequence[Step]):
 
 
 def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
-    """Some steps of a path, and the events from the first of them on to before the one after them."""
+    """Steps `start` to `stop` - 1, and their events."""
     rows = archive.rows(path)
     accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
     begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))
@@ -337,13 +321,12 @@ def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[St
 
 
 def _stored(archive: Archive, path: int) -> tuple[StoredSteps, list[LocatedEvent]]:
-    """The steps of a path, of which only the ends are in memory, and its events."""
     rows = archive.rows(path)
     accepted, numbers = archive.points.some("role", rows) == ACCEPTED, archive.points.some("event_index", rows)
     count = int(np.count_nonzero(accepted))
-    # A kink and its parts stay together: their rows come after the step's.
+    # A kink's rows follow its step's.
     eventful = np.unique((np.cumsum(accepted) - 1)[numbers >= 0] // ROWS_AT_ONCE).tolist() if count else []
     events = [event for k in eventful for event in _window(archive, path, k * ROWS_AT_ONCE, (k + 1) * ROWS_AT_ONCE)[1]]
-    # The last with the one before, for the segment from there.
+    # With the step before, for the segment.
     last = _window(archive, path, max(count - 2, 0), count)[0][-1:] if count else []
     return StoredSteps(archive.file, path, _window(archive, path, 0, min(count - 1, 1))[0] + last, count), events

@@ -1,4 +1,4 @@
-"""`resume`: go on with a path that was interrupted, as if it never had been."""
+"""`resume`: continue an interrupted path exactly."""
 
 from __future__ import annotations
 
@@ -54,40 +54,37 @@ def resume(
     keep: str = "all",
     **options: Unpack[Options],
 ) -> Path:
-    """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
+    """Continue the last path of an archive; later points are bit for bit those of an uninterrupted trace.
 
-    The file is first copied up to the point to resume from, and the copy put in its place, so a kill at any moment
-    leaves a file to resume. The last stored point is computed again. Seconds of a budget count from now on.
-    Options are those that the file holds; one that is given takes their place, as ``budget`` where that is used up.
+    A copy up to the last checkpoint replaces the file, so a kill leaves a file to resume. Given options replace the
+    file's. A budget's seconds count from now.
 
     Parameters
     ----------
     file : path
         Interrupted, killed, recovered, or out of budget.
     homotopy : Homotopy, optional
-        Needed where the file cannot say how to make it.
+        Needed if the file cannot rebuild it.
     archive : path, optional
-        A new file to write to; else `file` itself goes on.
+        A new file; default: `file`.
     observers : tuple of Observer
     trust : sequence of class or function
-        What may be made besides the parts of the library and the homotopies that installed packages register: a file
-        names classes, and is not obeyed.
+        Objects that the file may make, besides the library's parts and registered homotopies.
     keep : str
-        Which steps the path keeps in memory, as for `PathLog`.
+        As for `PathLog`.
     {options}
 
     Returns
     -------
     Path
-        All of it. Tangents of the points before are NaN unless the archive holds tangents.
+        The whole path. Earlier tangents are NaN unless archived.
 
     Raises
     ------
     ArchiveError
-        If the file cannot be read or replaced, its last path has ended or cannot be resumed, or a part is needed as
-        an argument.
+        If the file cannot be read, replaced or resumed, or a part must be passed.
     ValueError
-        If the homotopy given is not the one of the file.
+        If `homotopy` is not the file's.
     """
     name = as_file("file", file)
     target = File(os.path.realpath(name)) if archive is None else new_file("archive", archive)
@@ -116,7 +113,7 @@ def resume(
         tracer.path.steps, tracer.path.events[:] = before.steps, before.events
         tracer.observers = (log, *observers)
         steps = iter(tracer)
-        # The first thing a resumed tracer does is to factor again; an uninterrupted one did not pay for that.
+        # The counts discard the resumed tracer's extra factorisation.
         next(steps)
         for counter, count in checkpoint.counts.items():
             setattr(tracer.counts, counter, count)
@@ -172,10 +169,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
-    """The homotopy, made of what the file says of it; `known` is the `registry`.
-
-    Raises `ArchiveError` if it was not stored, or is not among what is trusted.
-    """
+    """The homotopy that the file describes; `known` is the `registry`."""
     tree: Any = checkpoint.run.get("homotopy")
     if not isinstance(tree, dict) or not tree.get("problem"):
         return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
@@ -191,7 +185,6 @@ def _made(
     known: Mapping[str, Any],
     hint: str,
 ) -> Any:
-    """What the file describes; `ArchiveError` with what to pass instead where it cannot be made."""
     try:
         described = tree()
         if isinstance(described, dict) and "unstorable" in described:
@@ -212,14 +205,14 @@ def _options(
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
-    """Whether the homotopy has the residual that the file says at a point to go on from.
+    """Check that the homotopy has the stored residual at a point.
 
     Parameters
     ----------
     homotopy : Homotopy
     u : ndarray, shape (N + 1,)
     stored : float
-        The largest component of that residual.
+        Its largest component.
 
     Raises
     ------
@@ -235,7 +228,6 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
 
 
 def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
-    """The file up to the checkpoint, ready to grow, and already so when it takes the place of the old one."""
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)

@@ -1,4 +1,4 @@
-"""Steps and events as rows of the point table, a path as a row of the path table, and the way back."""
+"""Conversion between paths and rows of the two tables."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _INTEGERS = {"orientation": "i1", "kind": "i1", "corrector_iterations": "i2", "r
 _SHARE, _NAN = "parameter_share", math.nan
 
 Record = dict[str, Any]
-"""The cells of a row of the path table, by column name."""
+"""Cells of a path's row, by column."""
 
 
 @frozen
 class Row:
-    """A row to be: an accepted step, with the event that it ends on if it does; an event between two steps; or a part
-    of the kink before it, of which `switch` is a switching function, and `tangent` a ray.
+    """A row to write: a step, perhaps with its event; an event between steps; or a switching function or ray of the
+    kink before.
     """
 
     point: Step | LocatedEvent
@@ -55,10 +55,7 @@ class Row:
 
 
 def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
-    """A step and the events that have come since the one before; the last one shares its row if the step ends there.
-
-    The rows of a kink's switches and rays, where the layout has them, follow its own.
-    """
+    """Rows of a step and its events; an event at the step shares its row, and a kink adds rows of switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
@@ -73,7 +70,7 @@ def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[
 
 
 def rows_of(path: Path, layout: Layout) -> list[Row]:
-    """Steps and located events in the order of the path."""
+    """Steps and events in path order."""
     rows, begin = list[Row](), 0
     for step in path.steps:
         end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
@@ -91,7 +88,7 @@ def layout_of(
     pieces: bool = False,
     early: Iterable[Record] = (),
 ) -> Layout:
-    """The layout of a file that begins with a path of a homotopy, behind rows of paths that were over `early`."""
+    """The layout of a new file; `early` are rows without points."""
     held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
     said = {PARAMETER + name for name in scalars(homotopy)}
     said |= {name for row in early for name in row if name.startswith(PARAMETER)}
@@ -100,7 +97,7 @@ def layout_of(
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
-    """The block of columns for some rows of one path; `number` numbers an event's name."""
+    """Rows of one path as columns."""
     points, events = [row.point for row in rows], [row.event for row in rows]
     block: dict[str, Any] = {
         "path_index": np.full(len(rows), path, dtype="i4"),
@@ -110,7 +107,6 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
         _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
         **_split("parameter", "y", [point.u for point in points]),
     }
-    # Of what an event has not, the number is missing.
     block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
     block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
     block["orientation"][block["role"] == KINK_PART] = 0
@@ -124,7 +120,7 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
 
 
 def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
-    """The last components of some vectors as one column, the others as a matrix; both in one piece, as HDF5 wants."""
+    """Last components and others, both contiguous for HDF5."""
     whole = np.array(vectors)
     return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
 
@@ -132,10 +128,7 @@ def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
 def from_columns(
     block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str], first: int = 0
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps and events of one path again, the first step with the index `first`.
-
-    Tangents are NaN where the archive does not hold them.
-    """
+    """Steps, numbered from `first`, and events of one path; missing tangents are NaN."""
     points = np.column_stack((block["y"], block["parameter"]))
     held = "tangent_y" in block
     tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"])) if held else np.full_like(points, _NAN)
@@ -159,7 +152,7 @@ def from_columns(
         if role == KINK_PART and events and "switch" in block:
             parts.setdefault(len(events) - 1, []).append(i)
     for k, rows in parts.items():
-        # Of both lists the longer decides how many parts there are; the other ends in -1, or in NaN.
+        # The shorter of the two lists ends in -1 or NaN.
         switches, rays = block["switch"][rows], tangents[rows]
         rays = rays[~np.isnan(rays).any(axis=1)]
         named = tuple(switches[switches >= 0].tolist())
@@ -170,7 +163,6 @@ def from_columns(
 
 
 def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]:
-    """The steps joined by cubics through points and tangents, for dense output."""
     onward = {e.step: e.rays[1] for e in events if e.rays is not None and len(e.rays) > 1}
     begins = [onward.get(step.index, step.tangent) for step in steps]
     return list(steps[:1]) + [
@@ -179,15 +171,12 @@ def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]
     ]
 
 
-# -- rows of the path table -------------------------------------------------------------------------------------
-
-
 counted = attrgetter(*COUNT_NAMES)
-"""The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""
+"""The counters in the order of `COUNT_NAMES`."""
 
 
 def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
-    """What the path itself says."""
+    """The path's own cells."""
     seed = getattr(homotopy, "seed", None)
     return {
         **{COUNT_NAMES[name]: value for name, value in zip(COUNT_NAMES, counted(path.counts))},
@@ -205,7 +194,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
 
 
 def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
-    """The row of the path table as a block: each column an array of length 1."""
+    """The path's row as a block."""
     block = {}
     for column in layout.columns("path"):
         cell = record.get(column.name, column.missing)

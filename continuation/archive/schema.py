@@ -1,6 +1,4 @@
-"""The schema `continuation-path-2`: names, types, units and meanings of everything in the two tables, and the datasets
-that hold them, made all at once, as every netCDF-4 tool reads them.
-"""
+"""The schema `continuation-path-2`: columns with types, units and meanings, and their datasets."""
 
 from __future__ import annotations
 
@@ -19,10 +17,10 @@ from continuation.counts import Counts
 from continuation.status import Kind, Status
 
 SCHEMA = "continuation-path-2"
-"""Additions keep the name; a change of meaning would be `continuation-path-3`, which this reader refuses."""
+"""Additions keep the name; a changed meaning needs a new one."""
 
 UNCHECKED = "continuation-path-1"
-"""The same tables without checksums: read as they are, since nothing tells what was written."""
+"""The schema without checksums."""
 
 TEXT = 240
 """Bytes (UTF-8) of a path's message."""
@@ -31,19 +29,16 @@ NAME = 64
 """Bytes (UTF-8) of an event's name."""
 
 ACCEPTED, LOCATED, KINK_PART = 0, 1, 2
-"""Roles of a row: an accepted step, an event located between two of them, or what belongs to the kink before it."""
+"""Roles of a row: accepted step, event between steps, part of the kink before."""
 
 NO_EVENT = -1
 CONTROLLER_STATE = 4
-"""Numbers kept of a controller's state at the end of a path, at least."""
+"""Least number of controller cells."""
 
 
 @frozen
 class Column:
-    """A variable of the archive.
-
-    `dtype` is numpy's; ``utf8:n`` is text of at most n bytes.
-    """
+    """A variable; `dtype` is NumPy's, ``utf8:n`` text of at most n bytes."""
 
     name: str
     dtype: str
@@ -54,22 +49,22 @@ class Column:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Units, long name and the rest, as the file has them."""
+        """The attributes in the file."""
         return {"units": self.units, "long_name": self.long_name, **self.more}
 
     @property
     def length(self) -> int:
-        """Bytes of a text; 0 for numbers."""
+        """Bytes of a text, else 0."""
         return int(self.dtype.removeprefix("utf8:")) if self.dtype.startswith("utf8:") else 0
 
     @property
     def storage(self) -> np.dtype[Any]:
-        """The type of an array that holds the column."""
+        """The array type of the column."""
         return np.dtype(f"S{self.length}" if self.length else self.dtype)
 
     @property
     def missing(self) -> Any:
-        """What stands for a value that is not there: NaN, the empty text, -1."""
+        """NaN, -1 or empty text."""
         if self.length:
             return b""
         return np.nan if self.storage.kind == "f" else -1
@@ -81,7 +76,7 @@ def _flags(names: tuple[str, ...], values: tuple[int, ...] | None = None) -> dic
 
 
 COUNT_NAMES = {name: {"residuals": "evaluations"}.get(name, name) for name in Counts().as_dict()}
-"""Counter of `Counts` -> column of the path table."""
+"""Counter -> column of the path table."""
 
 _COUNT_MEANINGS = {
     "residuals": "evaluations of the residual",
@@ -126,7 +121,7 @@ TANGENT_COLUMNS = (
 KINK_COLUMNS = (
     Column("switch", "i4", "1", "number of a switching function that vanishes at the kink; -1 where there is none"),
 )
-"""In files of homotopies with pieces, which hold tangents too: those of the rows `kink_part` are the kink's rays."""
+"""For piecewise homotopies; tangents of rows `kink_part` are rays."""
 
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
@@ -159,7 +154,7 @@ ORIGIN_COLUMNS = (
         ("path",),
     ),
 )
-"""A merged file keeps them for each path; files of before have none."""
+"""Origin of each path; older files lack it."""
 
 EVENT_NAME = Column("event_name", f"utf8:{NAME}", "1", "name of the event", ("event",))
 COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
@@ -167,7 +162,7 @@ COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component"
 
 OPTIONAL = (*TANGENT_COLUMNS, *KINK_COLUMNS, *ORIGIN_COLUMNS)
 OBSERVED, PARAMETER = "observed_", "homotopy_"
-"""What the names of a homotopy's own columns begin with: scalars at each point, numeric parameters of a path."""
+"""Prefixes of the homotopy's columns: scalars of points, parameters of paths."""
 
 
 def _names(columns: Iterable[Column]) -> frozenset[str]:
@@ -179,27 +174,27 @@ TANGENTS, KINKS, ORIGINS = _names(TANGENT_COLUMNS), _names((*TANGENT_COLUMNS, *K
 
 @frozen
 class Layout:
-    """What one file holds: N, how many numbers in `controller_state`, and the names of its columns beyond the fixed."""
+    """Contents of a file: N, cells of `controller_state`, optional columns."""
 
     unknowns: int
     controller: int = CONTROLLER_STATE
     more: frozenset[str] = ORIGINS
 
     def columns(self, table: str) -> tuple[Column, ...]:
-        """The columns of the table ``"point"`` or ``"path"``."""
+        """The columns of a table."""
         return _columns(self.more, table)
 
     def own(self, prefix: str) -> tuple[str, ...]:
-        """The names of the homotopy's own columns, without what they begin with."""
+        """The homotopy's columns, without prefix."""
         return tuple(sorted(name.removeprefix(prefix) for name in self.more if name.startswith(prefix)))
 
     def width(self, column: Column) -> tuple[int, ...]:
-        """The lengths of the column's dimensions beyond the first."""
+        """The column's dimensions beyond the first."""
         lengths = {"component": self.unknowns, "controller": self.controller}
         return tuple(lengths[name] for name in column.dimensions[1:])
 
     def row_bytes(self, table: str) -> int:
-        """Bytes of a row of a table."""
+        """Bytes of a row."""
         return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
 
 
@@ -216,11 +211,7 @@ def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
-    """Whether names can be those of columns ``<prefix><name>`` in a file that every tool reads.
-
-    Raises `ValueError` if one is empty, longer than 100 bytes, not text, or holds a slash, a NUL or another control
-    character.
-    """
+    """Raise `ValueError` unless names have 1 to 100 printable bytes, no slash."""
     for name in names:
         plain = isinstance(name, str) and name.isprintable() and "/" not in name and name == name.strip()
         if not plain or not 1 <= len(name.encode()) <= _COLUMN_NAME:
@@ -229,16 +220,13 @@ def check_names(prefix: str, names: Iterable[str]) -> None:
 
 
 _COLUMN_NAME = 100
-"""netCDF allows 256 bytes a name, the prefix included."""
+"""netCDF allows 256 bytes, prefix included."""
 
 
 def text(value: str, length: int) -> bytes:
     """UTF-8 of at most `length` bytes, cut between characters."""
     raw = value.encode(errors="replace")
     return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()
-
-
-# -- datasets --------------------------------------------------------------------------------------------------
 
 
 SLOTS = 2
@@ -248,16 +236,12 @@ LIBVER = ("v110", "v110")
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
 _CHUNKS = {"point": 64, "path": 8, "event": 16}
 _CHUNK_BYTES = 1 << 13
-"""A chunk, of so many rows or bytes at most, takes its whole room from its first row on: with 512 KiB eight points of
-100 unknowns take 600 KB."""
+"""Size of a chunk, which its first row allocates: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
 
 @lru_cache(maxsize=16)
 def empty(layout: Layout, compression: int) -> bytes:
-    """A file with all its datasets, without rows: its bytes, made once for all files of a layout.
-
-    `compression`: Level of gzip; 0 for none.
-    """
+    """The bytes of a file without rows; `compression` is gzip's level."""
     made = BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
         _build(file, layout, compression)
@@ -272,7 +256,7 @@ def _build(file: Any, layout: Layout, compression: int) -> None:
         chunks = (min(chunk, 1 << (fitting.bit_length() - 1)), *width)
         return file.create_dataset(name, (0, *width), dtype, maxshape=(None, *width), chunks=chunks, **more)
 
-    # Dimensions without a variable, as netCDF knows them, and the two that have one.
+    # netCDF dimensions without and with variables.
     for name in ("point", "event"):
         grows(name, ">f4", _CHUNKS[name]).make_scale(_NO_VARIABLE.format(0))
     file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))

@@ -1,7 +1,7 @@
-"""The file itself: made with its whole structure at once, grown by blocks, committed in two phases.
+"""The file being written.
 
-A kill leaves a file whose committed rows are whole: data and intent, flush, commit, flush. SWMR keeps the structure
-readable at every moment, the records (`continuation.archive.checks`) say how much of it means something.
+A commit writes data and intent, flushes, writes its record, flushes: a kill leaves complete rows. SWMR keeps the
+structure readable.
 """
 
 from __future__ import annotations
@@ -30,10 +30,9 @@ _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
 
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
-    """Write a new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
+    """Write a new file beside `target`, then rename it: a kill leaves the old file, none, or the new one.
 
-    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file. `grows`: Leave it
-    open, else it is whole, and on the disk before it has its name. Raises `ArchiveError` if it cannot be written.
+    `write`: opens a store. `grows`: leave it open; otherwise it is synced first.
     """
     if not replace:
         check_new(target)
@@ -54,11 +53,9 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written, which can be read while it grows, survives a kill, and is locked until it is closed.
+    """A file being written: readable while it grows, safe from kills, locked until closed.
 
-    The part must not exist. `problem` is what `problem_data` returned, `compression` a level of gzip or 0, and a
-    durable store waits for the disk at each commit; `file` is its name in messages. Raises `ArchiveError` if it cannot
-    be written.
+    `problem`: result of `problem_data`. `compression`: gzip's level. `durable`: wait for the disk at each commit.
     """
 
     def __init__(
@@ -73,10 +70,10 @@ class Store:
     ) -> None:
         self.file, self.layout, self.durable = part, layout, durable
         self.identifier, self.events = str(attributes.get("identifier", "")), list[str]()
-        # What is written, and valid now or with the next commit.
+        # Valid now or with the next commit.
         self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()
-        # Made in memory: HDF5 ends the process where a write fails while it closes a file.
+        # HDF5 ends the process if writing fails while it closes a file.
         made = BytesIO(empty(layout, compression))
         with h5py.File(made, "r+", libver=LIBVER) as new:
             set_attributes(new, attributes)
@@ -90,7 +87,7 @@ class Store:
                 os.fsync(file.fileno())
         self._lock = Lock(part)
         try:
-            # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
+            # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
             self._h5 = h5py.File(part, "r+", libver=LIBVER, **({} if compression else {"rdcc_nbytes": 0}))
         except BaseException:
             self._lock.close()
@@ -99,19 +96,14 @@ class Store:
         columns = [column.name for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME)]
         own = [f"{GROUP}/point", f"{GROUP}/path", f"{GROUP}/event", _RECORDS, _SLOTS]
         names = {*columns, *own, "point", "event", "committed_points", "committed_paths"}
-        # h5py's own objects cost several times as much.
+        # h5py's objects cost several times as much.
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
         self._h5.swmr_mode = True
-
-    # -- writing ----------------------------------------------------------------------------------------------
 
     def commit(
         self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
     ) -> None:
-        """Write rows behind those committed, and checkpoints by slot; then, and only then, make them valid.
-
-        A commit that was interrupted is simply repeated: writing the same again does the same.
-        """
+        """Write rows and checkpoints (by slot), and only then make them valid; repetition is harmless."""
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
         before, raw = self.committed, dict(checkpoints or {})
@@ -141,7 +133,7 @@ class Store:
                 _write(slots, slots.shape, (slot, 0), np.frombuffer(written, "u1")[None])
             self._record(after, 0)
             self._flush()
-            # All of it is written: whatever interrupts from here on, the next commit goes on after it.
+            # After an interrupt the next commit continues here.
             self.committed = after
             self._record(after, PLACES)
             for name, count in (("committed_points", after.points), ("committed_paths", after.paths)):
@@ -153,7 +145,6 @@ class Store:
             raise ArchiveError(f"{self.file}: {reason}") from error
 
     def _record(self, committed: Committed, first: int) -> None:
-        """One of the two records of a commit, in the place whose turn it is."""
         _write(
             self._data[_RECORDS],
             (2 * PLACES, RECORD_BYTES),
@@ -162,7 +153,7 @@ class Store:
         )
 
     def name_event(self, name: str) -> int:
-        """The number of an event's name; a new one is written, and becomes valid with the rows that refer to it."""
+        """The number of an event name, new ones included."""
         name = text(name, NAME).decode()
         if name not in self.events:
             count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)
@@ -174,7 +165,6 @@ class Store:
 
     @staticmethod
     def _put(dataset: Any, start: int, values: np.ndarray[Any, Any]) -> None:
-        """Rows from `start` on."""
         extent = (start + len(values), *values.shape[1:])
         dataset.set_extent(extent)
         _write(dataset, extent, (start, *(0,) * (values.ndim - 1)), values)
@@ -185,13 +175,13 @@ class Store:
             os.fsync(self._h5.id.get_vfd_handle())
 
     def close(self, *, sync: bool = False) -> None:
-        """Close the file, on the disk when this returns if `sync`; a second call does nothing."""
+        """Close the file, idempotently; `sync` waits for the disk."""
         try:
             self._h5.close()
             if sync:
                 os.fsync(self._lock.descriptor)
         except (OSError, RuntimeError):
-            # Of what was given up nothing more is expected.
+            # An abandoned file may fail.
             if not self._abandoned:
                 raise
         finally:
@@ -199,19 +189,19 @@ class Store:
 
     @property
     def ours(self) -> bool:
-        """Whether this process has opened it: a child that was forked since has a copy, and never writes."""
+        """Whether this process opened it; forked children never write."""
         return self._process == os.getpid()
 
     def abandon(self, *, ends: bool = True) -> None:
-        """Let HDF5 write what it still has to nowhere: a write that fails while it closes a file ends the process.
+        """Redirect HDF5's pending writes to nowhere: a write that fails during close ends the process.
 
-        `ends`: Leave the file as a kill would; a child that was forked is not to write, and leaves it to its parent.
+        `ends`: leave the file as a kill would; a forked child leaves it alone.
         """
         if not self._h5:
             return
         descriptor = self._h5.id.get_vfd_handle()
         with suppress(OSError), self.file.open("rb") as head:
-            # The length that the file says it has may be beyond what could be written; zeros do for what is missing.
+            # Zeros fill the length that the file states.
             stated = stated_length(head.read(HEAD_BYTES))
             if ends and stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
@@ -225,10 +215,7 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 
 
 def _in_child() -> None:
-    """A forked child has its parent's files open, and HDF5 would write to them when the child ends.
-
-    It shares its parent's locks too, and would keep them when the parent is gone.
-    """
+    """A forked child would write to inherited stores at its end, and keep their locks."""
     for store in list(_LIVE):
         store.abandon(ends=False)
         store._lock.close()
@@ -239,14 +226,13 @@ os.register_at_fork(after_in_child=_in_child)
 
 @lru_cache(maxsize=64)
 def _spaces(extent: tuple[int, ...], place: tuple[int, ...], shape: tuple[int, ...]) -> tuple[Any, Any]:
-    """Of values in memory, and of their place in a dataset: one for all columns of one shape."""
     space = h5s.create_simple(extent)
     space.select_hyperslab(place, shape)
     return h5s.create_simple(shape), space
 
 
 def _write(dataset: Any, extent: tuple[int, ...], place: tuple[int, ...], values: np.ndarray[Any, Any]) -> None:
-    """Values at a place of a dataset of that extent; h5py's own slicing costs several times as much."""
+    """Write values; h5py's slicing costs several times as much."""
     kind = dataset.get_type() if values.dtype.kind == "S" else None
     dataset.write(*_spaces(extent, place, values.shape), values, kind)
 

@@ -1,8 +1,6 @@
-"""`trace_many`: many paths, one after another or over any executor, kept whatever happens to some of them.
+"""`trace_many`: many paths, one after another or over any executor.
 
-A worker, or this process itself, traces one homotopy and gives back its path, as a share of columns where there is an
-archive. This process alone writes: what is lost with a worker is one path, and a kill of this process leaves those that
-came, in files that are put in order at the end.
+Only this process writes; if it is killed, finished paths remain in part files.
 """
 
 from __future__ import annotations
@@ -36,15 +34,15 @@ from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
 Result = Path | Share | BaseException
-"""What came of a homotopy."""
+"""A path or exception."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""What a homotopy raises costs its own path; Ctrl-C alone ends the sweep."""
+"""Exceptions that cost only their path; Ctrl-C ends the sweep."""
 
 
 @frozen(eq=False)
 class Task:
-    """A homotopy for a worker, and its number in the sweep."""
+    """A homotopy and its number in the sweep."""
 
     homotopy: Any
     number: int
@@ -61,44 +59,40 @@ def trace_many(
     timeout: float | None = None,
     **options: Unpack[Options],
 ) -> Sequence[Path]:
-    """Trace many homotopies.
+    """Trace many homotopies, in order.
 
-    A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
-    worker costs its own path only: that one is RAISED, with the exception's text as its message. The order is that of
-    the homotopies. Ctrl-C keeps the paths that are finished, and ends within about a second.
+    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled costs only its own path, which
+    becomes RAISED with the exception as message. Ctrl-C keeps finished paths.
 
     Parameters
     ----------
     homotopies : iterable of Homotopy
-        To be picklable where the executor needs it. Where there is an archive those of another number of unknowns than
-        the first have the status RAISED.
+        With an archive, those of another number of unknowns than the first become RAISED.
     executor : concurrent.futures.Executor, optional
-        A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
+        A process pool, dask's ``Client.get_executor()``, ...; default: this process.
     archive : path, optional
-        One file with all paths. They are kept in ``name.sweep-xxxxxxxx.1.h5`` as they come (each number of unknowns
-        has a file), and are put in order at the end. If this process is killed they stay there, and the sweep can be
-        run again.
+        One file for all paths. Until all are finished, they are in ``name.sweep-xxxxxxxx.1.h5`` (one file for each
+        number of unknowns); a kill leaves these.
     progress : callable, optional
-        ``progress(done, total)``, called in this process; `continuation.step.progress.SweepProgress` shows it.
+        ``progress(done, total)``, such as `continuation.step.progress.SweepProgress`.
     timeout : float, optional
-        Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
-        looked at between steps, and so never where a homotopy does not come back.)
+        Seconds for each homotopy, enforced in process pools. (`Budget.seconds` acts only between steps.)
     **options
-        As for `continuation.trace`, the same for all; `start` is every homotopy's own.
+        As for `continuation.trace`, except `start`.
 
     Returns
     -------
     sequence of Path
-        The open `Archive` where there is one (lazy, and to be closed), else a list.
+        The open `Archive`, or a list.
 
     Raises
     ------
     TypeError, ValueError
-        For an option that `continuation.Tracer` does not have, for what is no homotopy, or for none and an archive.
+        For unknown options, objects that are no homotopy, or an archive without homotopies.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
-        After Ctrl-C, when everything finished is in the archive.
+        After Ctrl-C, with finished paths archived.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
     if timeout is not None and not (is_number(timeout) and timeout > 0):
@@ -143,7 +137,7 @@ def _swept(
             _end_processes(executor)
             for future, number in futures.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
-                    # Ctrl-C reaches the workers too, in a terminal.
+                    # In a terminal, Ctrl-C reaches workers too.
                     with suppress(KeyboardInterrupt):
                         kept.add(number, future.result())
     if target is not None and kept.parts:
@@ -159,8 +153,6 @@ def _swept(
 
 @define(eq=False)
 class _Kept:
-    """The paths that came, in memory or in a file for each layout."""
-
     tasks: Sequence[Task]
     target: File | None
     stack: ExitStack
@@ -169,7 +161,7 @@ class _Kept:
     parts: dict[Layout, Store] = field(factory=dict)
 
     def add(self, number: int, found: Result) -> None:
-        """Put a path where it stays; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
+        """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
         task = self.tasks[number]
         if isinstance(found, KeyboardInterrupt):
             raise found
@@ -184,9 +176,8 @@ class _Kept:
             raise KeyboardInterrupt
 
     def _part(self, share: Share, task: Task) -> Store:
-        """The file for all paths of a layout."""
         assert self.target is not None
-        # A homotopy that has points was harmless to make a tracer of.
+        # With points, a tracer has been made before without failure.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
@@ -200,11 +191,7 @@ class _Kept:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all of it and wait; `futures` are those on their way. A pool's workers that hang are ended.
-
-    What was lost with a worker is done again, each in a process of its own: one that ends its process takes no other
-    with it.
-    """
+    """Submit all tasks and wait, then repeat those lost with a worker, each in its own process."""
     lost: dict[int, BaseException] = {}
     for task in tasks:
         try:
@@ -215,11 +202,11 @@ def _spread(
     while futures:
         ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
         if not ended:
-            # All that run have run for that long, since a worker that ends one begins the next.
+            # Idle workers start the next task, so all running ones have timed out.
             _end_processes(executor)
             ended = wait(futures).done
         while ended:
-            # Dask does again what is lost with a worker while somebody holds its future.
+            # Dask repeats lost tasks while their future is held.
             future = ended.pop()
             number, raised = futures.pop(future), future.exception()
             if isinstance(raised, BrokenExecutor):
@@ -232,7 +219,6 @@ def _spread(
 
 
 def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
-    """What comes of a homotopy in a process of its own."""
     alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
     try:
         future = alone.submit(traced, task)
@@ -245,7 +231,7 @@ def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
 
 
 def _end_processes(executor: Executor | None) -> None:
-    """End the processes of a pool, whose homotopies do not come back; threads end by themselves."""
+    """Kill a pool's processes; threads end by themselves."""
     if isinstance(executor, ProcessPoolExecutor):
         for process in list((executor._processes or {}).values()):
             process.kill()
@@ -253,7 +239,7 @@ def _end_processes(executor: Executor | None) -> None:
 
 
 def traced(task: Task) -> Path | Share:
-    """The path of a homotopy, whatever that raises: what a worker does."""
+    """The path of a homotopy, whatever it raises."""
     path, controller = Path(), tuple[float, ...]()
     try:
         tracer = Tracer(task.homotopy, **task.options)
@@ -272,5 +258,4 @@ def traced(task: Task) -> Path | Share:
 
 
 def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
-    """A path as it is sent back: as columns where there is an archive."""
     return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path

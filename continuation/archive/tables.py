@@ -1,4 +1,4 @@
-"""What an archive is seen as: two tables, of which columns are read when asked for, for xarray and pandas too."""
+"""The two tables of an archive, with columns read on demand."""
 
 from __future__ import annotations
 
@@ -14,24 +14,22 @@ from continuation.arguments.checks import complain
 
 Fetch = Callable[[str, slice], np.ndarray[Any, Any]]
 Block = dict[str, Any]
-"""Rows of a table: an array a column."""
+"""Rows of a table, by column."""
 
 ROWS_AT_ONCE, BYTES_AT_ONCE = 4096, 1 << 22
-"""Rows that are read, copied or written as text at once, and bytes of all columns: many short reads cost much more;
-of 1000 unknowns with tangents 260 rows take 4 MiB."""
+"""Rows and bytes of one read: many short reads cost much more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
 
 
 class Table(Mapping[str, "np.ndarray[Any, Any]"]):
-    """Columns by name; each is read when asked for, and remembered.
+    """Columns by name, read on demand and cached.
 
     Attributes
     ----------
     columns : dict of str to Column
-        Names, units, long names, flags.
     size : int
-        Rows.
+        Number of rows.
     at_once : int
-        Rows that are read in one go where fewer are asked for.
+        Least number of rows in one read.
     """
 
     def __init__(self, layout: Layout, table: str, rows: int, fetch: Fetch) -> None:
@@ -42,7 +40,15 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
     @classmethod
     def of(cls, layout: Layout, table: str, columns: Mapping[str, Any]) -> Table:
-        """A table in memory."""
+        """A table in memory.
+
+        Parameters
+        ----------
+        layout : Layout
+        table : str
+            "point" or "path".
+        columns : mapping of str to ndarray
+        """
         return cls(layout, table, len(next(iter(columns.values()))), partial(_part, columns))
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
@@ -73,12 +79,11 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         return {name: self.some(name, rows) for name in self.columns}
 
     def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        """Some rows of one column; what was read last is remembered, the rows behind those asked for with it.
+        """Some rows of one column; further rows are read ahead and cached.
 
         Parameters
         ----------
         name : str
-            Of the column.
         rows : slice
 
         Returns
@@ -91,14 +96,14 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
             try:
                 held = self._fetch(name, slice(start, stop))
             except ArchiveError:
-                # What lies behind may be damaged.
+                # Rows beyond the request may be damaged.
                 held = self._fetch(name, rows)
             self._read[name] = start, held
         return held[rows.start - start : rows.stop - start]
 
 
 def kept_whole(keep: str) -> bool:
-    """Whether ``"all"`` steps stay in memory, or the ``"ends"`` alone; `ValueError` for anything else."""
+    """Whether `keep` is ``"all"``, not ``"ends"``."""
     if keep not in ("all", "ends"):
         raise complain(ValueError, "keep", '"all" or "ends"', keep)
     return keep == "all"
@@ -109,7 +114,7 @@ def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
 
 
 def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:
-    """An `xarray.Dataset` with the names, dimensions, coordinates and attributes of the file."""
+    """An `xarray.Dataset` like the file."""
     import xarray
 
     variables: dict[str, Any] = {
@@ -124,7 +129,7 @@ def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, a
 
 
 def flat(block: Mapping[str, Any]) -> dict[str, Any]:
-    """The columns of some rows; of a matrix one a component, and texts as texts."""
+    """The columns, a matrix as one for each component."""
     columns = {}
     for name, values in block.items():
         parts = {name: _text(values)} if values.ndim == 1 else {f"{name}_{i}": v for i, v in enumerate(values.T)}
@@ -133,7 +138,7 @@ def flat(block: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def dataframe(points: Table) -> Any:
-    """A `pandas.DataFrame`, one row a point; matrices have one column a component."""
+    """A `pandas.DataFrame`, one row for each point."""
     import pandas
 
     return pandas.DataFrame(flat(points))

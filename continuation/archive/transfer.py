@@ -1,7 +1,4 @@
-"""What is done with whole archives: `merge`, `export`, `recover`, and putting the parts of a sweep in order.
-
-All of them read whole blocks of rows and append them elsewhere (`continuation.archive.copies`).
-"""
+"""`merge`, `export`, `recover`, and sorting the parts of a sweep."""
 
 from __future__ import annotations
 
@@ -35,11 +32,9 @@ from continuation.status import Kind, Status
 
 
 def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> File:
-    """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
+    """Concatenate archives and renumber their paths.
 
-    Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
-    ``homotopy`` and ``source`` of the path table; the settings and the problem of the first file are those of the new
-    one, which cannot be resumed.
+    Each path keeps its homotopy and source; settings and problem are the first file's. The result cannot be resumed.
 
     Parameters
     ----------
@@ -52,8 +47,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
     ValueError
         If there are no files.
     ArchiveError
-        If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
-        `target` exists.
+        If a file is no archive, numbers of unknowns differ, files share a path, or `target` exists.
     """
     if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
         raise complain(TypeError, "files", "names of archives, in a list", files)
@@ -71,11 +65,11 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
 
 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
-    """A path that is in two of the files would count twice in every average."""
+    """A path in two files would count twice."""
     known: dict[bytes, str] = {}
     for archive, share in zip(archives, shares):
         for k, source in enumerate(share.paths["source"]):
-            # The identifier and the number; the name of the file may have been changed since.
+            # Without the name, since files may be renamed.
             key = b" ".join(source.split(b" ", 2)[:2])
             if key in known:
                 raise ArchiveError(f"{archive.file}: its path {k} is {known[key]} as well; expected each path once")
@@ -83,16 +77,15 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 
 
 def gather(files: Sequence[File], target: File) -> None:
-    """Merge the parts of a sweep, in the order of its members; those of other sizes than the first keep no points."""
+    """Merge the parts of a sweep in member order; paths of another size lose their points."""
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
-        # Neighbours that are neighbours in their part, too, are read and written together.
         runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
         shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
         head, made = leading(shares), []
         for run, share in zip(runs, shares):
-            # The source is not the part, which goes.
+            # Parts are no source: they are deleted.
             share.paths["source"][:] = b""
             whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
             made.append(_of_size(whole, head.layout.unknowns, target))
@@ -100,7 +93,6 @@ def gather(files: Sequence[File], target: File) -> None:
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:
-    """The share; paths with another number of unknowns are what they would be in one file: refused."""
     found = share.layout.unknowns
     if found == unknowns or not share.size:
         return share
@@ -111,32 +103,28 @@ def _of_size(share: Share, unknowns: int, target: File) -> Share:
     return evolve(share, paths=paths, rows=slice(0, 0))
 
 
-# -- other forms -----------------------------------------------------------------------------------------------
-
-
 def export(file: str | PathLike[str], target: str | PathLike[str], *, compression: int = 4) -> list[File]:
-    """Write an archive in another form, told by the suffix of `target`.
+    """Write an archive in another format.
 
-    ``.nc``, ``.nc4``, ``.h5``: one netCDF-4 file, with gzip and shuffle. ``.csv``, ``.csv.gz``: two tables,
-    ``name.csv`` for the points and ``name.paths.csv`` for the paths, numbers in full precision.
+    The suffix of `target` decides: ``.nc``, ``.nc4``, ``.h5`` for netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
+    ``name.csv`` (points) and ``name.paths.csv``.
 
     Parameters
     ----------
     file, target : path
     compression : int
-        Level of gzip, 0 (none) to 9. CSV is compressed by its suffix alone.
+        Level of gzip for netCDF-4, 0 (none) to 9.
 
     Returns
     -------
     list of pathlib.Path
-        The files written.
 
     Raises
     ------
     ValueError
-        For another suffix, or a level that gzip does not know.
+        For another suffix or level.
     ArchiveError
-        If `file` is no archive, or a target exists.
+        If `file` is no archive or a target exists.
     """
     if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
         raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
@@ -159,7 +147,6 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     with beside(points) as first, beside(paths) as second:
         for part, table in ((first, archive.points), (second, archive.paths)):
             _write_text(part, table, points.suffix == ".gz")
-        # The points last: who sees them sees both.
         publish(second, paths)
         publish(first, points)
     return [points, paths]
@@ -172,28 +159,22 @@ def _write_text(part: File, table: Table, compressed: bool) -> None:
         for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
             columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
             writer.writerows([[*columns]] if not start else [])
-            # Python prints floats in full precision.
             writer.writerows(zip(*(values.tolist() for values in columns.values())))
     with part.open("rb") as written:
         os.fsync(written.fileno())
 
 
-# -- what a kill or a damaged disk left ------------------------------------------------------------------------
-
-
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
-    """Make the file of a killed writer whole: its committed rows, copied, in its place.
+    """Replace a killed writer's file by a copy of its committed rows.
 
-    A path without an end gets the status INTERRUPTED, and can be resumed. A file that was closed properly and is sound
-    stays as it is. Of a damaged one the sound rows are kept: a path is cut before its first row that is not what was
-    written, and the damaged file is kept beside as ``NAME.damaged``.
+    An unfinished path becomes INTERRUPTED and can be resumed. Sound, closed files stay. In a damaged file, each path
+    ends before its first damaged row; the original becomes ``NAME.damaged``.
 
     Parameters
     ----------
     file : path
     force : bool
-        Also if the process that wrote it seems to be alive. A file that is still being written must not be
-        recovered: its writer would go on with the old one.
+        Ignore a live writer, which would continue in the old file.
 
     Returns
     -------
@@ -203,7 +184,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     Raises
     ------
     ArchiveError
-        If it is no archive, its structure is damaged, it is read-only, or is being written.
+        If the file is no archive, read-only, being written, or its structure is damaged.
     """
     name = as_file("file", file)
     with ExitStack() as stack:
@@ -227,7 +208,6 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
         stack.enter_context(closing(own(real, contents.descriptor, contents.attributes.get("process"), force=force)))
         if not len(shares[0].paths["path"]) and damaged:
             raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
-        # What is dropped may be worth more to somebody else than it is to us.
         if damaged:
             _keep_aside(real)
         put(real, partial(write_copy, shares, what=what, checkpoints=slots), replace=True)
@@ -240,11 +220,7 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 
 
 def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]]) -> list[Share]:
-    """The sound rows, path by path: each from its first point to the one before its first damaged block.
-
-    `lost` has the unsound blocks of the two tables. Of a file without sound rows there is one empty share. A path whose
-    own row is lost, or has lost points, was interrupted.
-    """
+    """The sound rows of each path from its first point, or one empty share; `lost` holds damaged blocks."""
     committed, layout = contents.committed, contents.layout
     points, paths = contents.table("point"), contents.table("path")
     sound = {"point": np.ones(committed.points, dtype=bool), "path": np.ones(committed.paths, dtype=bool)}
@@ -266,19 +242,19 @@ def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]])
 
 
 def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
-    """For each path with a sound first point: its number, and the rows up to the first damaged block."""
+    """Number and rows of each path up to its first damaged block."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1"))).reshape(-1, 2)
     for start, stop in edges.tolist():
         paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))
         changes = np.concatenate(([0], np.flatnonzero(np.diff(paths)) + 1, [stop - start])).tolist()
         for first, last in pairwise(changes):
-            # A run that begins in the middle of a path is that path's end, of no use without its beginning.
+            # The end of a path alone is useless.
             if kinds[first] == Kind.START:
                 yield int(paths[first]), slice(start + first, start + last)
 
 
 def _keep_aside(file: File) -> None:
-    """The damaged file under a name of its own."""
+    """Keep the damaged file under another name."""
     aside = file.with_name(f"{file.name}.damaged")
     try:
         os.link(file, aside)

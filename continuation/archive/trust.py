@@ -1,8 +1,7 @@
-"""From JSON to objects, of classes that are trusted alone: nothing that a file names is imported, called or made.
+"""From JSON to objects of trusted classes; nothing else that a file names is imported, called or made.
 
-Trusted are the parts of this library, the homotopies that installed packages register as entry points of the group
-`continuation.homotopies` (classes, and what their functions are annotated to return), the classes that the fields of
-those are annotated with, and what the caller passes. Functions are trusted only where the caller passes them.
+Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`),
+classes in annotations of their fields, and the caller's `trust`; functions need the latter.
 """
 
 from __future__ import annotations
@@ -33,14 +32,11 @@ _MODULES = (
 
 
 class UnknownError(LookupError):
-    """A stored description that is not turned into an object; the message says why."""
+    """A description that yields no object."""
 
 
 def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
-    """What may be made by name: the parts of the library, and what the caller trusts.
-
-    Raises `TypeError` if something else is to be trusted, or a thing that has no name to be found by.
-    """
+    """Objects that may be made, by path; `TypeError` if `trust` holds others than importable classes and functions."""
     parts = [thing for module in _MODULES for thing in vars(module).values()]
     found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
     for thing in trust:
@@ -55,7 +51,7 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
 @lru_cache
 def _registered(path: str) -> type | None:
-    """The class of that path, if it is a homotopy's that an installed package registers, or of its metric."""
+    """The registered homotopy or its metric."""
     points = metadata.entry_points(group=ENTRY_POINTS)
     for point in sorted(points, key=lambda point: point.value != path):
         try:
@@ -64,7 +60,6 @@ def _registered(path: str) -> type | None:
             continue
         made = _options(thing if isinstance(thing, type) else _hints(thing).get("return"))
         classes = [typing.get_origin(option) or option for option in made]
-        # A homotopy's own metric is as much a part of its package as the homotopy.
         for found in (*classes, *(type(getattr(cls, "metric", None)) for cls in classes)):
             if isinstance(found, type) and _path(found) == path:
                 return found
@@ -78,10 +73,8 @@ def _path(cls: type) -> str:
 def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
     """The value that `continuation.archive.codec.encode` described.
 
-    `tree`: JSON. `fetch`: Turns what `place` returned back into an array. `known`: The `registry`; by default nothing
-    but what `hint` names. `hint`: What is expected: the value is checked against it, and the classes in it may be made.
-    Raises `UnknownError` if a class or function is not trusted, a value is not of its field's type, or the description
-    makes no sense.
+    `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
+    may be made. Raises `UnknownError` if a class is not trusted or a value has another type.
     """
     try:
         return _decode(tree, fetch, known or {}, hint, "")
@@ -90,7 +83,7 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
 
 
 def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any, name: str) -> Any:
-    """`name` is that of the field, for messages."""
+    """`name`: the field, for messages."""
     value: Any
     match tree:
         case None | bool() | int() | float() | str():
@@ -106,7 +99,7 @@ def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
         case {"sparse": form}:
             parts = tuple(fetch(tree[part]) for part in ("data", "indices", "indptr"))
             value = (sp.csr_array if form == "csr" else sp.csc_array)(parts, shape=tuple(tree["shape"]))
-            # Indices outside the shape would corrupt memory at the first product.
+            # Indices outside the shape would corrupt memory.
             value.check_format(full_check=True)
         case {"function": path}:
             if path not in known:
@@ -123,7 +116,7 @@ def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
 def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any) -> Any:
     path = tree["class"]
     expected = (typing.get_origin(option) or option for option in _options(hint))
-    # A class that a field is annotated with is found by its name: it may have moved to another module since.
+    # The class may have moved to another module.
     named = (c for c in expected if isinstance(c, type) and attrs.has(c) and c.__qualname__ == path.partition(":")[2])
     cls: Any = next(named, None) or known.get(path) or (_registered(path) if known else None)
     if not isinstance(cls, type):
@@ -137,17 +130,13 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     fields = {key: _decode(item, fetch, known, kinds[key], f"{path}: {key} ") for key, item in tree["fields"].items()}
     if not hasattr(cls, "__attrs_init__"):
         return cls(**fields)
-    # A class with a constructor of its own for people, which completes and checks what is complete here.
+    # Skips the constructor: the fields are complete.
     made: Any = object.__new__(cls)
     made.__attrs_init__(**fields)
     return made
 
 
-# -- types ----------------------------------------------------------------------------------------------------
-
-
 def _hints(thing: Any) -> dict[str, Any]:
-    """The annotations; none where they cannot be evaluated, as with names imported for type checkers only."""
     try:
         return typing.get_type_hints(thing)
     except (NameError, TypeError, AttributeError):
@@ -155,7 +144,6 @@ def _hints(thing: Any) -> dict[str, Any]:
 
 
 def _items(hint: Any, count: int) -> tuple[Any, ...]:
-    """The types of a container's items."""
     for option in _options(hint):
         arguments = typing.get_args(option)
         if typing.get_origin(option) is tuple and len(arguments) == count and ... not in arguments:
@@ -189,5 +177,5 @@ def _is(value: Any, hint: Any) -> bool:
         return value is None if hint is None else isinstance(value, (int, origin)) and not isinstance(value, bool)
     if getattr(origin, "_is_protocol", False) and not getattr(origin, "_is_runtime_protocol", False):
         return not isinstance(value, (str, int, float, dict, list, tuple, type(None)))
-    # A type variable, or what only a type checker knows: numbers, containers and trusted objects are all there is.
+    # Types that only a type checker knows accept every value.
     return not isinstance(origin, type) or origin is Any or isinstance(value, origin)

@@ -1,4 +1,4 @@
-"""`PathLog`: the observer that writes paths to a file while they are traced."""
+"""`PathLog`: the observer that writes paths to a file during a trace."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from continuation.step.state import State
 from continuation.step.tracer import Tracer
 
 Mark = tuple[State, tuple[int, ...], int]
-"""A point to resume from: the state, the counters there, and how many rows of the path come before it."""
+"""A point to resume from: state, counters, earlier rows of the path."""
 
 
 @frozen
 class Limits:
-    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
+    """Rows, bytes or seconds after which buffered rows are committed."""
 
     rows: int = field(default=256, validator=integer(1))
     nbytes: int = field(default=4 << 20, validator=integer(1))
@@ -45,7 +45,7 @@ class Limits:
 
 @define(eq=False)
 class OpenPath:
-    """The path being written: its number, its first row in the point table, and where it can be resumed."""
+    """The path being written."""
 
     tracer: Tracer
     number: int
@@ -58,49 +58,45 @@ class OpenPath:
 
 
 class PathLog:
-    """An observer that writes what it sees to an HDF5 file.
+    """An observer that writes paths to an HDF5 file.
 
-    Rows are buffered, and committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses at most
-    what was not committed. As a context manager one log holds many paths, traced one after another; else the file is
-    closed at the end of the first.
+    By default rows are committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses later rows.
+    As a context manager, a log holds many paths; otherwise the end of the first closes the file.
 
     Parameters
     ----------
     file : path
-        Must not exist. The file is made at the first point, so a trace that is refused leaves none.
+        Must not exist; the first point creates it.
     durable : bool
-        Wait for the disk at each commit: survives a power cut, not only a kill.
+        Wait for the disk at each commit, to survive power cuts.
     tangents : bool
-        Store the unit tangents as well, so that a path that is read is a curve; without them a file is half as large.
-        Always done, with the rays of its kinks, where the homotopy has pieces.
+        Store unit tangents for dense output, at twice the size; piecewise homotopies always store them.
     title : str
     parameters : mapping, optional
-        What the homotopies were made with, where their attributes do not say it: for `continuation resume`.
+        Parameters for `continuation resume` that the homotopies' attributes lack.
     limits : Limits
-        When to commit.
     keep : str
-        Which steps stay in memory: ``"all"``, or the ``"ends"``; the others are read when asked for.
+        Steps in memory: ``"all"``, or the ``"ends"`` with others read on demand.
     save_every : int
-        Only every so many steps are written, with the first, the last and all events: for long paths.
+        Write every so many steps, and the first, the last and all events.
 
     Attributes
     ----------
     member : int or None
-        Index in a sweep of the path to come.
+        Index of the next path in a sweep.
 
     Raises
     ------
     ArchiveError
-        If the file exists, or its directory cannot be written; later, if the disk is full.
+        If the file exists or cannot be written.
     ValueError
-        Later, if a path has another number of unknowns than the first one.
+        Later, if a path has another number of unknowns.
     """
 
     file: File
     member: int | None = None
     _rows: tuple[int, list[Row]]
-    """The number of the first row that is not yet committed, and those: one object, so that a commit is one
-    assignment."""
+    """Number of the first uncommitted row, and these rows: one assignment commits."""
     _early: list[Record]
     _many = _closed = False
     _store: Store | None = None
@@ -108,7 +104,7 @@ class PathLog:
     _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
     _about: tuple[str, Mapping[str, Any]] = ("", {})
     _known: tuple[Any, Any] = (None, None)
-    """The file's first homotopy, and what says in a checkpoint how to make it."""
+    """The file's first homotopy and its description in checkpoints."""
     _commit_at = 0.0
 
     def __init__(
@@ -134,7 +130,7 @@ class PathLog:
 
     @classmethod
     def continued(cls, store: Store, checkpoint: Checkpoint, tracer: Tracer, whole: bool) -> PathLog:
-        """A log that goes on with a path of which the file holds the beginning; for `resume`.
+        """A log that continues a path in a file, for `resume`.
 
         Parameters
         ----------
@@ -142,7 +138,7 @@ class PathLog:
         checkpoint : Checkpoint
         tracer : Tracer
         whole : bool
-            Whether all steps stay in memory.
+            Keep all steps in memory.
         """
         log = cls.__new__(cls)
         points = store.committed.points
@@ -158,8 +154,6 @@ class PathLog:
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
 
-    # -- the observer -----------------------------------------------------------------------------------------
-
     def step(self, tracer: Tracer, step: Step) -> None:
         """See `continuation.Observer`."""
         path = self._path(tracer)
@@ -169,15 +163,14 @@ class PathLog:
             tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
-            # Not a point to resume from either: that is one whose row is there.
+            # A resumed trace needs the row.
             return
         ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
         for row in rows_at(step, ending[::-1], store.layout):
             self._add(row)
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
-            # Whether the path ends at this point is decided after it is written. So a resumed trace begins one point
-            # earlier; only at the start there is nothing left to be decided.
+            # The path may still end at this point, so a trace resumes one point earlier.
             mark = state, counted(tracer.counts), first + len(rows) - path.first
             path.resume, path.last = path.last or mark, mark
         limits = self._limits
@@ -191,9 +184,9 @@ class PathLog:
         self._add(Row(event, event, LOCATED, event.tangent))
 
     def end(self, tracer: Tracer) -> None:
-        """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
+        """See `continuation.Observer`; commits the path and, without context manager, closes the file."""
         if self._open is not None and (self._closed or (self._store is not None and not self._store.ours)):
-            # The disk is full, and has been told of; or a child was forked, whose copy of a path ends when it does.
+            # The disk is full, or this process is a forked child.
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         if path.skipped is not None:
@@ -212,7 +205,7 @@ class PathLog:
             self.close()
 
     def close(self) -> None:
-        """Commit what is there and close the file; a second call does nothing."""
+        """Commit and close the file; idempotent."""
         if self._closed:
             return
         store = self._store or (self._make(None, 1, ()) if self._early else None)
@@ -230,8 +223,6 @@ class PathLog:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
-
-    # -- within -----------------------------------------------------------------------------------------------
 
     def _path(self, tracer: Tracer) -> OpenPath:
         path = self._open
@@ -252,7 +243,7 @@ class PathLog:
         self._rows[1].append(row)
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> Store:
-        """Make the file, and write the rows of paths that ended before there was one."""
+        """Make the file and write the paths without points."""
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
@@ -273,7 +264,7 @@ class PathLog:
         store, path = self._store, self._open
         assert store is not None
         points, paths, checkpoints = None, None, {}
-        # A commit that Ctrl-C interrupted may have been complete.
+        # The commit that Ctrl-C interrupted may be complete.
         start = store.committed.points
         rows = self._rows[1][start - self._rows[0] :]
         if path is not None and rows:

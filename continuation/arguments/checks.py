@@ -1,4 +1,4 @@
-"""Checks of arguments: every complaint says ``name: expected ..., found ...``, and a wrong type is a TypeError."""
+"""Checks of arguments: messages read ``name: expected ..., found ...``."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ Validator = Callable[[Any, "Attribute[Any]", Any], None]
 
 
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
-    """The exception about an argument; of a value of the wrong type the type is said too."""
+    """The exception about an argument."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    # One line, and not a long one, whatever a value has to say of itself.
+    # One short line, whatever the repr.
     found = " ".join(repr(value).split())
     shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
     return error(f"{name}: expected {expected}, found {shown}{kind}")
 
 
 def is_number(value: Any) -> bool:
-    """Whether `value` is a real number of Python or numpy; True and False are none."""
+    """Whether `value` is a real number, not True or False."""
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
 
 
@@ -36,14 +36,14 @@ def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> V
     Parameters
     ----------
     expected : str
-        What is allowed, as the complaint says it.
+        Allowed numbers, for messages.
     allowed : callable
-        Of the number; to be False of NaN, as every comparison is.
+        False for NaN.
 
     Returns
     -------
     callable
-        Raises TypeError for anything but a real number, ValueError for a number that is not allowed.
+        Raises TypeError or ValueError.
     """
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
@@ -70,7 +70,7 @@ def integer(least: float = -math.inf, most: float = math.inf) -> Validator:
 
 
 def one_of(*values: int) -> Validator:
-    """An attrs validator for one of a few integers."""
+    """An attrs validator for a few integers."""
     expected = f"one of {', '.join(map(str, values))}"
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
@@ -81,7 +81,7 @@ def one_of(*values: int) -> Validator:
 
 
 def of_kind(expected: str, holds: Callable[[Any], bool]) -> Validator:
-    """An attrs validator that raises TypeError unless `holds` of the value."""
+    """An attrs validator: TypeError unless `holds(value)`."""
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
         if not holds(value):
@@ -91,7 +91,7 @@ def of_kind(expected: str, holds: Callable[[Any], bool]) -> Validator:
 
 
 def sign(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """An attrs validator for a direction: -1, 0 or 1."""
+    """An attrs validator for -1, 0 or 1."""
     check_sign(attribute.name, value)
 
 
@@ -117,7 +117,7 @@ FACTOR = number("a finite number above 1", lambda x: 1.0 < x < math.inf)
 
 
 def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:
-    """Raise TypeError unless `value` is an object, not a class, that has the attributes."""
+    """TypeError unless `value` is an object with the attributes, not a class."""
     if isinstance(value, type):
         raise TypeError(f"{name}: expected {expected}, found the class {value.__name__}; {value.__name__}() is one")
     missing = [attribute for attribute in attributes if not hasattr(value, attribute)]
@@ -128,8 +128,7 @@ def instance_with(name: str, value: Any, attributes: Sequence[str], expected: st
 def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """A copy of `value` as an array of floats.
 
-    Raises `ValueError` if it holds anything but real numbers: a complex one would lose its imaginary part, and a
-    masked one its mask, without a word.
+    Raises `ValueError` for complex or masked entries, which would silently lose imaginary parts or masks.
     """
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
@@ -141,5 +140,5 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
         found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
         raise ValueError(f"{name}: expected real numbers, found {found}")
     with np.errstate(over="ignore"):
-        # A longdouble that no float holds becomes infinite, which is for the caller to refuse.
+        # Too large longdoubles become infinite.
         return array.astype(float)

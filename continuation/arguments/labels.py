@@ -1,4 +1,4 @@
-"""What the parameter and the unknowns of a homotopy are called, and their units: for axes, tables and archives."""
+"""Names and units of a homotopy's parameter and unknowns."""
 
 from __future__ import annotations
 
@@ -12,19 +12,18 @@ from attrs import field, frozen
 from continuation.arguments.checks import complain
 
 ATTRIBUTES = ("parameter_name", "names", "units")
-"""Of a homotopy, and of an archive's root."""
+"""Attributes of homotopies and archive roots."""
 
 _LONGEST = 100
-"""Characters of a name in a file that is taken for one. Of TeX, which matplotlib reads by recursion, so many hold 14
-nested roots: at 30, Python's stack is at its end."""
+"""Longest name read from a file: 100 characters of TeX hold 14 nested roots; at 30, matplotlib exhausts Python's
+stack."""
 
 
 @frozen
 class Labels:
     """Names and units.
 
-    `parameter_name`: Empty where the homotopy does not say. `names`: Of the unknowns, in order; empty where it does not
-    say. `units`: Of the parameter, the unknowns and the observed scalars, by their names.
+    `names`: of the unknowns. `units`: by name, also of parameter and observed scalars.
     """
 
     parameter_name: str = ""
@@ -33,7 +32,7 @@ class Labels:
 
     @classmethod
     def of(cls, homotopy: Any) -> Labels:
-        """What a homotopy says of itself; `TypeError` if one of the three attributes is nothing of its kind."""
+        """The homotopy's labels; `TypeError` for a wrong type."""
         name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
         if not isinstance(name, str | None):
             raise complain(TypeError, "parameter_name", "a text", name)
@@ -47,14 +46,14 @@ class Labels:
         return cls(name or "", tuple(names or ()), dict(units or {}))
 
     def attributes(self) -> dict[str, str]:
-        """For an archive: what is said, as texts."""
+        """Texts for an archive."""
         texts = (self.parameter_name, json.dumps(self.names), json.dumps(dict(self.units)))
         said = (self.parameter_name, self.names, self.units)
         return {name: text for name, text, one in zip(ATTRIBUTES, texts, said) if one}
 
     @classmethod
     def from_attributes(cls, attributes: Mapping[str, Any]) -> Labels:
-        """The same again; what makes no sense is left out."""
+        """Labels from an archive, without invalid ones."""
         found: dict[str, Any] = {}
         for name in ATTRIBUTES:
             text = attributes.get(name)
@@ -70,19 +69,19 @@ class Labels:
         return said if max(map(len, texts)) <= _LONGEST else cls()
 
     def parameter(self, symbol: str = "lam") -> str:
-        """What an axis or a column of the parameter is called."""
+        """The parameter's label."""
         return self.with_unit(self.parameter_name) if self.parameter_name else symbol
 
     def unknown(self, i: int) -> str:
-        """The name of an unknown; empty where there is none."""
+        """An unknown's name, or empty."""
         return self.names[i] if i < len(self.names) else ""
 
     def with_unit(self, name: str) -> str:
-        """A name with its unit in brackets, where that is known."""
+        """A name, with its unit in brackets if known."""
         return f"{name} [{self.units[name]}]" if name in self.units else name
 
     def index(self, name: str) -> int:
-        """The number of an unknown, -1 for the parameter; `ValueError` if nothing is called so."""
+        """The number of an unknown, -1 for the parameter."""
         if name in ("lam", self.parameter_name):
             return -1
         if name in self.names:

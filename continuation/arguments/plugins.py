@@ -1,14 +1,12 @@
-"""What installed packages offer under a name: homotopies, the entry points of the group `continuation.homotopies`, and
-scenes, those of `continuation.scenes`.
+"""Entry points of installed packages: homotopies (`continuation.homotopies`), scenes (`continuation.scenes`).
 
 In the ``pyproject.toml`` of a package::
 
     [project.entry-points."continuation.homotopies"]
     truss = "snapthrough:VonMisesTruss"
 
-The object is a class, or a function, whose call gives a homotopy; its parameters are the options. The first line of its
-docstring is its summary, its attributes `problem_class` and `references` say what it is for and where it is from.
-Nothing is imported before it is asked for, and what cannot be imported hides nothing else.
+The object is a class or function that returns a homotopy; its parameters are the options. The docstring's first line is
+its summary; the attributes `problem_class` and `references` give purpose and sources. Imports wait until needed.
 """
 
 from __future__ import annotations
@@ -31,19 +29,18 @@ COMMANDS = "continuation.commands"
 _KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
-"""What an entry point names: options to homotopy."""
+"""From options to homotopy."""
 
 
 class PluginError(LookupError):
-    """A name that gives no homotopy; the sentence says which name, and why."""
+    """A name that gives no homotopy."""
 
 
 @frozen
 class Option:
-    """A parameter of a plug-in's constructor.
+    """A parameter of a plug-in.
 
-    `default`: None where it is required, `attrs.NOTHING` where it is worked out from the other options. `annotation`:
-    Its type as written; empty where there is none.
+    `default`: None if required, `attrs.NOTHING` if computed from other options. `annotation`: type as written.
     """
 
     name: str
@@ -59,15 +56,15 @@ class Option:
 
 @frozen
 class Plugin:
-    """A name and what is registered under it.
+    """A registered name.
 
     Attributes
     ----------
     name : str
     points : tuple of EntryPoint
-        One; more where several packages register the name.
+        Several if several packages register the name.
     kind : str
-        What is made: a homotopy, a scene.
+        "homotopy", "scene", "study" or "command".
     """
 
     name: str
@@ -76,23 +73,23 @@ class Plugin:
 
     @property
     def origin(self) -> str:
-        """Distribution and object, of each that has the name."""
+        """Distribution and object of each entry point."""
         return " and ".join(f"{owner(point)} ({point.value})" for point in self.points)
 
     def load(self) -> Factory:
-        """The class or function; imports its module.
+        """Import the class or function.
 
         Raises
         ------
         PluginError
-            If two packages have the name, or the import fails with whatever error, or gives nothing to call.
+            If packages share the name, the import fails, or the object is not callable.
         """
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
         point = self.points[0]
         try:
             factory: Any = point.load()
-        except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+        except (Exception, SystemExit) as error:  # Imports may raise anything.
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {self.origin} cannot be loaded: {reason}") from error
         return _callable(self.name, factory, self.kind)
@@ -100,10 +97,9 @@ class Plugin:
 
 @frozen
 class Description:
-    """What a plug-in says of itself.
+    """A plug-in's description.
 
-    `summary`: First line of the docstring. `problem_class`: The problems that it is for; empty where it does not say.
-    `references`: BibTeX entries.
+    `summary`: first line of the docstring. `references`: BibTeX.
     """
 
     summary: str
@@ -113,7 +109,7 @@ class Description:
 
 
 def available(group: str = GROUP) -> dict[str, Plugin]:
-    """All registered names, sorted, without importing anything.
+    """All registered names, sorted, without imports.
 
     Parameters
     ----------
@@ -125,19 +121,18 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
 
 
 def find(name: str, group: str = GROUP) -> Factory:
-    """The class or function behind a name.
+    """The class or function of a name.
 
     Parameters
     ----------
     name : str
-        A registered name, or ``module:object`` for one that is not registered.
+        Registered, or ``module:object``.
     group : str
-        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
 
     Raises
     ------
     PluginError
-        If there is none by that name, or it cannot be loaded.
+        If it cannot be found or loaded.
     """
     if ":" in name:
         return _imported(name, _KINDS[group])
@@ -150,16 +145,13 @@ def find(name: str, group: str = GROUP) -> Factory:
 
 
 def describe(factory: Factory) -> Description:
-    """Summary, options, class of problems and references.
-
-    A function has no attributes of its own to look at; those of what it makes without arguments are taken instead.
-    """
+    """The description; a function's attributes are those of its result, if it needs no arguments."""
     found = options(factory)
     source: Any = factory
     if not isinstance(factory, type) and not any(option.required for option in found):
         try:
             source = factory()
-        except Exception:  # A description is no place to fail: what it cannot say stays empty.
+        except Exception:  # A description must not fail.
             source = factory
     references = getattr(source, "references", ())
     return Description(
@@ -171,7 +163,7 @@ def describe(factory: Factory) -> Description:
 
 
 def options(factory: Factory) -> tuple[Option, ...]:
-    """The parameters that can be given by name."""
+    """Parameters with names."""
     named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return tuple(
         Option(p.name, p.default is p.empty, None if p.default is p.empty else p.default, _written(p.annotation))
@@ -181,32 +173,31 @@ def options(factory: Factory) -> tuple[Option, ...]:
 
 
 def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """The homotopy of that name, with options by name.
+    """The homotopy of that name.
 
     Raises
     ------
-    PluginError
-        As `find`.
-    TypeError
-        As `called`.
+    PluginError, TypeError
+        As `find` and `called`.
     """
     return called(name, find(name), values)
 
 
 def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None) -> Any:
-    """What a factory makes of options by name.
+    """The factory's result.
 
     Parameters
     ----------
     name : str
-        Of the factory, for messages.
+        For messages.
     factory : callable
     values : mapping, optional
+        Options by name.
 
     Raises
     ------
     TypeError
-        If an option is unknown or missing, naming it and those that there are.
+        If an option is unknown or missing.
     """
     values = dict(values or {})
     known = options(factory)
@@ -222,7 +213,7 @@ def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None)
 
 
 def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
-    """Entry points by name; one that is found twice with the same meaning counts once."""
+    """Entry points by name, without duplicates."""
     found: dict[str, list[EntryPoint]] = defaultdict(list)
     for point in points:
         if all(point.value != other.value for other in found[point.name]):
@@ -231,7 +222,7 @@ def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
 
 
 def owner(point: EntryPoint) -> str:
-    """Distribution and version that an entry point comes from, or its object where that is not known."""
+    """Distribution and version of an entry point, or its object."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
 
 
@@ -241,7 +232,7 @@ def _imported(path: str, kind: str) -> Factory:
         found: Any = importlib.import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+    except (Exception, SystemExit) as error:  # Imports may raise anything.
         raise PluginError(f"{path}: cannot be loaded: {type(error).__name__}: {error}") from error
     return _callable(path, found, kind)
 

@@ -1,4 +1,4 @@
-"""`cite`: what to quote for a run."""
+"""`cite`: BibTeX for a run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
 
 @runtime_checkable
 class Traced(Protocol):
-    """A traced path: what decides which methods it used."""
+    """A traced path: attributes that show its methods."""
 
     winding_number: int | None
     events: list[Any]
@@ -26,22 +26,22 @@ class Traced(Protocol):
 
 
 def cite(source: Any) -> str:
-    """BibTeX of what to quote: the library, the methods that a run used, and the homotopy's own sources.
+    """BibTeX of the library, a run's methods and the homotopy's sources.
 
     Parameters
     ----------
     source : Path or Homotopy
-        A traced path knows its parts; of a homotopy alone its own references are given.
+        A homotopy gives only its own references.
 
     Returns
     -------
     str
-        Entries with an empty line between them, each key once.
+        Entries, each once.
 
     Raises
     ------
     TypeError
-        If `source` is neither: it has no `references`, and is no homotopy.
+        For anything else.
     """
     if isinstance(source, Traced):
         ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
@@ -53,7 +53,7 @@ def cite(source: Any) -> str:
 
 
 def references_of(*parts: Any) -> tuple[str, ...]:
-    """The BibTeX entries in the attribute `references` of each part that has one, each key once."""
+    """The parts' BibTeX `references`, each key once."""
     found = [getattr(part, "references", ()) for part in parts]
     for given in found:
         if not isinstance(given, (tuple, list)) or not all(isinstance(entry, str) for entry in given):
@@ -62,25 +62,25 @@ def references_of(*parts: Any) -> tuple[str, ...]:
 
 
 def entries(text: str) -> tuple[str, ...]:
-    """BibTeX entries with empty lines between them, as an archive has them, one by one."""
+    """BibTeX entries separated by empty lines."""
     return tuple(entry for entry in re.split(r"\n{2,}(?=@)", text.strip()) if entry)
 
 
 def unique(found: tuple[str, ...]) -> tuple[str, ...]:
-    """The entries without those whose key occurred before."""
+    """The first entry of each key."""
     by_key = {key(entry): entry for entry in reversed(found)}
     return tuple(by_key[name] for name in dict.fromkeys(map(key, found)))
 
 
 @lru_cache(maxsize=256)
 def key(entry: str) -> str:
-    """The name by which an entry is cited; the entry itself where it has none."""
+    """The citation key, or the entry itself."""
     found = _KEY.search(entry)
     return found.group(1) if found else entry
 
 
 def short(entry: str) -> str:
-    """Author, year and title of an entry in one line of plain text."""
+    """Author, year and title in one line."""
     fields = {name: _plain(value) for name, value in _FIELD.findall(entry)}
     names = [name.partition(",")[0].strip() for name in fields.get("author", "").split(" and ")]
     if len(names) > 1:
@@ -91,5 +91,4 @@ def short(entry: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Without TeX's braces and accents."""
     return _MARKUP.sub("", text).strip()

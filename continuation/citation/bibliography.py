@@ -1,4 +1,4 @@
-"""BibTeX entries of the methods in the engine, one constant a source; `continuation.cite` collects them."""
+"""BibTeX entries of the engine's methods, collected by `continuation.cite`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line, ``continuation COMMAND ...``: one file a group of commands; `problems` adds its own."""
+"""The command line, ``continuation COMMAND ...``; `problems` adds commands."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from continuation.version import __version__
 __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
 
 INTERRUPTED = 130
-"""The shell's status for a process that Ctrl-C ended."""
+"""The shell's status after Ctrl-C."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command. Whatever it raises becomes one line on stderr, here and nowhere else.
+    """Run one command; exceptions become one line on stderr.
 
     Parameters
     ----------
     argv : sequence of str, optional
-        The arguments without the program's name; those of the process by default.
+        Default: the process's arguments.
 
     Returns
     -------
     int
-        0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
+        0 done (solved), 1 not solved, 2 bad input.
     """
     if sys.stdout is None:
         print("continuation: stdout: is closed, expected a place for what the command says", file=sys.stderr)
         return BAD_INPUT
     if isinstance(sys.stdout, TextIOWrapper):
-        # A name that is no UTF-8 is written as it was read.
+        # File names that are no UTF-8 stay as they were read.
         sys.stdout.reconfigure(errors="surrogateescape")
     parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
     parser.add_argument("--version", action="version", version=f"continuation {__version__}")
@@ -57,11 +57,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
-    """The status of a command that ended by an exception, and what is said of it."""
+    """Status and message after an exception."""
     if isinstance(error, UsageError):
         return error.status, str(error)
     if isinstance(error, BrokenPipeError):
-        # The reader (head, a pager) has enough.
+        # The reader (head, a pager) has closed.
         return SUCCESS, ""
     if isinstance(error, KeyboardInterrupt):
         kept = getattr(arguments, "archive", None) or getattr(arguments, "grows", None)
@@ -77,7 +77,7 @@ def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
 
 
 def _let_go() -> None:
-    """Let stdout be nowhere if it takes no more: Python would complain once more while it shuts down."""
+    """Redirect a closed stdout, so that Python's shutdown does not complain."""
     try:
         sys.stdout.flush()
     except OSError:

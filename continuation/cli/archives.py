@@ -1,4 +1,4 @@
-"""``continuation inspect``, ``resume``, ``recover``, ``export`` and ``merge``: what is done with archives."""
+"""``continuation inspect``, ``resume``, ``recheck``, ``recover``, ``export`` and ``merge``."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def register(subparsers: Subparsers) -> None:
         argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default"),
         argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object"),
         argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE"),
-        # The second as `trace` has it.
+        # The second as in `trace`.
         *(
             argument(name, dest="steps", type=positive, metavar="N", help="a new budget: accepted steps")
             for name in ("--steps", "--budget-steps")
@@ -112,7 +112,7 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _given(arguments: argparse.Namespace) -> Any:
-    """The homotopy that --homotopy names, made with the parameters in the file and, over those, KEY=VALUE ..."""
+    """The homotopy of --homotopy, with the file's parameters, then KEY=VALUE ..."""
     from continuation.archive import open_archive
     from continuation.archive.provenance import stored_parameters
     from continuation.arguments import plugins
@@ -129,7 +129,7 @@ def _given(arguments: argparse.Namespace) -> Any:
 
 
 def _named(path: str) -> Any:
-    """The class or function ``module:name``, which the user names and so trusts."""
+    """The class or function ``module:name``; naming it means trust."""
     module, _, name = path.partition(":")
     from continuation.archive.trust import registry
     from continuation.cli.making import importable
@@ -138,7 +138,7 @@ def _named(path: str) -> Any:
     try:
         found = attrgetter(name)(import_module(module))
         registry([found])
-    except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+    except (Exception, SystemExit) as error:  # Importing foreign modules may raise anything.
         reason = f"{type(error).__name__}: {error}".removeprefix("TypeError: trust: ")
         expected = "expected module:name of a class or function"
         raise argparse.ArgumentTypeError(f"{expected}, found {path!r} ({reason})") from None
@@ -184,7 +184,7 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 @contextmanager
 def complaints(file: str, new: str = "FILE") -> Iterator[None]:
-    """An archive that cannot be used as one line about the argument `file`, or `new` if a new file is there already."""
+    """Turn archive errors into usage errors about `file`, or about `new` if it exists."""
     from continuation.archive import ArchiveError, ArchiveExistsError
 
     try:

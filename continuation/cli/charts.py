@@ -1,4 +1,4 @@
-"""``continuation chart``: ready studies of speed against accuracy, as tables and pictures."""
+"""``continuation chart``: ready studies of speed against accuracy."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _one(study: Study, folder: Path) -> None:
 
 
 def _watch(name: str) -> Watch | None:
-    """On a terminal, a line with the progress of the study; nothing elsewhere."""
+    """A progress line, on a terminal only."""
     if not sys.stderr.isatty():
         return None
 

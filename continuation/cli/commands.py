@@ -1,4 +1,4 @@
-"""The commands: those of the engine, and those that installed packages add through entry points."""
+"""The engine's commands and those of installed packages."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from continuation.cli.parser import Subparsers, UsageError
 def register(subparsers: Subparsers) -> None:
     """Add every command, the engine's own last.
 
-    An entry point of the group `continuation.commands` is a function that takes the subparsers and adds one command,
-    named as the entry point. One that cannot be loaded hides no other: its command stays in the list and says why it
-    cannot run.
+    An entry point of the group `continuation.commands` is a function that takes the subparsers and adds its command. If
+    it cannot be loaded, its command gives the reason.
     """
     for name, plugin in plugins.available(plugins.COMMANDS).items():
         try:
@@ -29,7 +28,7 @@ def _broken(subparsers: Subparsers, name: str, reason: str) -> None:
     def complain(arguments: argparse.Namespace) -> int:
         raise UsageError(name, reason)
 
-    # No prefix character, so that any arguments are accepted and the reason is shown.
+    # Without prefix characters, any arguments are accepted.
     parser = subparsers.add_parser(name, help="(cannot run; call it to see why)", prefix_chars="\0", add_help=False)
     parser.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
     parser.set_defaults(run=complain)

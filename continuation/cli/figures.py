@@ -1,4 +1,4 @@
-"""``continuation plot``: a path of an archive as a picture; and what every command does that writes pictures."""
+"""``continuation plot``, and pictures of other commands."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def register(subparsers: Subparsers) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, draw, say where."""
+    """Read, draw, print the name."""
     from continuation.archive import open_archive
 
     if arguments.output is not None:
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def check_picture(option: str, file: str) -> None:
-    """Complain before any work is done if a picture cannot be written to `file`, an argument called `option`."""
+    """Raise `UsageError` early if `file`, the argument `option`, cannot be written."""
     from continuation.plot import require_matplotlib
 
     path = Path(file)
@@ -71,7 +71,7 @@ def check_picture(option: str, file: str) -> None:
     if not path.parent.is_dir():
         raise UsageError(option, f"expected a file in an existing directory, found {file!r}")
     try:
-        # Asked by doing it: rights say little of a full or a read-only file system.
+        # By trying: permissions do not show full or read-only disks.
         with TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
@@ -83,7 +83,7 @@ def check_picture(option: str, file: str) -> None:
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
-    """What `draw` draws on its axes, above the step sizes; no window opens, with any backend of matplotlib."""
+    """Save the axes that `draw` fills, above step sizes."""
     from matplotlib.figure import Figure
 
     from continuation.plot import plot_steps
@@ -97,12 +97,12 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
 
 
 def write(figure: Any, file: Path) -> None:
-    """A figure into a file, whole or not at all."""
+    """Write a figure, whole or not at all."""
     from continuation.archive.atomic import beside, publish
 
     picture = BytesIO()
     figure.savefig(picture, format=file.suffix[1:].lower(), dpi=DOTS_PER_INCH)
-    # Beside it first: where the disk is full, what was there stays.
+    # A full disk must not destroy the old file.
     with beside(file) as part:
         part.write_bytes(picture.getvalue())
         publish(part, file, replace=True)

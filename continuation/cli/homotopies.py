@@ -1,4 +1,4 @@
-"""``continuation plugins``, ``trace`` and ``check``: homotopies by name, from any installed package."""
+"""``continuation plugins``, ``trace`` and ``check``."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 PRESETS = ("fast", "default", "conservative", "series")
 
 MOST_PRINTED = 10
-"""Unknowns printed; --json prints all."""
+"""Unknowns printed without --json."""
 
 
 def register(subparsers: Subparsers) -> None:
@@ -69,9 +69,6 @@ def register(subparsers: Subparsers) -> None:
     )  # fmt: skip
 
 
-# -- plugins --------------------------------------------------------------------------------------------------
-
-
 def _list(arguments: argparse.Namespace) -> int:
     scenes = plugins.available(plugins.SCENES)
     known = {**plugins.available(), **scenes}
@@ -106,9 +103,6 @@ def _entry(name: str, described: plugins.Description, plugin: plugins.Plugin | N
     return "\n    ".join([name, described.summary, *lines])
 
 
-# -- trace ----------------------------------------------------------------------------------------------------
-
-
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation.archive import PathLog
     from continuation.step import presets
@@ -136,7 +130,7 @@ def _trace(arguments: argparse.Namespace) -> int:
     if arguments.cite:
         from continuation.citation import cite
 
-        # The one JSON object has stdout for itself.
+        # Keep stdout for the JSON object.
         print(f"\n{cite(path)}", file=sys.stderr if arguments.json else sys.stdout)
     if arguments.plot is not None:
         from continuation.cli.figures import save
@@ -147,7 +141,7 @@ def _trace(arguments: argparse.Namespace) -> int:
 
 
 def _course(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Which path, and how much of it: the options of `continuation.trace` that say where it goes and ends."""
+    """Options of `continuation.trace` for direction and end."""
     from continuation.budget import Budget
     from continuation.events import TurningPoint
 
@@ -192,9 +186,6 @@ def _as_json(title: str, path: Path) -> dict[str, Any]:
     }
 
 
-# -- check ----------------------------------------------------------------------------------------------------
-
-
 def _check(arguments: argparse.Namespace) -> int:
     from continuation.testing import run_checks
 
@@ -210,7 +201,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _number_or_none(text: str) -> float:
-    """A number; NaN stands for no target, so that it differs from an option not given."""
+    """A number; NaN means no target, unlike an absent option."""
     if text.lower() == "none":
         return math.nan
     return parsed(text, float, math.isfinite, "a finite number or none")

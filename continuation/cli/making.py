@@ -1,4 +1,4 @@
-"""A homotopy out of its name and options, as the shell is given them; what it raises becomes one line."""
+"""Homotopies from names and options of the shell."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ DOOR = (
     "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
     "parameter_name", "names", "units",
 )  # fmt: skip
-"""What a complaint about a homotopy begins with."""
+"""Names that begin a complaint about a homotopy."""
 
 
 def importable(name: str) -> None:
-    """Let ``module:object`` be found in the working directory, which a program started by its script does not see."""
+    """Make ``module:object`` importable from the working directory."""
     if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
 
@@ -28,10 +28,7 @@ def importable(name: str) -> None:
 def homotopy_of(
     name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None, group: str = plugins.GROUP
 ) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy, or the scene, that NAME KEY=VALUE ... stand for, and the options read; `known` ones hold otherwise.
-
-    Raises `UsageError`, naming the homotopy or the option.
-    """
+    """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults."""
     importable(name)
     with unknown(name):
         factory = plugins.find(name, group)
@@ -45,7 +42,7 @@ def homotopy_of(
         if not isinstance(error, (TypeError, ValueError)):
             raise
         key, _, complaint = str(error).partition(": ")
-        # Any other error of the plug-in concerns the homotopy as a whole.
+        # Other errors concern the whole homotopy.
         raise UsageError(*((key, complaint) if key in {*values, *written} else (name, error))) from error
 
 
@@ -62,7 +59,6 @@ def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, A
 
 
 def _literal(text: str) -> Any:
-    """A number, None, True, a list ...; any other text is itself."""
     try:
         return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
     except (ValueError, SyntaxError):
@@ -71,7 +67,7 @@ def _literal(text: str) -> Any:
 
 @contextmanager
 def unknown(name: str) -> Iterator[None]:
-    """Report a name that no homotopy has."""
+    """Report an unknown name."""
     try:
         yield
     except plugins.PluginError as error:
@@ -80,7 +76,7 @@ def unknown(name: str) -> Iterator[None]:
 
 @contextmanager
 def refused(name: str) -> Iterator[None]:
-    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source."""
+    """Report errors of trace and plug-in in one line."""
     try:
         yield
     except (UsageError, OSError):

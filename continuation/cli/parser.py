@@ -1,4 +1,4 @@
-"""What every command uses: a parser with one-line error messages, and the exception that becomes such a line."""
+"""The parser and exceptions of all commands."""
 
 from __future__ import annotations
 
@@ -14,25 +14,24 @@ from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 T = TypeVar("T")
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
-"""Exit statuses: done or solved; not solved; an argument could not be used."""
+"""Exit statuses: done or solved; not solved; bad input."""
 
 Run = Callable[[argparse.Namespace], int]
-"""A command: its parsed arguments to its exit status. Set with ``parser.set_defaults(run=...)``."""
+"""A command, from parsed arguments to exit status (``parser.set_defaults(run=...)``)."""
 
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
-"""The names of an argument, and the options of `add_argument`."""
+"""Names and options for `add_argument`."""
 
 
 class UsageError(ValueError):
-    """An argument that cannot be used; the command line prints one line and ends with status 2.
+    """A bad argument: the command prints one line and ends with status 2.
 
     Attributes
     ----------
     argument : str
-        As the user typed it: ``FILE``, ``--x0``.
+        As typed: ``FILE``, ``--x0``.
     complaint : str
-        What was expected and what was found.
     """
 
     status = BAD_INPUT
@@ -44,13 +43,13 @@ class UsageError(ValueError):
 
 
 class PlugInError(UsageError):
-    """An exception of a plug-in's own: no bad input, so that the command ends with status 1, after one line."""
+    """A plug-in's exception; the status is 1."""
 
     status = FAILURE
 
 
 def told(error: BaseException) -> str:
-    """An exception in one line, with its place in the source."""
+    """An exception and its place in one line."""
     from continuation.step.verdict import sentence
 
     frames = traceback.extract_tb(error.__traceback__)
@@ -58,36 +57,35 @@ def told(error: BaseException) -> str:
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser with one-line error messages, without the usage before them."""
+    """A parser with one-line error messages."""
 
     def error(self, message: str) -> NoReturn:
-        """Write the message to stderr and exit with status 2."""
+        """Write the message and exit with status 2."""
         self.exit(BAD_INPUT, f"{self.prog}: {message.removeprefix('argument ')}\n")
 
 
 class Subparsers(Protocol):
-    """What a command registers itself with: the `add_parser` of argparse."""
+    """The `add_parser` of argparse."""
 
     def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """A parser for a new command.
+        """Add a command's parser.
 
         Parameters
         ----------
         name : str
-            Of the command.
         **options
-            As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
+            As for argparse.
         """
         ...
 
 
 def argument(*names: str, **options: Any) -> Argument:
-    """An argument of a command, as `add_argument` takes it."""
+    """An argument for `add_command`."""
     return names, options
 
 
 def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argument, **options: Any) -> None:
-    """Add a command: what it does, its name, its arguments, and its line in the list of commands (`help`)."""
+    """Add a command."""
     parser = subparsers.add_parser(name, **options)
     for names, about in arguments:
         parser.add_argument(*names, **about)
@@ -95,7 +93,7 @@ def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argumen
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
-    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org)."""
+    """The text, green or red on a terminal unless NO_COLOR is set (https://no-color.org)."""
     stream = sys.stdout if stream is None else stream
     if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return text
@@ -103,7 +101,7 @@ def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
 
 
 def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:
-    """The value of an argument, for its `type`; a sentence where it cannot be read or is not fine."""
+    """The value of an argument."""
     try:
         value = convert(text)
         if fine(value):
@@ -114,17 +112,17 @@ def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], ex
 
 
 def above_zero(text: str) -> float:
-    """A positive number, for the `type` of an argument."""
+    """A positive number."""
     return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def positive(text: str) -> int:
-    """A positive integer, for the `type` of an argument."""
+    """A positive integer."""
     return parsed(text, int, lambda value: value >= 1, "a positive integer")
 
 
 def new_folder(option: str, name: str) -> Path:
-    """The directory that an option names, made if it is not there."""
+    """The directory that an option names, created if missing."""
     folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)

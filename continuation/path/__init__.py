@@ -1,4 +1,4 @@
-"""A path: its points and events, its parts, the same path with more points, and the path up to an interrupt."""
+"""Paths: points, events, parts, refinement, interrupts."""
 
 from continuation.path.path import LocatedEvent, Path, Step
 

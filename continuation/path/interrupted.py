@@ -1,4 +1,4 @@
-"""Ctrl-C during a trace, as an exception that has the path so far."""
+"""Ctrl-C during a trace, as an exception."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from continuation.path.path import Path
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C reached a trace: nothing that was traced is lost.
+    """Ctrl-C during a trace.
 
     Attributes
     ----------
     path : Path
-        All accepted points, with the status INTERRUPTED.
+        The path so far.
     paths : sequence of Path
-        From a sweep: the paths before it, and it.
+        The paths of a sweep.
     diagram : Diagram or None
-        From `diagram`: the branches that were finished.
+        Finished branches.
     """
 
     def __init__(self, path: Path, paths: Sequence[Path] = (), diagram: Any = None) -> None:

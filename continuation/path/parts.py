@@ -1,4 +1,4 @@
-"""Parts of a path, a path turned round, and two joined: steps and events made of the steps and events of others."""
+"""Steps and events of parts, reversed paths and joined paths."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from continuation.point.segment import Segment, hermite
 from continuation.status import Kind
 
 MEET = 1e-6
-"""How near two ends must be, relative to the larger of the two paths' extents, to be one point."""
+"""Largest distance of equal ends, relative to the paths' extent."""
 
 StepsAndEvents: TypeAlias = tuple[list[Step], list[LocatedEvent]]
-"""The steps and the events of a path."""
+"""The steps and events of a path."""
 
 
 @frozen(eq=False)
 class Backwards:
-    """A segment from its end to its beginning."""
+    """A segment, reversed."""
 
     forwards: Segment
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """As of the segment itself."""
+        """Interior nodes."""
         return tuple(1.0 - t for t in reversed(self.forwards.inside))
 
     def at(self, t: float) -> Array:
@@ -37,15 +37,12 @@ class Backwards:
         return self.forwards.at(1.0 - t)
 
     def derivative(self, t: float) -> Array:
-        """Its derivative at t."""
+        """Its derivative."""
         return -self.forwards.derivative(1.0 - t)
 
 
 def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> StepsAndEvents:
-    """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.
-
-    Raises `ValueError` if the step is negative: `Path.reversed` turns a path round.
-    """
+    """Some steps and the events between the first and the last; `ValueError` for a negative step."""
     numbers = range(*chosen.indices(len(steps)))
     if numbers.step < 0:
         raise ValueError("step: expected a positive one; path.reversed() turns a path round")
@@ -67,11 +64,11 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
     """The path from its end to its start."""
     old, last = list(steps), len(steps) - 1
     whole = old[-1].arclength if old else 0.0
-    # At a kink the tangent is that of the arc which comes there, and that is the other one now.
+    # At a kink, the tangent is the arriving arc's.
     kinks = {e.step: -e.rays[1] for e in events if e.kind == Kind.KINK and e.rays is not None and len(e.rays) > 1}
     turned = []
     for k, step in enumerate(reversed(old)):
-        # What belongs to an arc is kept with the step at its end, which is the other one now.
+        # An arc's fields are those of the step at its end.
         arc = old[last - k + 1] if k else None
         segment = None if arc is None or arc.segment is None else Backwards(arc.segment)
         kind = Kind.START if k == 0 else Kind.REGULAR if step.kind in (Kind.START, Kind.TARGET) else step.kind
@@ -106,10 +103,9 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
 def following(
     first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float
 ) -> StepsAndEvents:
-    """The steps of a second path behind its start, and its events, counted on from the end of the first path.
+    """Steps and events of a second path, counted from the end of the first.
 
-    `extent`: The larger of the two paths' extents. Raises `ValueError` if the second does not begin where the first
-    ends.
+    `extent`: the larger of the two extents. Raises `ValueError` if the ends do not meet.
     """
     a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
@@ -118,7 +114,7 @@ def following(
 
 
 def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
-    """The steps of a path behind its start, and its events, counted on from a step at that start."""
+    """Steps and events of a path, counted from step `a` at its start."""
     return (
         [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],
         [evolve(event, step=event.step + a.index, arclength=a.arclength + event.arclength) for event in events],

@@ -1,4 +1,4 @@
-"""What comes back from a trace: steps, events, counts, and the path as arrays and as a function of arclength."""
+"""The result of a trace, with arrays and dense output."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ class Path:
     Attributes
     ----------
     steps : sequence of Step
-        The accepted points, the start first: a list, or `continuation.archive.tables.StoredSteps`.
+        Accepted points: a list, or `continuation.archive.reader.StoredSteps`.
     events : list of LocatedEvent
-        In order along the path.
+        In path order.
     status : Status
     message : str
-        The status' sentence with the particulars of this path.
+        The status in a sentence.
     counts : Counts
     seconds : float
         Wall-clock time.
     references : tuple of str
-        BibTeX of the homotopy and of the parts that traced it; see `continuation.cite`.
+        BibTeX of homotopy and parts; see `continuation.cite`.
     end_error : float or None
-        Where the path reached its target: a bound of the largest absolute error of a component there, from how far
-        the equations hold to round-off of their own terms; at a limit found by the endgame, its estimate.
+        At the target: bound of the components' absolute error, from round-off of the equations' terms; after an
+        endgame, its estimate.
     winding_number : int or None
-        There: the path is a power series in |lam - target|^(1 / winding_number).
+        After an endgame: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
-        The attempts that failed at the last point, where the path ended for want of a step.
+        Failed attempts at the last point.
     proof : Proof or None
-        That it is one path, where that was asked for (`continuation.certify`).
+        If requested (`continuation.certify`).
     labels : Labels
-        Names and units of the homotopy.
+        Names and units.
     """
 
     steps: list[Step] = field(factory=list)
@@ -79,7 +79,7 @@ class Path:
     def __getitem__(self, index: slice) -> Path: ...
 
     def __getitem__(self, index: int | slice) -> Step | Path:
-        """A step, or the part of the path between two steps; arclengths stay what they are."""
+        """A step, or the path between two steps; arclengths stay."""
         return self._of(part_of(self.steps, self.events, index)) if isinstance(index, slice) else self.steps[index]
 
     def _of(self, pieces: StepsAndEvents) -> Path:
@@ -91,7 +91,7 @@ class Path:
 
     @property
     def success(self) -> bool:
-        """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
+        """Whether the path ended at its target, a terminal event or its start."""
         return self.status.success
 
     @property
@@ -111,7 +111,7 @@ class Path:
 
     @property
     def arclength(self) -> Array:
-        """The parameter of the path, shape (m,): accumulated lengths of circular arcs, as `Step` says."""
+        """Arclengths (see `Step`), shape (m,)."""
         return _column(self.steps, "arclength")
 
     @property
@@ -121,33 +121,33 @@ class Path:
 
     @property
     def endpoint(self) -> Step:
-        """The last point; an IndexError says why there is none."""
+        """The last point."""
         if not self.steps:
             raise IndexError(f"the path has no point. {self.message}")
         return self.steps[-1]
 
     @property
     def turning_points(self) -> list[LocatedEvent]:
-        """The located turning points of the parameter."""
+        """Turning points of the parameter."""
         return [event for event in self.events if event.turns]
 
     @property
     def branch_points(self) -> list[LocatedEvent]:
-        """The located simple branch points."""
+        """Simple branch points."""
         return [event for event in self.events if event.kind == Kind.BRANCH_POINT]
 
     @property
     def kinks(self) -> list[LocatedEvent]:
-        """The kinks, where the path goes from one smooth piece of the map to another."""
+        """Points between smooth pieces of the map."""
         return [event for event in self.events if event.kind == Kind.KINK]
 
     def __call__(self, s: float | Array | None = None, *, t: float | None = None) -> Array:
-        """The path at arclength s: dense output, shape (N + 1,) or (k, N + 1); or where its parameter first is t.
+        """Dense output at arclength s, shape (N + 1,) or (k, N + 1), or the first point with parameter t.
 
         Raises
         ------
         ValueError
-            If s lies outside [0, arclength[-1]], or is no number; if the parameter is t nowhere on the path.
+            If s lies outside [0, arclength[-1]], or the parameter is never t.
         IndexError
             If the path has no points.
         """
@@ -170,9 +170,9 @@ class Path:
         return np.array(points) if wanted.ndim else points[0]
 
     def crossings(self, t: float) -> Array:
-        """All points of the path at which its parameter is t, in order, shape (k, N + 1).
+        """All points with parameter t, in order, shape (k, N + 1).
 
-        Where the parameter stands still at t, from one point of the path to the next, both are listed.
+        Both ends of an arc with constant parameter t count.
 
         Parameters
         ----------
@@ -205,15 +205,15 @@ class Path:
         fraction = (s - knots[i - 1]) / (knots[i] - knots[i - 1])
         if segment is None:
             return (1 - fraction) * self.steps[i - 1].u + fraction * self.steps[i].u
-        # An archive keeps no metric: there the fraction itself serves, right at the knots and smooth in between.
+        # Archives keep no metric; the fraction is exact at knots and smooth between.
         return segment.at(fraction if weights is None else parameter_at(segment, weights, fraction))
 
     def reversed(self) -> Path:
-        """The same path from its end to its start; arclength counts from there."""
+        """The path from its end to its start."""
         return self._of(turned_round(self.steps, self.events))
 
     def join(self, other: Path) -> Path:
-        """Put another path, which begins where this one ends, behind it.
+        """Append a path that begins at this one's end.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Path:
         return whole
 
     def refined(self, homotopy: Any, accuracy: float = 1e-3) -> Path:
-        """The path with more points, corrected onto it, until it is a curve to the accuracy: see `refined_path`.
+        """The path with more points (`refined_path`).
 
         Parameters
         ----------
@@ -246,32 +246,32 @@ class Path:
         return self._of(refined_path(homotopy, self.steps, self.events, accuracy))
 
     def plot(self, axes: Any = None, **options: Any) -> Any:
-        """Draw it: the unknowns, or with ``value=...`` a diagram of one number (`continuation.plot`).
+        """Draw the unknowns, or with ``value=...`` a diagram.
 
         Parameters
         ----------
         axes : matplotlib Axes, optional
         **options
-            As for `continuation.plot.plot_components`; with `value`, for `plot_bifurcation`.
+            As for `continuation.plot.plot_components`, with `value` for `plot_bifurcation`.
         """
         from continuation.plot import plot_bifurcation, plot_components
 
         return (plot_bifurcation if "value" in options else plot_components)(self, axes, **options)
 
     def to_xarray(self) -> Any:
-        """The points, located events among them, as an `xarray.Dataset`: that of `Archive.to_xarray`."""
+        """Points and events as an `xarray.Dataset`, as `Archive.to_xarray`."""
         from continuation.archive import growing
 
         return growing.dataset_of(self)
 
     def to_dataframe(self) -> Any:
-        """The points, located events among them, as a `pandas.DataFrame`, with the homotopy's names for columns."""
+        """Points and events as a `pandas.DataFrame`, with the homotopy's names."""
         from continuation.archive import growing
 
         return growing.dataframe_of(self)
 
     def save(self, file: str | PathLike[str], title: str = "") -> None:
-        """Write it to a new archive, from which it is read again as it is; only ``trace(archive=...)`` can be resumed.
+        """Write the path to a new archive; `resume` needs one of ``trace(archive=...)``.
 
         Parameters
         ----------
@@ -303,10 +303,10 @@ class Path:
 
 @runtime_checkable
 class SupportsColumn(Protocol):
-    """Steps that stay in an archive, which has each of their numbers in one place."""
+    """Steps stored as columns."""
 
     def column(self, name: str) -> Array:
-        """A number or vector of all steps, by its name."""
+        """A field of all steps."""
         ...
 
 
@@ -315,19 +315,18 @@ def _off(place: float, curve: Callable[[float], Array], t: float) -> float:
 
 
 def _curve(before: Step, after: Step) -> Callable[[float], Array]:
-    """The path between two points, on [0, 1]: straight where it has no segment."""
+    """The path between two points on [0, 1]."""
     if after.segment is not None:
         return after.segment.at
     return lambda place: before.u if place == 0.0 else before.u + place * (after.u - before.u)
 
 
 def _column(steps: Any, name: str) -> Array:
-    """A number or vector of all steps."""
     return steps.column(name) if isinstance(steps, SupportsColumn) else np.array([getattr(s, name) for s in steps])
 
 
 def require_path(path: Any) -> None:
-    """Raise TypeError unless the argument `path` is a path, ValueError unless it has two points."""
+    """Raise unless `path` is a path with two points."""
     if not isinstance(path, Path):
         raise complain(TypeError, "path", "a path, as `trace` gives it", path)
     if len(path) < 2:

@@ -1,4 +1,4 @@
-"""More points of a path, corrected onto it, until the curve through them is as accurate as was asked for."""
+"""More points of a path."""
 
 from __future__ import annotations
 
@@ -24,19 +24,16 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 DEEPEST = 8
-"""Halvings of an arc: the error of a cubic falls by 16 with each, so that these are worth nine digits."""
+"""Halvings of an arc: each divides a cubic's error by 16, so eight give nine digits."""
 
 
 def refined_path(
     homotopy: Any, path: Sequence[Step], events: Sequence[LocatedEvent], accuracy: float
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """The steps and events of a path with more points, until the arcs between them are the path to an accuracy.
+    """Steps and events of a path with more points, for a given accuracy.
 
-    Each arc's middle is corrected onto the path. Where the arc was farther off than the accuracy, relative to how far
-    each component goes on the whole path, the point is added, and both halves are looked at again.
-
-    `homotopy`: The one that was traced. New steps are of kind REGULAR, with cubics through points and tangents. Raises
-    `ValueError` if the accuracy is no positive number.
+    Each arc's middle is corrected onto the path. If it moves farther than the accuracy (relative to each component's
+    range), it becomes a step and both halves are examined. New steps are REGULAR, with cubic segments.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
         raise complain(ValueError, "accuracy", "a positive number", accuracy)
@@ -60,7 +57,7 @@ def refined_path(
 
 
 def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:
-    """The points that an arc needs between its ends."""
+    """The steps that an arc needs."""
     guess, slope = segment.at(0.5), segment.derivative(0.5)
     weights = np.ones_like(guess) if after.weights is None else after.weights
     length = norm(weights, slope)
@@ -71,7 +68,7 @@ def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, al
         near: Linearization = linearize(solver.evaluator, guess, weights, border)
         point = solver.project_and_linearize(near, guess, border)
     except EvaluationError:
-        # Where the path cannot be had the arc is what there is.
+        # Without a correction, the arc stays.
         return []
     if (np.abs(point.u - guess) <= allowed).all():
         return []

@@ -1,4 +1,4 @@
-"""The points of a path: accepted steps, and events located between them."""
+"""Steps and located events."""
 
 from __future__ import annotations
 
@@ -21,36 +21,34 @@ def _one_line(name: str, point: Any) -> str:
 
 @frozen(eq=False, repr=False)
 class Step:
-    """One accepted point of the path and how it was reached.
+    """One accepted point.
 
     Attributes
     ----------
     index : int
-        0 at the start.
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
-        The parameter of the path: the sum of the lengths of its steps, each that of the circular arc through its two
-        points with the angle between their tangents, in the metric of that step. A length of the curve to a relative
-        error of the fourth order in the angle (`continuation.arclength` measures it to 1e-9); traces whose steps end
-        elsewhere, if only by round-off, differ in it.
+        Sum of the steps' lengths, each of the circular arc through two points with the angle between their tangents, in
+        the step's metric. It is the curve's length to fourth order in the angle and depends on the steps
+        (`continuation.arclength` is accurate to 1e-9).
     step_length : float
-        The predictor's step that led here; 0 at the start.
+        The predictor's step; 0 at the start.
     residual_norm : float
-        Largest component of the residual, evaluated at u.
+        Largest component of the residual.
     orientation : int
         Sign of det [[H'], [tangent']].
     kind : Kind
     corrector_iterations, rejections : int
-        Of the accepted attempt, and the attempts before it.
+        Iterations, and attempts before.
     contraction, distance, angle, share : float
         First ratio of the corrector's increments; length of its correction; angle (radians) between the tangents; the
         parameter's share of the tangent.
     segment : Segment or None
-        The path from the point before to this one.
+        The path from the point before.
     weights : ndarray or None
-        The metric in which that was measured.
+        The metric.
     rejected : tuple of Rejected
-        The attempts before the accepted one: step length, contraction and reason. Not kept in archives.
+        Attempts before. Not archived.
     observed : mapping
         Extra scalars of the homotopy.
     """
@@ -90,7 +88,7 @@ class Step:
 
 @frozen(eq=False, repr=False)
 class LocatedEvent:
-    """A point of the path at which a monitor vanishes, corrected onto the path and polished.
+    """A point of the path at which a monitor vanishes.
 
     Attributes
     ----------
@@ -99,24 +97,22 @@ class LocatedEvent:
     arclength : float
     u, tangent : ndarray, shape (N + 1,)
     residual_norm : float
-        Of H at u.
     monitor : float
-        The monitor's value at u: how well the event is located.
+        The monitor's value.
     orientation : int
     step : int
-        Index of the step in which it lies (from step - 1 to step).
+        The event lies between steps step - 1 and step.
     ends_step : bool
-        Whether it is that step's own point.
+        Whether it is that step's point.
     switches : tuple of int
-        At a kink: the switching functions that vanish there.
+        At a kink: the vanishing switching functions.
     rays : ndarray, shape (k, N + 1), or None
-        At a kink or a simple branch point: the directions of all branches that meet there, of unit length in the
-        metric, each pointing away from it. The first leads back to where the path came from, the second, if any, is
-        the one the path goes on in. Files keep those of kinks.
+        At a kink or simple branch point: outward directions of all branches, of unit length in the metric; the first
+        points back along the path, the second, if any, onward. Archives keep those of kinks.
     weights : ndarray, shape (N + 1,), or None
-        The metric there; None for an event read from a file.
+        The metric; None after reading.
     observed : mapping
-        Extra scalars of the homotopy, at u.
+        Extra scalars.
     """
 
     name: str
@@ -144,7 +140,7 @@ class LocatedEvent:
 
     @property
     def turns(self) -> bool:
-        """Whether it is a turning point of the parameter: of another number's, as of a curve's, it has another name."""
+        """Whether the parameter turns (not another number)."""
         return self.kind is Kind.TURNING_POINT and self.name == "turning point"
 
     @property

@@ -1,9 +1,7 @@
-"""The conformance suite: whether a homotopy fulfils what the engine requires.
+"""The conformance suite: whether a homotopy fulfils the engine's requirements.
 
-``check_homotopy(instance)`` runs it; ``homotopy_checks(instance)`` is for ``pytest.mark.parametrize``; from a shell it
-is ``continuation check module:Class``. Checks are chosen by the capabilities that the homotopy has. Each compares two
-answers at a few places on a path and beside it: an answer with the form it is to have, with what it was before, with
-the derivative of another, or a path with the same path traced otherwise.
+Run ``check_homotopy(instance)``, ``continuation check module:Class`` in a shell, or ``homotopy_checks(instance)`` with
+``pytest.mark.parametrize``. The homotopy's capabilities select the checks.
 """
 
 from continuation.testing.subject import CheckFailure

@@ -1,4 +1,4 @@
-"""Checks of derivatives: Jacobian, differential, bordered solves, Taylor series."""
+"""Checks of derivatives."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 COMPARED_ORDER = 6
-"""Of the Taylor coefficients that are compared: a wrong recurrence shows at order 2 or 3, and the jets cost order^2."""
+"""Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3; jets cost order^2."""
 
 SOLVE_ERROR = 1e-8
 """Largest relative residual of a bordered solve: half of the digits."""
 
 DERIVATIVE_ERROR = 1e-6
-"""Relative error of a derivative, a coefficient or a step that passes: a difference quotient is as good, a wrong
-formula is not."""
+"""Largest relative error of a derivative, coefficient or step: difference quotients satisfy it, wrong formulas do
+not."""
 
 CANCELLED_ENTRY = 1e-10
-"""The same for an entry that cancels, relative to the largest entry."""
+"""Error of an entry that cancels, relative to the largest entry."""
 
 SURELY_REGULAR = 1e12
-"""Largest condition number for which the sign of a determinant in floats is trusted."""
+"""Largest condition number for a trusted sign of a determinant."""
 
 
 @frozen(eq=False)
 class JacobianAlone:
-    """A homotopy without its other capabilities, so that the derivative is taken from `jacobian`."""
+    """A homotopy with `jacobian` only."""
 
     start: Any
     residual: Any
@@ -40,7 +40,7 @@ class JacobianAlone:
 
 
 def jacobian(subject: Subject) -> None:
-    """`jacobian` is the derivative of the residual, H_y and H_lam."""
+    """`jacobian` is the derivative (H_y, H_lam) of the residual."""
     h = subject.homotopy
     for place in subject.places:
         with reporting("jacobian", place.where):
@@ -49,7 +49,7 @@ def jacobian(subject: Subject) -> None:
 
 
 def differential(subject: Subject) -> None:
-    """`differential` is the derivative of the residual along a direction."""
+    """`differential` is the residual's derivative along a direction."""
     for place in subject.places:
         reference = subject.derivative(place)
         for v in random_directions(place.u.size, 3, 11):
@@ -64,7 +64,7 @@ def differential(subject: Subject) -> None:
 
 
 def bordered(subject: Subject) -> None:
-    """`bordered` solves with [[H_y, H_lam], [border']], and gives the sign of its determinant."""
+    """`bordered` solves with [[H_y, H_lam], [border']] and gives the determinant's sign."""
     for place in subject.places:
         matrix = subject.derivative(place)
         for border in random_directions(place.u.size, 2, 13):
@@ -81,8 +81,8 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
         with reporting("bordered.solve", place.where):
             z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
         require(z.shape == b.shape, f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
-        # Relative to the terms of each equation, not to their sum, which may cancel; and to 1e-7 of the largest
-        # possible term, as an equation may consist of round-off only.
+        # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term, since
+        # it may be round-off alone.
         largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
         allowed = SOLVE_ERROR * (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
         _compare("bordered", place, "the solution's equation", whole @ z, b, allowed)
@@ -99,7 +99,7 @@ def _check_sign(place: Place, whole: Array, sign: int) -> None:
 
 
 def taylor(subject: Subject) -> None:
-    """`taylor` gives the coefficients of the path in the pseudo-arclength of the point."""
+    """`taylor` gives the path's coefficients in the point's pseudo-arclength."""
     n = subject.start.u.size
     for place, point in subject.points():
         with reporting("taylor", place.where):
@@ -114,7 +114,7 @@ def taylor(subject: Subject) -> None:
 
 
 def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:
-    """The residual along the series must vanish to its order, and the series stay in its own arclength."""
+    """The series solves the equations to its order and keeps its arclength."""
     along = c @ point.border
     for k in range(2, COMPARED_ORDER + 1):
         said = f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}"

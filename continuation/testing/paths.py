@@ -1,4 +1,4 @@
-"""Checks of whole paths: the domain's boundary, the way back, half the steps, and the archive."""
+"""Checks of whole paths."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from continuation.testing.subject import Place, Subject, fail, random_directions
 
 
 def max_step(subject: Subject) -> None:
-    """One may go some way from a point inside, and half-way to the boundary the other half is left, in units of v."""
+    """After a share of the way to the boundary, `max_step` gives the rest, in units of v."""
     for place in subject.places:
-        # In units of the point, since interior points live in orders of magnitude.
+        # Relative to the point, since interior points span orders of magnitude.
         size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
         for v in size * np.array(random_directions(place.u.size, 4, 19)):
             whole = _longest(subject, place.where, place.u, v)
@@ -58,7 +58,7 @@ def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
 
 
 def audited(name: str, backwards: bool, subject: Subject) -> None:
-    """A retrace, with half the steps or from the end to the start, is the same path."""
+    """A retrace, with half steps or backwards, gives the same path."""
     if len(subject.regular) < 2:
         return
     with reporting(name, "along the path"):
@@ -67,13 +67,13 @@ def audited(name: str, backwards: bool, subject: Subject) -> None:
 
 
 def archive(subject: Subject) -> None:
-    """The homotopy comes out of an archive as it went in, if an archive can hold it."""
+    """The homotopy survives an archive that can hold it."""
     text, arrays = problem_data(subject.homotopy)
     tree = json.loads(text)
     if "unstorable" in tree:
-        # Said in the archive; such a homotopy is handed to `resume` by its owner.
+        # The owner passes it to `resume`.
         return
-    # Classes and functions that the description names are at hand, as it was made just now.
+    # Their modules are loaded, since encoding just named them.
     named = re.findall(r'"(?:class|function)": "([\w.]+):([\w.]+)"', text)
     trusted = registry([attrgetter(name)(sys.modules[module]) for module, name in named])
     try:
@@ -84,7 +84,7 @@ def archive(subject: Subject) -> None:
 
 
 def resumed(subject: Subject) -> None:
-    """A path stopped half-way and resumed from its archive is, bit for bit, the path that was never stopped."""
+    """A path resumed half-way equals, bit for bit, the uninterrupted path."""
     with reporting("resume", "while the whole path is traced"):
         whole = subject.traced()
     half = (len(whole) - 1) // 2
@@ -111,7 +111,7 @@ def _same_path(name: str, wanted: Path, found: Path) -> None:
         for a, b in zip(p, q):
             if not np.array_equal(a.u, b.u):
                 fail(f"{name}: expected {a!r}, found {b!r}, which differs by {float(np.abs(a.u - b.u).max()):.3g}")
-            # By name, as an archive has an order of its own; a scalar that is NaN in both is the same.
+            # By name: archives order scalars differently.
             scalars = list(a.observed.values()), [b.observed.get(key, math.inf) for key in a.observed]
             if len(a.observed) != len(b.observed) or not np.array_equal(*scalars, equal_nan=True):
                 fail(f"{name}: {a!r} observed {dict(a.observed)}, found {dict(b.observed)}")

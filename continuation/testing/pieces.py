@@ -1,4 +1,4 @@
-"""Checks of piecewise smooth maps: their switches, their pieces, and that these agree on their borders."""
+"""Checks of piecewise smooth maps."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from continuation.testing.protocol import answers, difference
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 SAME_VALUE = 1e4
-"""Values of one map from two formulas, in units of their round-off: a mistake is larger."""
+"""Allowed difference of two formulas, in units of round-off."""
 
 MOVED_ULPS = 64.0
-"""Last places by which a point is moved to see what they make of the map."""
+"""Ulps by which a point moves to sample round-off."""
 
 SMOOTH = 1e-4
-"""The derivative of a switch from two sides of a point, relative to its size: differences have eight digits."""
+"""Relative difference of one-sided derivatives of a switch; difference quotients have eight digits."""
 
 
 def switches(subject: Subject) -> None:
-    """`switches` gives as many finite real numbers everywhere, and is smooth."""
+    """`switches` gives equally many finite numbers everywhere, and is smooth."""
     _vectors(subject)
     for place in subject.places:
         _smooth(subject, place)
@@ -45,7 +45,7 @@ _vectors = answers(
 
 
 def _smooth(subject: Subject, place: Place) -> None:
-    """One-sided differences agree but for their curvature, which ten times shorter ones show."""
+    """Differences from both sides agree up to curvature, which shrinks with the step."""
     v = random_directions(place.u.size, 1, 23)[0]
     values = Pieces(subject.homotopy).values
 
@@ -60,7 +60,7 @@ def _smooth(subject: Subject, place: Place) -> None:
 
 
 def pieces(subject: Subject) -> None:
-    """Each piece is a homotopy, and is the map where its signs hold; at a kink all that meet there are."""
+    """Each piece is a homotopy and equals the map where its signs hold, kinks included."""
     for place, signs in _met(subject):
         piece = _piece(subject, place, signs)
         with reporting("residual of the piece", place.where):
@@ -74,7 +74,7 @@ def pieces(subject: Subject) -> None:
 
 
 def _round_off(subject: Subject, place: Place, value: Array) -> Array:
-    """What a last place of the largest values along the path makes of the map at a place."""
+    """The map's change for one ulp of the largest values along the path."""
     move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(random_directions(place.u.size, 1, 29)[0])
     moves = [MOVED_ULPS * move, -MOVED_ULPS * move, MOVED_ULPS * np.where(np.arange(move.size) % 2, move, -move)]
     looks = [np.asarray(subject.homotopy.residual((place.u + m)[:-1], float((place.u + m)[-1]))) for m in moves]
@@ -83,10 +83,10 @@ def _round_off(subject: Subject, place: Place, value: Array) -> Array:
 
 
 def derivatives_of_pieces(subject: Subject) -> None:
-    """What a piece says of its derivatives is right."""
+    """The pieces' derivatives are right."""
     for place, signs in _met(subject):
         piece = Subject(_piece(subject, place, signs))
-        # The piece is asked at this point alone: its own path, and its start, may lie beyond its border.
+        # The piece's own start and path may lie beyond its border.
         vars(piece)["places"] = (place,)
         for name in ("jacobian", "differential", "bordered"):
             if piece.has(name):
@@ -94,7 +94,7 @@ def derivatives_of_pieces(subject: Subject) -> None:
 
 
 def _met(subject: Subject) -> list[tuple[Place, Signs]]:
-    """The places with their pieces; and up to three kinks, with the pieces on both sides of each switch."""
+    """Places and up to three kinks, with all pieces that meet there."""
     each = Pieces(subject.homotopy)
     found = []
     for place in subject.places:

@@ -1,4 +1,4 @@
-"""Checks of the protocol: shapes, types, and that results depend on the arguments only."""
+"""Checks of shapes, types and repeatability."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
 def answers(
     name: str, ask: Callable[[Any, Place], Any], good: Callable[[Any, int], bool], wanted: str
 ) -> Callable[[Subject], None]:
-    """A check that an answer is good at every place, N unknowns given: of `wanted` form."""
+    """A check that `good(answer, N)` holds at every place."""
 
     def examine(subject: Subject) -> None:
         for place in subject.places:
@@ -42,20 +42,19 @@ def _double(x: Any, n: int) -> bool:
 
 
 def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """At a start, and after it."""
+    """Weights at the start and later."""
     v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
 
 
 def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """There, and at the start."""
+    """Observed scalars there and at the start."""
     y, lam = homotopy.start()
     return homotopy.observe(place.y, place.lam), homotopy.observe(np.array(y, dtype=float), float(lam))
 
 
 def _monitored(homotopy: Any, place: Place) -> list[float]:
-    """What the monitors of the homotopy's events give."""
     v = random_directions(place.u.size, 1, 3)[0]
     return [float(event.monitor(place.u.copy(), v)) for event in homotopy.events]
 
@@ -100,7 +99,7 @@ references = answers(
 
 
 def jacobian_types(subject: Subject) -> None:
-    """`jacobian` gives a matrix that the engine factors, and a vector, of the right shapes."""
+    """`jacobian` gives a matrix that the engine factors, and a vector."""
     for place in subject.places:
         with reporting("jacobian", place.where):
             answer = subject.homotopy.jacobian(place.y, place.lam)
@@ -112,14 +111,14 @@ def jacobian_types(subject: Subject) -> None:
             with np.errstate(all="ignore"):
                 factor_bordered(answer[0], np.asarray(answer[1], dtype=float), np.ones(n + 1))
         except SingularError:
-            # Singular with this border: the start has been found regular by a check of its own.
+            # Another check tests regularity.
             continue
         except (TypeError, ValueError) as error:
             fail(f"jacobian: {place.where} {error}")
 
 
 def repeatable(subject: Subject) -> None:
-    """The same arguments give the same bits after other calls; no call changes its arguments or an earlier answer."""
+    """Equal arguments give equal bits; calls change neither arguments nor earlier answers."""
     first, second = (subject.homotopy.start()[0] for _ in range(2))
     if isinstance(first, np.ndarray) and first.flags.writeable and np.shares_memory(first, second):
         fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
@@ -136,17 +135,17 @@ def repeatable(subject: Subject) -> None:
 
 
 def picklable(subject: Subject) -> None:
-    """A copy made by pickle, as for another process, is the same homotopy."""
+    """A pickled copy is the same homotopy."""
     try:
         again = pickle.loads(pickle.dumps(subject.homotopy))
-    except Exception as error:  # Pickle raises what the object's methods raise.
+    except Exception as error:  # Pickle raises anything.
         fail(f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)")
     require(np.array_equal(Subject(again).start.u, subject.start.u), "picklable: the copy starts elsewhere")
     same_residual(subject, again, "picklable", "the copy")
 
 
 def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
-    """Another object has the residual of the homotopy, bit for bit."""
+    """Both residuals agree bit for bit."""
     for place in subject.places:
         with reporting(f"residual of {what}", place.where):
             found, wanted = (np.asarray(h.residual(place.y, place.lam)) for h in (other, subject.homotopy))
@@ -157,7 +156,6 @@ _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "obs
 
 
 def _asked(subject: Subject, place: Place, name: str) -> Any:
-    """What a method answers at a place, which has left its arguments alone."""
     v, border = random_directions(place.u.size, 2, 1)
     more = {"bordered": (border,), "differential": (v,)}.get(name, ())
     arguments = (place.u, v) if name == "max_step" else (place.y, place.lam, *more)
@@ -170,7 +168,7 @@ def _asked(subject: Subject, place: Place, name: str) -> Any:
 
 
 def _numbers(answer: Any, place: Place) -> list[Array]:
-    """The numbers in an answer; of a factorisation, what it answers."""
+    """The numbers in an answer."""
     n = place.u.size - 1
     if hasattr(answer, "solve"):
         return [np.array(answer.solve(np.ones(n), 1.0)), np.array([float(answer.sign)])]
@@ -188,5 +186,5 @@ def _same(name: str, place: Place, before: list[Array], after: list[Array], sent
 
 
 def difference(p: Array, q: Array) -> float:
-    """The largest one; infinite where the shapes differ."""
+    """The largest difference; infinite between different shapes."""
     return float(np.abs(p - q).max()) if np.shape(p) == np.shape(q) else math.inf

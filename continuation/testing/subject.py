@@ -1,4 +1,4 @@
-"""What is checked: the homotopy, at a few points near its path and on a path traced once for all checks."""
+"""The homotopy under test, with points near its path and one traced path."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ from continuation.step.verdict import refused_start
 from continuation.tolerance import Tolerance
 
 LONGEST_PATH = 60
-"""Longest path that the checks of whole paths trace."""
+"""Steps of the traced path."""
 
 FEWEST = 6
 """A path with fewer points before its end is traced again with shorter steps."""
 
 STEPS_WITHOUT_TARGET = 12
-"""The same where the homotopy has no target, as the path may then leave the region for which it was written."""
+"""Fewer without a target: the path may leave the homotopy's region."""
 
 
 class CheckFailure(AssertionError):
-    """A homotopy does not keep a promise; the sentence says which, where, and by how much."""
+    """A broken promise of a homotopy."""
 
 
 def fail(sentence: str) -> NoReturn:
@@ -49,33 +49,33 @@ def fail(sentence: str) -> NoReturn:
 
 
 def require(fine: bool, sentence: str) -> None:
-    """End a check unless all is well."""
+    """End a check unless `fine`."""
     if not fine:
         fail(sentence)
 
 
 @contextmanager
 def reporting(method: str, where: str) -> Iterator[None]:
-    """Report an exception of a method as a failed check."""
+    """Report an exception as a failed check."""
     try:
         with np.errstate(all="ignore"):
             yield
     except CheckFailure:
         raise
-    except Exception as error:  # A plug-in may raise anything; the suite is there to say so.
+    except Exception as error:  # Plug-ins may raise anything.
         fail(f"{method}: {where} it raises {type(error).__name__}: {error}")
 
 
 @frozen(eq=False)
 class Place:
-    """A point and how to call it in a sentence."""
+    """A point and its name in messages."""
 
     where: str
     u: Array
 
     @property
     def y(self) -> Array:
-        """A copy of the unknowns, shape (N,), which a method may spoil."""
+        """A copy of the unknowns, shape (N,)."""
         return self.u[:-1].copy()
 
     @property
@@ -86,30 +86,30 @@ class Place:
 
 @frozen(eq=False, slots=False)
 class Subject:
-    """A homotopy under examination; what several checks need is worked out once, when it is first asked for."""
+    """A homotopy under test, with shared results."""
 
     homotopy: Any
     steps: int | None = field(default=None, validator=optional(integer(1)))
 
     def has(self, capability: str) -> bool:
-        """Whether the homotopy has an attribute of this name, and a value in it."""
+        """Whether the attribute is not None."""
         return getattr(self.homotopy, capability, None) is not None
 
     @cached_property
     def evaluator(self) -> Evaluator:
-        """Counted access, as the tracer has it."""
+        """Counted access."""
         with reporting("homotopy", "looked at"):
             return Evaluator(self.homotopy, Counts())
 
     @cached_property
     def start(self) -> Place:
-        """The start, checked as a trace checks it."""
+        """The start, checked as by a trace."""
         with reporting("start", "called without arguments"):
             return Place("at the start", self.evaluator.start())
 
     @cached_property
     def places(self) -> tuple[Place, ...]:
-        """The start, a point beside it off the path, and two points of the path if there is one."""
+        """The start, a point beside it, and up to two points of the path."""
         start = self.start
         generator = np.random.default_rng(8)
         aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
@@ -125,7 +125,7 @@ class Subject:
         return Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u)
 
     def _sampled(self) -> list[int]:
-        """Two steps inside the path: its end may be singular."""
+        """Two inner steps, since the end may be singular."""
         try:
             last = len(self.regular) - 1
         except CheckFailure:
@@ -133,12 +133,12 @@ class Subject:
         return sorted({k for k in (last // 2, last - 1) if k > 0})
 
     def finite(self, place: Place) -> bool:
-        """Whether the residual can be evaluated there."""
+        """Whether the residual is finite there."""
         return bool(np.isfinite(self.evaluator.residual_norm(place.u)))
 
     @cached_property
     def first(self) -> Linearization:
-        """The first point of the path, as the tracer begins."""
+        """The first point of the path."""
         metric = self.homotopy.metric if self.has("metric") else Automatic()
         target = getattr(self.homotopy, "target", 0.0)
         with reporting("start", "linearized"):
@@ -150,14 +150,14 @@ class Subject:
 
     @property
     def limits(self) -> Budget:
-        """What a traced path may cost."""
+        """The budget of a traced path."""
         if self.steps is not None:
             return Budget(steps=self.steps)
         return Budget(steps=LONGEST_PATH if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
 
     @cached_property
     def path(self) -> Path:
-        """The path from the start, or its first steps."""
+        """The path, perhaps only its first steps."""
         with reporting("trace", "from the start"):
             path = self.traced()
         bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.RAISED, Status.PREDICTOR_FAILED)
@@ -167,7 +167,7 @@ class Subject:
 
     @cached_property
     def controller(self) -> Controller:
-        """The default one, with steps short enough that there are points between the start and the end."""
+        """The default controller, with shorter steps for short paths."""
         usual = DEFAULT.controller
         tracer = Tracer(self.homotopy, budget=self.limits)
         steps = list(tracer)
@@ -175,12 +175,12 @@ class Subject:
             steps.pop()
         if not isinstance(usual, AllgowerGeorg) or not 2 <= len(steps) < FEWEST:
             return usual
-        # Half a step more, so that no step ends in the middle, where a symmetric path may have its branch point.
+        # Half a step more: a symmetric path may branch in its middle.
         longest = steps[-1].arclength / (FEWEST + 0.5)
         return evolve(usual, bounds=Bounds(maximum=longest, initial=longest))
 
     def traced(self, **options: Any) -> Path:
-        """A trace from the start within the limits."""
+        """A trace within the limits."""
         tracer = Tracer(self.homotopy, **{"budget": self.limits, "controller": self.controller, **options})
         for _ in tracer:
             pass
@@ -188,7 +188,7 @@ class Subject:
 
     @cached_property
     def regular(self) -> Path:
-        """The path without an end where it may be singular: on the boundary, a limit, or found by a finish."""
+        """The path without a perhaps singular end (boundary, endgame, `finish`)."""
         path = self.path
         end = path.endpoint
         if end.kind != Kind.TARGET or not (self.has("max_step") or path.winding_number or end.segment is None):
@@ -197,7 +197,7 @@ class Subject:
         return Path(steps=path.steps[:-1], events=events, status=Status.BUDGET_EXHAUSTED, counts=path.counts)
 
     def points(self) -> Iterator[tuple[Place, Linearization]]:
-        """The places that lie on the path, linearized in the Euclidean metric."""
+        """The places on the path, linearized in the Euclidean metric."""
         yield self.start, self.first.with_weights(np.ones_like(self.start.u))
         for k in self._sampled():
             step = self.path.steps[k]
@@ -206,7 +206,7 @@ class Subject:
                 yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
 
     def derivative(self, place: Place) -> Array:
-        """[H_y, H_lam] as a dense matrix, shape (N, N + 1): by `jacobian`, else from the residual."""
+        """[H_y, H_lam] as a dense matrix, shape (N, N + 1)."""
         if self.has("jacobian"):
             with reporting("jacobian", place.where):
                 H_y, H_lam = self.homotopy.jacobian(place.y, place.lam)
@@ -216,16 +216,16 @@ class Subject:
 
 
 def dense(H_y: Any, n: int) -> Array:
-    """A matrix of any type as an array: what it does to the unit vectors."""
+    """A matrix as an array."""
     return np.asarray(H_y @ np.eye(n), dtype=float)
 
 
 def random_directions(n: int, count: int, seed: int) -> list[Array]:
-    """Random directions of unit length."""
+    """Random unit vectors."""
     generator = np.random.default_rng(seed)
     vectors = [generator.standard_normal(n) for _ in range(count)]
     return [v / float(np.linalg.norm(v)) for v in vectors]
 
 
 Examination = Callable[[Subject], None]
-"""A check: returns if all is well, raises `CheckFailure` if not."""
+"""A check; raises `CheckFailure`."""

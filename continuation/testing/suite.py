@@ -1,4 +1,4 @@
-"""The suite: which checks a homotopy's capabilities call for, run one by one or all together."""
+"""Selection and execution of checks."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "n
 
 @frozen(eq=False)
 class Check:
-    """One check of one homotopy: call it; ``str(check)`` is its name.
+    """One check of one homotopy: call it.
 
     Attributes
     ----------
     name : str
     capability : str
-        What a homotopy has that is checked; empty for what all have.
+        The attribute that is checked; empty if all homotopies have it.
     after : str
-        The check without which this one says nothing; empty for the first.
+        The check that must pass first, or empty.
     """
 
     name: str
@@ -36,12 +36,12 @@ class Check:
     _subject: Subject | None = field(default=None, repr=False)
 
     def __call__(self) -> None:
-        """Run it.
+        """Run the check.
 
         Raises
         ------
         CheckFailure
-            An AssertionError: what was wrong, where, and by how much.
+            An AssertionError that names the broken promise.
         """
         if self._subject is not None:
             self._examine(self._subject)
@@ -77,13 +77,12 @@ CHECKS = (
     Check("archive", paths.archive, after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
-"""The basic and cheap ones first: correct the first failure first. What several need is checked when it is first asked
-for: the start, a first point on the path, the path."""
+"""Basic, cheap checks first: correct the first failure first."""
 
 
 @frozen
 class Result:
-    """The outcome of a check: its name, "passed", "failed", "failed as expected" or "not run", and the sentence."""
+    """A check's name, outcome ("passed", "failed", "failed as expected", "not run") and message."""
 
     name: str
     outcome: str
@@ -91,9 +90,9 @@ class Result:
 
 
 def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, ...]:
-    """The checks that the homotopy's capabilities call for.
+    """The checks that the homotopy's capabilities select.
 
-    Nothing of the homotopy is called before a check is, so that a wrong one fails its tests and not their collection::
+    Only checks call the homotopy, so a fault fails its tests, not their collection::
 
         @pytest.mark.parametrize("check", homotopy_checks(Spring()), ids=str)
         def test_spring(check):
@@ -102,9 +101,9 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
     Parameters
     ----------
     homotopy : Homotopy
-        A small instance: matrices are made dense, and the path is traced about ten times.
+        A small instance: matrices become dense, and the path is traced about ten times.
     steps : int, optional
-        How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
+        Default: 60, or 12 without a target.
     """
     subject = Subject(homotopy, steps)
     called_for = (rule for rule in CHECKS if not rule.capability or subject.has(rule.capability))
@@ -114,24 +113,23 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
 def run_checks(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Run all checks that apply, and collect the outcomes.
+    """Run all checks that apply.
 
     Parameters
     ----------
     homotopy : Homotopy
     expected_failed_checks : mapping of str to str, optional
     steps : int, optional
-        All as for `check_homotopy`.
+        As for `check_homotopy`.
 
     Returns
     -------
     tuple of Result
-        In the order of the checks.
 
     Raises
     ------
     ValueError
-        If an expected failure is none of the checks.
+        If an expected failure is no check.
     """
     expected = dict(expected_failed_checks or {})
     known = [rule.name for rule in CHECKS]
@@ -160,28 +158,26 @@ def run_checks(
 def check_homotopy(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Whether a homotopy fulfils what the engine requires.
+    """Check whether a homotopy fulfils the engine's requirements.
 
     Parameters
     ----------
     homotopy : Homotopy
-        A small instance: matrices are made dense, and the path is traced about ten times.
     expected_failed_checks : mapping of str to str, optional
-        Names of checks that are known to fail, and why.
+        Checks known to fail, and why.
     steps : int, optional
-        How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
+        Both other arguments as for `homotopy_checks`.
 
     Returns
     -------
     tuple of Result
-        Of every check that the capabilities call for.
 
     Raises
     ------
     CheckFailure
-        An AssertionError with one line a check that failed unexpectedly.
+        An AssertionError, one line for each unexpected failure.
     ValueError
-        If there is no check of a name in `expected_failed_checks`.
+        If an expected failure is no check.
     """
     results = run_checks(homotopy, expected_failed_checks=expected_failed_checks, steps=steps)
     failed = [result for result in results if result.outcome == FAILED]
