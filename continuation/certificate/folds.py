@@ -15,7 +15,7 @@ from continuation.numbers.ends import EPS, Ends
 RANGE = 0.25
 """Longer ranges with a turning point, in cells, do not say where it is."""
 
-PLACES = 32
+SIGN_PLACES = 32
 """At so many places in a range with a turning point the sign is asked, twice: a thousandth of it is left."""
 
 Look = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
@@ -140,7 +140,7 @@ def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]
     for _ in range(2 if wide else 0):
-        x = np.concatenate([np.linspace(found[k].lo, found[k].hi, PLACES + 2)[1:-1] for k in wide])
+        x = np.concatenate([np.linspace(found[k].lo, found[k].hi, SIGN_PLACES + 2)[1:-1] for k in wide])
         x = x[(np.abs(x - np.round(x)) > 2.0 * OVERHANG) & (x > 0.0) & (x < len(cells))]
         own = cells.take(x.astype(np.intp))
         slabs = at_node(own, x % 1.0)

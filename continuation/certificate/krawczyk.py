@@ -34,7 +34,7 @@ DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
 Bratu's equation with 30 none, and its proof took eight times as long."""
 
-STRETCHES = 8
+TUBE_STRETCHES = 8
 """Into so many parts a slab is cut where the parameter may turn."""
 
 MISFIT_PARTS = 4
@@ -229,10 +229,10 @@ class Bounded:
         that box, which is smaller: of a wide tube a tenth.
         """
         slope = self.tangent(radius, tube)[:, -1:]
-        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], STRETCHES, axis=3)
+        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], TUBE_STRETCHES, axis=3)
         with np.errstate(all="ignore"):
             asked = (self._image(radius) < radius).all(axis=1) & ~(slope.lo * slope.hi > 0.0)[:, 0]
-        for cuts in (1, STRETCHES):
+        for cuts in (1, TUBE_STRETCHES):
             if not asked.any():
                 break
             r = np.repeat(radius[asked], cuts, axis=0)
@@ -243,7 +243,7 @@ class Bounded:
                 r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
                 judged = self.engine.judge(parts, r)
             found = np.array([[x.lo, x.hi] for x in judged.turned(r)])
-            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), STRETCHES // cuts, axis=3)
+            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), TUBE_STRETCHES // cuts, axis=3)
             asked &= ~(ends[:, 0] * ends[:, 1] > 0.0).any(axis=0).all(axis=1)
         return Ends(*ends[0]), Ends(*ends[1])
 

@@ -73,6 +73,8 @@ def changes(
         Of unit length in the metric, as columns.
     """
     values, vectors = _eigenvalues(a, apply, border, most, least, start, accuracy)
+    if not values.size:
+        return [], vectors
     order = np.argsort(values)
     return values[order].tolist(), vectors[:, order]
 

@@ -59,7 +59,7 @@ than the second.
 UNCERTAIN = 100.0
 """Corrections below this multiple of their sampled round-off are ignored."""
 
-SWEEPS = 10
+SINKHORN_SWEEPS = 10
 """Of Sinkhorn's iteration: units are known to a small factor then, which is all that a metric needs."""
 
 OTHER_UNITS = 1e4
@@ -188,7 +188,7 @@ def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
         return ones
     squares = np.square(H_y) if isinstance(H_y, np.ndarray) else sp.csr_array(H_y).power(2)
     columns = still.astype(float)
-    for _ in range(SWEEPS):
+    for _ in range(SINKHORN_SWEEPS):
         rows = _inverse(squares @ columns)
         columns = np.where(still, _inverse(squares.T @ rows), 0.0)
     sizes = np.sqrt(columns)

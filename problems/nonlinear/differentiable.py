@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar
 
 from attrs import frozen
 
@@ -11,16 +11,9 @@ from continuation.arrays import Array, Matrix
 from problems.nonlinear.start_checks import EQUATIONS, Jacobian, check_jacobian_shape
 from problems.options import quiet
 
-if TYPE_CHECKING:
-    from problems.nonlinear.fixed_point import FixedPointHomotopy
-    from problems.nonlinear.newton import NewtonHomotopy
-
-
-H = TypeVar("H", bound="FixedPointHomotopy | NewtonHomotopy")
-
 
 @frozen(eq=False)
-class Differentiable(Generic[H]):
+class Differentiable:
     """A homotopy with `jacobian`, made of one without and of F'.
 
     Capabilities are found by their presence, so the two cases are two types.
@@ -39,7 +32,7 @@ class Differentiable(Generic[H]):
         If it does not have the shape (n, n).
     """
 
-    homotopy: H
+    homotopy: Any
     slope: Jacobian
     target: ClassVar[float | None] = 0.0
     problem_class: ClassVar[str] = EQUATIONS

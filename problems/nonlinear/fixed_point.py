@@ -63,9 +63,7 @@ class FixedPointHomotopy:
         return blend_with_identity(slope, lam), y - self.a - self.F(y)
 
 
-def fixed_point(
-    F: Function, a: Any, jacobian: Jacobian | None = None
-) -> FixedPointHomotopy | Differentiable[FixedPointHomotopy]:
+def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedPointHomotopy | Differentiable:
     """The fixed-point homotopy of F from `a`, see `FixedPointHomotopy`.
 
     Parameters

@@ -66,7 +66,7 @@ class NewtonHomotopy:
         return slope, -self.value
 
 
-def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy | Differentiable[NewtonHomotopy]:
+def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy | Differentiable:
     """The Newton homotopy of F from `a`, see `NewtonHomotopy`.
 
     Parameters

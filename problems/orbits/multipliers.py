@@ -23,7 +23,7 @@ TRIVIAL_FOUND = 0.5
 """Multipliers of which the first, that is 1, is off by more are not known."""
 
 
-TINY = float(np.finfo(float).tiny)
+LEAST_NORMAL = float(np.finfo(float).tiny)
 
 
 @frozen(eq=False, slots=False)
@@ -43,7 +43,7 @@ class Multipliers:
         """All of them, that of the phase, which is 1, first; shape (n,), complex."""
         alpha, beta = self._pencil[0]
         # One that is beyond all numbers is the largest.
-        found = alpha / np.where(np.abs(beta) < TINY, TINY, beta)
+        found = alpha / np.where(np.abs(beta) < LEAST_NORMAL, LEAST_NORMAL, beta)
         first = int(np.argmin(np.abs(found - 1.0)))
         rest = np.delete(found, first)
         return np.append(found[first], rest[np.argsort(-np.abs(rest))])

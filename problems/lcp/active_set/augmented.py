@@ -25,7 +25,7 @@ from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 from problems.lcp.data.ranges import ranges
 
-PENALTY, MOST, GROWTH = 20.0, 1e8, 10.0
+PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
 """The first penalty, as published: times the ratio of the objective to the violations. The penalty, and the inverse of
 the proximal term of a convex function, grow by a factor with each change of the multipliers, which then converge faster
 than linearly. Of 45 programs of Maros and Meszaros as many are solved as by a penalty for each row."""
@@ -149,8 +149,8 @@ def guesses(
     one = Penalised(saddle, low, high, 0.0, 1.0)
     y, violated = np.zeros(m + n), one.values(x) - np.clip(one.values(x), low, high)
     objective = abs(float(0.5 * x @ (saddle.P @ x) + saddle.c @ x))
-    sigma = min(PENALTY * max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST)
-    accurate, centre, weight = 1.0, x, 1.0 / below if below > 0.0 else GROWTH
+    sigma = min(PENALTY * max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST_PENALTY)
+    accurate, centre, weight = 1.0, x, 1.0 / below if below > 0.0 else PENALTY_GROWTH
     while True:
         found = _minimised(Penalised(saddle, low, high, sigma, weight), x, y, centre, accurate, counts, factoring)
         if found is None:
@@ -159,8 +159,8 @@ def guesses(
         nearest = np.clip(t, low, high)
         y = sigma * (t - nearest)
         yield _state(saddle, t, low, high), _point(saddle, x, y, nearest)
-        centre, accurate, sigma = x, accurate / GROWTH, min(GROWTH * sigma, MOST)
-        weight = weight if below > 0.0 else min(GROWTH * weight, MOST)
+        centre, accurate, sigma = x, accurate / PENALTY_GROWTH, min(PENALTY_GROWTH * sigma, MOST_PENALTY)
+        weight = weight if below > 0.0 else min(PENALTY_GROWTH * weight, MOST_PENALTY)
 
 
 def _minimised(

@@ -88,7 +88,7 @@ class MixedLCP:
         object.__setattr__(self, "upper", bound_vector("upper", self.upper, self.q.size, math.inf))
         ordered_bounds(self.lower, self.upper)
 
-    @property
+    @cached_property
     def n(self) -> int:
         """The order of A."""
         return int(self.q.size)
@@ -303,11 +303,6 @@ class LCP(MixedLCP):
 
     def __attrs_post_init__(self) -> None:
         """Nothing to check."""
-
-    @property
-    def standard(self) -> bool:
-        """True."""
-        return True
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q; what is known of A is not found out again.

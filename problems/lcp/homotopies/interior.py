@@ -9,31 +9,25 @@ series, longest step and proof follow from them here. Inside, p and q have the s
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from attrs import cmp_using, define, field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array, Matrix
+from continuation.metric import INVERTIBLE
 from continuation.point.linearization import Linearization
 from problems.lcp.homotopies.cores import in_full
 from problems.lcp.homotopies.quadratics import exact_end, form
 from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
-if TYPE_CHECKING:
-    from problems.lcp.homotopies.registry import LCPHomotopy
-
 Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 """(goal, origin, p, q, plain), at a point or, without constants, of a direction."""
 
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
-
-INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
-"""Sizes below this count as this: its square can still be inverted."""
-
 
 @frozen
 class RelativeMetric:
@@ -90,7 +84,7 @@ class System:
     parts: Parts
 
     @classmethod
-    def at(cls, homotopy: LCPHomotopy, y: Array, lam: float) -> System:
+    def at(cls, homotopy: Any, y: Array, lam: float) -> System:
         """That of a homotopy; nothing in it follows a caller that goes on to change its y in place."""
         return cls(homotopy, y.copy(), lam, homotopy.parts(y.copy(), lam))
 
@@ -119,7 +113,7 @@ class Recent:
 
     found: tuple[bytes, float, System] | None = None
 
-    def at(self, homotopy: LCPHomotopy, y: Array, lam: float) -> System:
+    def at(self, homotopy: Any, y: Array, lam: float) -> System:
         """The system at a point."""
         found, entries = self.found, y.tobytes()
         if found is None or found[:2] != (entries, lam):
@@ -128,25 +122,25 @@ class Recent:
 
 
 @quiet
-def residual(self: LCPHomotopy, y: Array, lam: float) -> Array:
+def residual(self: Any, y: Array, lam: float) -> Array:
     """H, of the shape of y."""
     goal, origin, p, q, plain = self.parts(y, lam)
     return np.concatenate([(1.0 - lam) * goal + lam * origin, p * q + plain - lam * self.c])
 
 
-def jacobian(self: LCPHomotopy, y: Array, lam: float) -> tuple[Matrix, Array]:
+def jacobian(self: Any, y: Array, lam: float) -> tuple[Matrix, Array]:
     """(H_y, H_lam) in full, sparse as A is: for reference, the engine uses `bordered`."""
     return in_full(System.at(self, y, lam).apply, y.size, self.problem.sparse)
 
 
 @quiet
-def differential(self: LCPHomotopy, y: Array, lam: float, v: Array) -> Array:
+def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
     """H' v, one shorter than v."""
     return self._recent.at(self, y, lam).apply(v)
 
 
 @quiet
-def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
+def taylor(self: Any, point: Linearization, order: int) -> Array:
     """Coefficients of the path in the pseudo-arclength of `point`, one a row.
 
     H is quadratic, so that coefficient k solves H' c_k = -(products of lower ones): one solve and two products with A
@@ -164,12 +158,12 @@ def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
     return c
 
 
-def proof_engine(self: LCPHomotopy) -> ByProducts:
+def proof_engine(self: Any) -> ByProducts:
     """H as affine parts and one product of them, for proofs of paths."""
     return ByProducts(form(self))
 
 
-def certify_end(self: LCPHomotopy, y: Array) -> str:
+def certify_end(self: Any, y: Array) -> str:
     """A sentence on the exact solution at x, where there is one.
 
     Parameters
@@ -180,7 +174,7 @@ def certify_end(self: LCPHomotopy, y: Array) -> str:
     return exact_end(self.problem, y[: self.n])
 
 
-def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
+def max_step(self: Any, u: Array, v: Array) -> float:
     """How far along v, or inf, until a factor of the pairs vanishes; lambda itself is free."""
     factors, changes = np.array([self.parts(u[:-1], u[-1])[2:4], self.parts(v[:-1], v[-1], 0.0)[2:4]]) * self.signs
     falling = changes < 0.0
@@ -190,7 +184,7 @@ def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
         return max(0.0, float((factors[falling] / -changes[falling]).min()))
 
 
-def observe(self: LCPHomotopy, y: Array, lam: float) -> dict[str, float]:
+def observe(self: Any, y: Array, lam: float) -> dict[str, float]:
     """The natural residual and the gap x'w at x; with bounds x the distance to that to which w_i points."""
     problem, x = self.problem, y[: self.n]
     w = problem.w(x)

@@ -116,7 +116,7 @@ class KKTHomotopy:
         origin = kkt_start(problem, x0, z1, z2, w0)
         self.__attrs_init__(problem, origin, structure if structure is not None else Structure(problem), refine)
 
-    @property
+    @cached_property
     def n(self) -> int:
         """The order of A: for an LCP y has 3n components."""
         return self.problem.n
@@ -213,7 +213,8 @@ class KKTHomotopy:
         Without bounds w = 0 is asked for: w plus lambda times ``give (z2 - z2_0)``.
         """
         rows, start = self.rows, self.origin
-        x, z1, z2, t = rows.split(y)
+        n, m, k = rows.ends
+        x, z1, z2, t = y[:n], y[n:m], y[m:k], y[k:]
         if one:
             w, origin, gaps = self.problem.w(x), x - start.x0, rows.sides.gaps(x)
             turned = self.structure.transpose @ (x - rows.end - z2)

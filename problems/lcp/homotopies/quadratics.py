@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -10,9 +10,6 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.certificate import certify, certify_exactly
 from problems.lcp.quadratic.form import Affine, Quadratic
-
-if TYPE_CHECKING:
-    from problems.lcp.homotopies.registry import LCPHomotopy
 
 END_DISTANCE = 1e-6
 """How far the exact solution may be from the end of the path, in sizes of x, to be that end."""
@@ -37,7 +34,7 @@ def exact_end(problem: MixedLCP, x: Array) -> str:
     )
 
 
-def form(homotopy: LCPHomotopy) -> Quadratic:
+def form(homotopy: Any) -> Quadratic:
     """Of the rows one end exactly, and times lambda, or lambda - 1, the difference of the two; and the pairs."""
     c, n = homotopy.c, homotopy.n
     size = n + c.size

@@ -71,18 +71,19 @@ class Rows:
 
     def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
         """The blocks x, z1, z2 and t of y, or of increments of it, as views."""
-        n, m, k = self._ends
+        n, m, k = self.ends
         return y[:n], y[n:m], y[m:k], y[k:]
 
     @cached_property
-    def _ends(self) -> tuple[int, int, int]:
+    def ends(self) -> tuple[int, int, int]:
+        """Where the blocks x, z1 and z2 of y end."""
         n, m = self.problem.n, self.sides.index.size
         return n, n + m, n + m + n
 
     @property
     def size(self) -> int:
         """How many unknowns there are: 3 an index with one bound, 5 one with two, 2 one with none."""
-        return self._ends[2] + self.boxed.size
+        return self.ends[2] + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
         """What z is complementary to: w, and s = w + t in a box."""

@@ -30,7 +30,7 @@ AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 MOST_Z_STEPS = 1000
 """Corrections for a Z-matrix, of which n are enough: each makes the active set larger until it is right."""
 
-ROUNDS, DESCENT_ROUNDS = 2, 200
+PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
 """Of the proximal method where A is semidefinite, and of descent in a box."""
 
 
@@ -70,7 +70,7 @@ class ActiveSets:
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
             unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
-            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, ROUNDS))
+            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, PROXIMAL_ROUNDS))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
