@@ -1,8 +1,6 @@
-"""Homotopies for the linear complementarity problem: plug-ins of `continuation`, each with its reduction to order n.
+"""LCP homotopies, plug-ins of `continuation`.
 
-Complementary pairs are eliminated one by one (`cores`, with bounds `sides` and `rows`), so that what is factored is of
-order n + 1 whatever the number of unknowns. The full system is known by its products alone, and corrections in it
-regain the digits that elimination loses near the boundary.
+Each eliminates its complementary pairs, factors a matrix of order n + 1, and corrects solutions in the full system.
 """
 
 from problems.lcp.data.matrix_structure import Structure

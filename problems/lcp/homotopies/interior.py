@@ -1,9 +1,8 @@
-"""What all homotopies of this package are: rows that blend two ends, and pairs whose products fade with lambda.
+"""The common form of the homotopies: rows blend two ends, products of pairs fade with lambda.
 
     ((1 - lam) goal + lam origin,  p q + plain - lam c)
 
-with goal, origin, p, q and plain affine in u = (y, lam). A homotopy says those, as `parts`; its residual, derivative,
-series, longest step and proof follow from them here. Inside, p and q have the signs of their starts.
+`parts` defines goal, origin, p, q, plain, affine in u = (y, lam). Inside, p and q keep their signs.
 """
 
 from __future__ import annotations
@@ -26,25 +25,24 @@ if TYPE_CHECKING:
     from problems.lcp.homotopies.registry import LCPHomotopy
 
 Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
-"""(goal, origin, p, q, plain), at a point or, without constants, of a direction."""
+"""(goal, origin, p, q, plain) at a point; without constants, of a direction."""
 
 LARGEST_FALL = 1e-3
-"""A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
+"""A scale falls at most to this fraction per step: ends at zero need a metric."""
 
 INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
-"""Sizes below this count as this: its square can still be inverted."""
+"""The smallest scale whose square can be inverted."""
 
 
 @frozen
 class RelativeMetric:
-    """The mean square of relative changes, plus the square of the parameter's change.
+    """The mean square of relative changes plus the parameter's squared change.
 
-    ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` for N unknowns, anew at each point: interior paths live in
-    orders of magnitude. The mean makes the step length independent of n; the sum takes about a tenth more steps.
+    ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` at each point: interior paths span orders of magnitude. The
+    mean makes steps independent of n; a sum takes a tenth more.
 
-    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,): Bounds of the first n unknowns, which change
-    relative to their distances from the nearer one; without any bound relative to themselves, but at least to `unit`.
-    Default: zero, for all unknowns.
+    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns, whose
+    scale is the distance from the nearer one; if unbounded, their size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -53,7 +51,7 @@ class RelativeMetric:
     unit: float = 1.0
 
     def sizes(self, u: Array) -> Array:
-        """In what each number is large or small."""
+        """The scales of u."""
         size: Array = np.abs(u)
         if self.lower is not None and self.upper is not None:
             n = self.lower.size
@@ -65,7 +63,7 @@ class RelativeMetric:
         """1/(N u_i^2), and `lam` for the parameter."""
         n, size = u.size - 1, np.maximum(self.sizes(u), INVERTIBLE)
         if current is not None:
-            # The size one step before is 1 / sqrt(n current).
+            # The last step's size is 1 / sqrt(n current).
             np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
         weights: Array = 1.0 / (n * size * size)
         weights[-1] = self.lam
@@ -73,10 +71,10 @@ class RelativeMetric:
 
 
 class OwnMetric:
-    """The metric of a homotopy: of one class, but with the bounds of its problem where there are any."""
+    """A homotopy's metric; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
-        """`own_metric`, of the class the metric of an LCP."""
+        """`own_metric`; on the class, an LCP's."""
         return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 
@@ -91,7 +89,7 @@ class System:
 
     @classmethod
     def at(cls, homotopy: LCPHomotopy, y: Array, lam: float) -> System:
-        """That of a homotopy; nothing in it follows a caller that goes on to change its y in place."""
+        """H' at a point; callers may change their y."""
         return cls(homotopy, y.copy(), lam, homotopy.parts(y.copy(), lam))
 
     def apply(self, v: Array) -> Array:
@@ -108,14 +106,14 @@ class System:
 
     @property
     def sizes(self) -> Array:
-        """In what changes of y are large or small."""
+        """The scales of y."""
         sizes: Array = self.of.metric.sizes(self.y)
         return sizes
 
 
 @define(eq=False)
 class Recent:
-    """The system at the last point that was asked for: the engine asks for many products there, one by one."""
+    """The system at the last point, for many products there."""
 
     found: tuple[bytes, float, System] | None = None
 
@@ -135,7 +133,7 @@ def residual(self: LCPHomotopy, y: Array, lam: float) -> Array:
 
 
 def jacobian(self: LCPHomotopy, y: Array, lam: float) -> tuple[Matrix, Array]:
-    """(H_y, H_lam) in full, sparse as A is: for reference, the engine uses `bordered`."""
+    """(H_y, H_lam), sparse if A is, for reference; the engine uses `bordered`."""
     return in_full(System.at(self, y, lam).apply, y.size, self.problem.sparse)
 
 
@@ -147,10 +145,9 @@ def differential(self: LCPHomotopy, y: Array, lam: float, v: Array) -> Array:
 
 @quiet
 def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
-    """Coefficients of the path in the pseudo-arclength of `point`, one a row.
+    """Taylor coefficients of the path in the pseudo-arclength of `point`, one a row.
 
-    H is quadratic, so that coefficient k solves H' c_k = -(products of lower ones): one solve and two products with A
-    an order (Cochelin's asymptotic numerical method).
+    Each order takes one solve and two products with A, as H is quadratic (Cochelin's asymptotic numerical method).
     """
     n, size = self.n, point.u.size - 1
     c = np.zeros((order + 1, size + 1))
@@ -165,12 +162,12 @@ def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
 
 
 def proof_engine(self: LCPHomotopy) -> ByProducts:
-    """H as affine parts and one product of them, for proofs of paths."""
+    """H as affine parts and one product, for proofs."""
     return ByProducts(form(self))
 
 
 def certify_end(self: LCPHomotopy, y: Array) -> str:
-    """A sentence on the exact solution at x, where there is one.
+    """A sentence on the exact solution near x, or "".
 
     Parameters
     ----------
@@ -181,7 +178,7 @@ def certify_end(self: LCPHomotopy, y: Array) -> str:
 
 
 def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
-    """How far along v, or inf, until a factor of the pairs vanishes; lambda itself is free."""
+    """The largest step along v, perhaps inf, until a pair's factor vanishes."""
     factors, changes = np.array([self.parts(u[:-1], u[-1])[2:4], self.parts(v[:-1], v[-1], 0.0)[2:4]]) * self.signs
     falling = changes < 0.0
     if not falling.any():
@@ -191,7 +188,7 @@ def max_step(self: LCPHomotopy, u: Array, v: Array) -> float:
 
 
 def observe(self: LCPHomotopy, y: Array, lam: float) -> dict[str, float]:
-    """The natural residual and the gap x'w at x; with bounds x the distance to that to which w_i points."""
+    """The natural residual and the gap x'w, with bounds by distances."""
     problem, x = self.problem, y[: self.n]
     w = problem.w(x)
     distance = np.where(w > 0.0, x - problem.lower, x - problem.upper)
