@@ -1,8 +1,6 @@
 """Exact matrix classes of the LCP, each answer with its evidence.
 
-Floats are rational numbers, so a test in integers is a proof. Tests use signs of principal minors (`minors`, limits in
-`closure`), linear programs (`cones`, `sufficiency`) and complementary cones (`solvability`). Beyond a test's order the
-answer is None.
+Floats are rational numbers, so a test in integers is a proof. Beyond a test's order the answer is None.
 """
 
 from __future__ import annotations
@@ -56,7 +54,6 @@ def classify(A: Any) -> Classification:
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Floats are exact rational numbers.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Classes defined by signs on vectors: copositive, semimonotone, R0, S and relatives.
 
-Each condition is homogeneous: one exact linear program with x >= 1 per index set.
+Each index set needs one exact linear program with x >= 1.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_cl
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point, positive_point
 
 LARGEST_SUPPORTS = 10
-"""Largest order of tests with one linear program per index set (0.02 s for one-digit integers)."""
+"""Largest order of tests with one linear program per index set (0.02 s)."""
 
 LARGEST_STAR = 8
 """Largest order of the E0^s test, n linear programs per index set (0.03 s)."""
@@ -35,7 +35,6 @@ def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
 
 
 def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
-    """Test that no index set has a violating vector; `words` describe a violation and its absence."""
     if matrix.n > LARGEST_SUPPORTS:
         return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
     for support in map(indices, index_sets(matrix.n)):
@@ -129,7 +128,7 @@ def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
 
 @matrix_class
 def is_almost_copositive(matrix: ExactMatrix) -> Membership:
-    """Almost C0: A is not copositive, but all principal submatrices of order n - 1 are."""
+    """Almost C0: not copositive, but all principal submatrices of order n - 1 are."""
     cited = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
     plain = is_copositive(matrix)
     if plain.holds is None:
@@ -169,7 +168,7 @@ def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_s(matrix: ExactMatrix) -> Membership:
-    """S: Ax > 0 for some x > 0, so every LCP(q, A) is strictly feasible. One linear program."""
+    """S: Ax > 0 for some x > 0, so every LCP(q, A) is strictly feasible."""
     cited = CPS + ", section 3.1; Ville's theorem"
     x = positive_point([at_least(row, 1) for row in matrix.entries], matrix.n)
     if x is not None:

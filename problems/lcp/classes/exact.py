@@ -1,7 +1,4 @@
-"""Exact linear algebra on small matrices.
-
-A matrix is stored as integers over one positive scale, to which classes are invariant.
-"""
+"""Exact linear algebra on small matrices, stored as integers over one positive scale."""
 
 from __future__ import annotations
 
@@ -32,10 +29,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def over_common_denominator(values: Sequence[Fraction]) -> tuple[list[int], int]:
-    """Integers and the least positive scale with values = integers / scale.
-
-    `problems.lcp.proof.rational.integers` takes only vectors of floats.
-    """
+    """Integers and the least positive scale with values = integers / scale."""
     scale = math.lcm(*(value.denominator for value in values))
     return [value.numerator * (scale // value.denominator) for value in values], scale
 
@@ -61,7 +55,7 @@ class ExactMatrix:
         Parameters
         ----------
         A : array_like or scipy sparse, shape (n, n)
-            Floats are exact: 0.8 is not 4/5.
+            The float 0.8 is not 4/5.
 
         Raises
         ------
@@ -73,7 +67,7 @@ class ExactMatrix:
         if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
             raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
         if sp.issparse(A):
-            # Only to reject bad input, as its floats hold 53 bits.
+            # Only to reject bad input: its floats hold 53 bits.
             sound_sparse("A", A)
             A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
         dense = np.array(A, dtype=object)
@@ -101,7 +95,7 @@ class ExactMatrix:
 
     @cached_property
     def minors(self) -> tuple[int, ...]:
-        """All 2^n principal minors of the integer matrix, by bit mask of the index set."""
+        """All 2^n principal minors of the integer matrix, by bit mask."""
         return tuple(principal_minors(self.entries))
 
     def minor(self, mask: int) -> Fraction:
@@ -139,7 +133,7 @@ def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     """All 2^n principal minors of an integer matrix, by mask, from shared Schur complements.
 
     Minors without the first index come from the remaining matrix, the others from the fraction-free Schur complement. A
-    zero pivot is raised by one; the minors without the index then undo this, as determinants are linear in it.
+    zero pivot is raised by one, which the minors without the index then undo.
 
     References
     ----------
@@ -167,8 +161,8 @@ def _minors(block: list[list[int]], determinant_so_far: int) -> list[int]:
 def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[int]], int] | None:
     """Numerators X and a positive denominator d with rows X = d right; None for a singular matrix.
 
-    Fraction-free Gauss-Jordan elimination. `problems.lcp.proof.rational.solve_exactly` is slower at small order (2.9
-    against 0.9 ms at 12) and faster beyond about 20 (0.12 against 1.07 s at 60).
+    Fraction-free Gauss-Jordan elimination, faster than `problems.lcp.proof.rational.solve_exactly` at small order (0.9
+    against 2.9 ms at 12), slower beyond about 20.
     """
     work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
     m, previous = len(work), 1
@@ -189,7 +183,7 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
 
 
 def consistent(rows: Sequence[IntRow]) -> bool:
-    """Whether equations, given as rows of coefficients and right-hand side, have a solution."""
+    """Whether equations [coefficients, right-hand side] have a solution."""
     work, previous = [list(row) for row in rows], 1
     for k in range(len(work[0]) - 1):
         pivot = next((row for row in work if row[k]), None)
@@ -201,7 +195,7 @@ def consistent(rows: Sequence[IntRow]) -> bool:
 
 
 def simplest(vector: Sequence[Fraction], accepts: Callable[[Sequence[Fraction]], bool]) -> tuple[Fraction, ...]:
-    """A positive multiple of the vector in the smallest integers that `accepts` allows, else the vector."""
+    """A positive multiple of the vector in the smallest integers that `accepts` allows."""
     largest = max(abs(v) for v in vector)
     for bits in range(24):
         rounded = tuple(Fraction(round(v * 2**bits / largest)) for v in vector)

@@ -1,4 +1,4 @@
-"""One complementary piece in exact arithmetic: x at bounds outside an index set, w zero inside."""
+"""One complementary piece in exact arithmetic."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class FacePoint:
 class Piece:
     """The conditions of one piece.
 
-    `columns` of shape (n, number inside). `constants`: The rows for zero x inside. `below`, `above`: The outside
-    indices that require w_i >= 0, or w_i <= 0. `bounds`: Inside.
+    `columns` of shape (n, number inside). `constants`: The rows for zero x inside. `below`, `above`: Outside indices
+    with w_i >= 0, or w_i <= 0. `bounds`: Inside.
     """
 
     columns: list[list[int]]
@@ -49,9 +49,9 @@ class Piece:
 
 
 def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) -> FacePoint | None:
-    """A point x >= 0, w = entries x + q >= 0 with x zero outside `support` and w zero on it; None proves there is none.
+    """A point x, w >= 0, w = entries x + q, with x zero outside `support` and w zero on it.
 
-    A nonsingular submatrix gives one candidate, a singular one an exact linear program.
+    None proves that there is none.
     """
     rest = [i for i in range(len(q)) if i not in support]
     columns = [[row[j] for j in support] for row in entries]
@@ -61,10 +61,7 @@ def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) ->
 def piece_point(
     entries: Sequence[IntRow], q: Sequence[int], bounds: Sequence[Bound], unit: int, state: Sequence[int]
 ) -> FacePoint | None:
-    """A solution with bounds: states -1 and 1 put x_i at its lower and upper bound.
-
-    Bounds are integers over `unit`.
-    """
+    """A solution with bounds, integers over `unit`; states -1 and 1 put x_i at its lower and upper one."""
     inside = tuple(i for i, s in enumerate(state) if s == 0)
     ends = [0 if s == 0 else bounds[i][s > 0] for i, s in enumerate(state)]
     values = [value if value is not None else 0 for value in ends]
@@ -77,7 +74,6 @@ def piece_point(
 
 
 def _point(piece: Piece, values: list[int], unit: int) -> FacePoint | None:
-    """A point of the piece, x and w over `unit`; x is `values` outside."""
     solved = solve([piece.columns[i] for i in piece.inside], [[-piece.constants[i]] for i in piece.inside])
     found = _singular_piece(piece) if solved is None else _nonsingular_piece(piece, *solved)
     if found is None:
@@ -110,7 +106,7 @@ def _nonsingular_piece(piece: Piece, columns: Sequence[Sequence[int]], d: int) -
 
 
 def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
-    """A point by linear programming, with x_i split into two parts if it may be negative."""
+    """A point by linear programming; unknowns that may be negative are differences."""
     if not consistent([[*piece.columns[i], -piece.constants[i]] for i in piece.inside]):
         return None
     m, parts = len(piece.inside), [j for j, (low, _) in enumerate(piece.bounds) if low != 0]
@@ -136,7 +132,7 @@ def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
 
 
 def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
-    """Whether a direction d = up - down != 0 leads from x to other solutions."""
+    """Whether a direction d = up - down leads to other solutions."""
     m = len(piece.inside)
 
     def split(row: Sequence[int]) -> list[int]:

@@ -25,13 +25,13 @@ class Evidence:
     ----------
     sentence : str
     indices : tuple of int, optional
-        The deciding index set or index pair.
+        The deciding index set or pair.
     value : Fraction, optional
         The deciding minor, quadratic form, entry or bound.
     vector : tuple of Fraction, optional
-        The deciding vector (see the sentence).
+        The deciding vector.
     perturbation : pair of integer matrices, optional
-        B and C of a sequence A + t B + t^2 C that decides a closure.
+        B and C of a sequence A + t B + t^2 C.
     """
 
     sentence: str
@@ -106,7 +106,7 @@ def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], M
     Returns
     -------
     callable
-        Any matrix, see `ExactMatrix.of`, to `Membership`.
+        Any matrix to `Membership`.
     """
 
     @wraps(test)
@@ -135,14 +135,14 @@ def show_vector(vector: Sequence[Fraction]) -> str:
 
 
 def table(classification: Classification, width: int = 110) -> str:
-    """Lines of text with class, answer and evidence.
+    """Lines of class, answer and evidence.
 
     Parameters
     ----------
     classification : mapping of str to Membership
         From `classify`.
     width : int
-        Longest evidence in characters; an ellipsis cuts the rest.
+        Longest evidence in characters.
     """
     first = max(len(name) for name in classification)
     second = max(len(text) for text in ANSWERS.values())

@@ -11,7 +11,7 @@ from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
 LARGEST_MINORS = 12
-"""Largest order of tests that read all 2^n - 1 principal minors (0.01 s for one-digit integers)."""
+"""Largest order of tests that read all 2^n - 1 principal minors (0.01 s)."""
 
 PAPER = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
 EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618; " + PAPER
@@ -106,7 +106,7 @@ def is_almost_n0(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
-    """N of exact order k, for some 1 <= k < n: minors negative up to order n - k, positive beyond.
+    """N of exact order k: minors negative up to order n - k, positive beyond, for some 1 <= k < n.
 
     The certificate's value is k.
     """
@@ -115,7 +115,7 @@ def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_n0_of_exact_order(matrix: ExactMatrix) -> Membership:
-    """N0 of exact order k, for some k: minors nonpositive up to order n - k, positive beyond."""
+    """N0 of exact order k: minors nonpositive up to order n - k, positive beyond, for some k."""
     return of_exact_order(matrix, "N0", _up_to("nonpositive"))
 
 
@@ -161,7 +161,7 @@ def is_z(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_k(matrix: ExactMatrix) -> Membership:
-    """K: Z and P (nonsingular M-matrix), by leading principal minors, so polynomial in n."""
+    """K: Z and P (nonsingular M-matrix), tested by leading principal minors."""
     cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
     z = is_z(matrix)
     if not z.holds:

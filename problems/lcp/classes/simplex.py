@@ -1,7 +1,6 @@
 """Exact feasibility of small linear systems: the simplex method in integers with Bland's rule.
 
-A dictionary gives basic variables as affine functions of the others. One added variable makes any system feasible; its
-minimum is zero if the original system is.
+One added variable makes any system feasible; its minimum is zero if the original system is.
 """
 
 from __future__ import annotations
@@ -32,18 +31,18 @@ def exactly(constraints: Sequence[Constraint]) -> list[Constraint]:
 
 
 def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 0, of n numbers, that satisfies every constraint exactly, or None.
+    """A point x >= 0, of n numbers, that satisfies every constraint, or None.
 
     References
     ----------
-    Bland, Mathematics of Operations Research 2 (1977) 103-107: the least-index rule, which terminates.
+    Bland, Mathematics of Operations Research 2 (1977) 103-107: the least-index rule.
     Edmonds, J. Res. Nat. Bur. Standards 71B (1967) 241-245: pivots in integers with a common denominator.
     """
     worst = max(range(len(constraints)), key=lambda i: constraints[i][1], default=0)
     if not constraints or constraints[worst][1] <= 0:
         return (Fraction(0),) * n
     table = [[*row, 1, -right] for row, right in constraints]
-    # The added variable has the least number, so it leaves early.
+    # The added variable is first, so it leaves early.
     free, basic = [*range(1, n + 1), 0], list(range(n + 1, n + 1 + len(table)))
     denominator = _exchange(table, basic, free, worst, n, 1)
     while 0 in basic and table[basic.index(0)][-1] > 0:
@@ -58,10 +57,7 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
 
 
 def positive_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 1 that satisfies every constraint, or None.
-
-    For homogeneous constraints it exists exactly if some x > 0 does.
-    """
+    """A point x >= 1 that satisfies every constraint, or None; for homogeneous ones it proves x > 0."""
     point = feasible_point([(row, right - sum(row)) for row, right in constraints], n)
     return None if point is None else tuple(v + 1 for v in point)
 
@@ -79,7 +75,7 @@ def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
 def _exchange(
     table: list[list[int]], basic: list[int], free: list[int], leaving: int, entering: int, denominator: int
 ) -> int:
-    """Pivot in place; return the new, positive denominator."""
+    """Pivot in place; return the new denominator."""
     top = table[leaving]
     pivot, sign = abs(top[entering]), 1 if top[entering] > 0 else -1
     for i, row in enumerate(table):

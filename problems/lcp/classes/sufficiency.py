@@ -17,14 +17,14 @@ LARGEST_SIGNED = 7
 """Largest order of the sufficiency test, (3^n - 1)/2 linear programs."""
 
 LARGEST_DENSE = 64
-"""Largest order of the semidefiniteness test, whose numbers grow with n (0.6 s at 64)."""
+"""Largest order of the semidefiniteness test (0.6 s at 64)."""
 
 VALIAHO = "Väliaho, P_*-matrices are just sufficient, Linear Algebra Appl. 239 (1996) 103-108"
 
 
 @matrix_class
 def is_psd(matrix: ExactMatrix) -> Membership:
-    """PSD: x'Ax >= 0 for all x; A may be unsymmetric. Polynomial in n."""
+    """PSD: x'Ax >= 0 for all x; A may be unsymmetric."""
     cited = CPS + ", section 3.1"
     if matrix.n > LARGEST_DENSE:
         return undecided("PSD", matrix.n, LARGEST_DENSE, cited)
@@ -92,7 +92,7 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
 
 
 def _reversed_vector(matrix: ExactMatrix) -> tuple[Indices, Point] | None:
-    """An x with x_i (Ax)_i <= 0 for all i and < 0 for some i, by one linear program per sign vector."""
+    """An x with x_i (Ax)_i <= 0 for all i, < 0 for some i: one linear program per sign vector."""
     for mask in index_sets(matrix.n):
         support = indices(mask)
         block = columns(matrix, support)
@@ -122,6 +122,6 @@ def is_sufficient(matrix: ExactMatrix) -> Membership:
 def is_p_star(matrix: ExactMatrix) -> Membership:
     """P_*: (1 + 4 kappa) sum_{I+} x_i (Ax)_i + sum_{I-} x_i (Ax)_i >= 0 for all x and some kappa >= 0.
 
-    Equivalent to sufficient (Väliaho 1996), which is tested; the paper's tau is 4 kappa.
+    It equals sufficient (Väliaho 1996), which is tested; the paper's tau is 4 kappa.
     """
     return evolve(is_sufficient(matrix), name="P_*", cited=VALIAHO)

@@ -1,7 +1,4 @@
-"""LCP homotopies, plug-ins of `continuation`.
-
-Each eliminates its complementary pairs, factors a matrix of order n + 1, and corrects solutions in the full system.
-"""
+"""LCP homotopies, plug-ins of `continuation`: they eliminate complementary pairs and factor matrices of order n + 1."""
 
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.homotopies.kkt import KKTHomotopy

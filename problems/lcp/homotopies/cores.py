@@ -1,6 +1,6 @@
 """The full linear system solved by a smaller core, with corrections.
 
-Eliminating one unknown of each pair ``s v + x p = r`` leaves the core. Pairs come from x_i y_i = lambda c_i.
+Eliminating one unknown of each pair ``s v + x p = r`` (from x_i y_i = lambda c_i) leaves the core.
 """
 
 from __future__ import annotations
@@ -17,9 +17,7 @@ from continuation.linear import BorderedSystem, SingularError
 from continuation.linear.silence import without_warnings
 
 GAINED = 1e-3
-"""Largest relative first correction of an accepted core: four such corrections reach round-off. Other limits are its
-powers.
-"""
+"""Largest relative first correction of an accepted core: four such corrections reach round-off."""
 
 FIRM_CORRECTION = 1e-13
 """Relative correction of the tangent (round-off) up to which solutions need none."""
@@ -71,7 +69,7 @@ def second_eliminated(s: Array, x: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient: nothing cancels, and one may be zero."""
+    """Eliminate the unknown with the larger coefficient, so that nothing cancels."""
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
     inverse = 1.0 / pivot
@@ -97,8 +95,7 @@ def parity(count: int | np.intp) -> int:
 class CoreSystem:
     """A bordered system solved by a quick or a robust core, and corrected in the full system.
 
-    `apply`: z to H' z, ``(N + 1,) -> (N,)``. `sizes`, of shape (N,): Scales of unknowns. `coefficients`: Other
-    coefficients of pairs.
+    `apply`: z to H' z. `sizes`, of shape (N,): Scales of unknowns. `coefficients`: Other coefficients of pairs.
 
     The quick core, smaller and symmetric, loses digits near zero pairs. The tangent's corrections decide which core
     serves and whether it needs corrections.
@@ -151,7 +148,6 @@ class CoreSystem:
 
     @_silently
     def _even(self) -> bool:
-        """Whether pair factors have similar sizes, as the tangent is then typical."""
         sizes = np.abs(np.concatenate([self.sizes, self.coefficients, [1.0]]))
         return bool(GAINED * sizes.max() <= sizes.min())
 
@@ -159,7 +155,6 @@ class CoreSystem:
         return r - self.apply(z), rho - float(self.border.dot(z))
 
     def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
-        """The corrected solution of the robust core, and the correction's size."""
         z = self.robust.solve(r, rho)
         correction = self.robust.solve(*self._residual(z, r, rho))
         return z + correction, self._moved(correction, z)[0]

@@ -1,7 +1,4 @@
-"""Elimination of linearised pairs from H', to a core of order n + 1 or 2 n + 1, and back.
-
-`forward` maps right-hand sides to the core's, `backward` the core's unknowns k to all.
-"""
+"""Elimination of linearised pairs from H', to a core of order n + 1 or 2 n + 1, and back."""
 
 from __future__ import annotations
 
@@ -21,9 +18,9 @@ if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
 
 LEAST_GIVE = 1e-9
-"""Least diagonal entry, in natural units, of a bounded row's multiplier in the core of order n + 1.
+"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units.
 
-An active row has 0 at lambda = 0. Corrections remove this error and the rounding (1e-7).
+An active row has 0 at lambda = 0. Corrections remove the error and the rounding (1e-7).
 """
 
 LEAST_GAP = 1e-13
@@ -68,7 +65,7 @@ class Core:
 class OfPairs:
     """Elimination to order n + 1 for homotopies in (x, y): the better pivot of each pair if `larger`, else y.
 
-    The matrix, alpha A diag(a) plus a diagonal, is symmetric with A if all y are eliminated.
+    With all y eliminated the matrix is symmetric with A.
     """
 
     system: System
@@ -111,7 +108,7 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
 
     Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
     if A is symmetric positive semidefinite and alpha, beta, gamma >= 0, otherwise LU the core of better pivots. Without
-    `refine` the definite core's solutions stay uncorrected. Raises `SingularError` if no core has a factorisation.
+    `refine` the definite core's solutions stay uncorrected. Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
     structure = homotopy.structure
@@ -130,8 +127,8 @@ class OfRows:
     """Elimination for the KKT homotopy: to order n + 1, or without `second` to 2n + 1, keeping z2.
 
     The first core is symmetric, ``(1-lam) [A + A' + diag(z1/gap) + A' diag(D) A] + lam I``. D is z2/w for one bound,
-    1/(s/z2 + t/(u-l-z2)) in a box, the inverse relaxation without bounds. The second squares nothing and eliminates
-    better pivots.
+    1/(s/z2 + t/(u-l-z2)) in a box, the inverse relaxation without bounds. The second eliminates better pivots and does
+    not square A.
     """
 
     system: System
@@ -189,8 +186,7 @@ class OfRows:
 def factor_rows(system: System, border: Array) -> BorderedSystem:
     """The bordered system of the KKT homotopy, by a core of order n + 1, or 2n + 1 where that loses digits.
 
-    Without `refine` the smaller core's solutions stay uncorrected. Raises `SingularError` if no core has a
-    factorisation.
+    `refine` and `SingularError` as in `factor_pairs`.
     """
     homotopy, (_, _, p, q, _) = system.of, system.parts
     rows, structure, n, m = homotopy.rows, homotopy.structure, homotopy.n, homotopy.rows.sides.index.size
@@ -216,7 +212,6 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
 
 
 def _or_none(make: Callable[[], Core]) -> Core | None:
-    """The core; None if singular."""
     try:
         return make()
     except SingularError:

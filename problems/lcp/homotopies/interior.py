@@ -28,7 +28,7 @@ Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 """(goal, origin, p, q, plain) at a point; without constants, of a direction."""
 
 LARGEST_FALL = 1e-3
-"""A scale falls at most to this fraction per step: ends at zero need a metric."""
+"""Largest fall of a scale per step, so that ends at zero have a metric."""
 
 INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
 """The smallest scale whose square can be inverted."""
@@ -38,11 +38,11 @@ INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
 class RelativeMetric:
     """The mean square of relative changes plus the parameter's squared change.
 
-    ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` at each point: interior paths span orders of magnitude. The
-    mean makes steps independent of n; a sum takes a tenth more.
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes steps independent of n; a sum takes a tenth
+    more.
 
-    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns, whose
-    scale is the distance from the nearer one; if unbounded, their size, at least `unit`.
+    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns, which
+    scale with the distance from the nearer one; without bounds with their size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -147,7 +147,7 @@ def differential(self: LCPHomotopy, y: Array, lam: float, v: Array) -> Array:
 def taylor(self: LCPHomotopy, point: Linearization, order: int) -> Array:
     """Taylor coefficients of the path in the pseudo-arclength of `point`, one a row.
 
-    Each order takes one solve and two products with A, as H is quadratic (Cochelin's asymptotic numerical method).
+    H is quadratic: each takes one solve and two products with A (Cochelin's asymptotic numerical method).
     """
     n, size = self.n, point.u.size - 1
     c = np.zeros((order + 1, size + 1))

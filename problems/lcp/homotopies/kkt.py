@@ -23,7 +23,7 @@ from problems.options import quiet
 GIVE = 0.1
 """Relaxation of an equation by its multiplier at lambda = 1, in natural units.
 
-On 48 monotone problems with all bounds (n = 10, 50) paths take 32 factorisations; 34 with 0.01, 36 with 1, 54 with 10.
+On 48 monotone problems (n = 10, 50) paths take 32 factorisations; 34 with 0.01, 36 with 1, 54 with 10.
 """
 
 
@@ -33,33 +33,32 @@ class KKTHomotopy:
 
     With y = (x, z1, z2), w = Ax + q + l rho, rho = w0 - (A x0 + q), componentwise::
 
-        H1 = (1-l)[(A + A')x + q - z1 - A'z2] + l(x - x0)
+        H1 = (1-l)[(A+A')x + q - z1 - A'z2] + l(x-x0)
         H2 = z1*x - l z1_0*x0
         H3 = z2*w - l z2_0*w0
 
     The path ends at a KKT point, a solution if A is row sufficient.
 
-    With bounds low and up the objective is (x-low)w for a lower bound alone, (x-up)w for an upper one, (x-low)s +
-    (up-x)t, w = s - t, s, t >= 0, in a box. z1 has one number per bound. For an upper bound alone w, z2 <= 0. A box
-    adds the unknown t and its multiplier up - low - z2::
+    With bounds low and up the objective is (x-low)w for a lower bound alone, (x-up)w for an upper one, and (x-low)s +
+    (up-x)t, w = s-t, s, t >= 0, in a box. For an upper bound alone w, z2 <= 0. A box adds the unknown t and its
+    multiplier up-low-z2::
 
-        H1 = (1-l)[Ax + q + A'(x - end - z2) - z1 of lower + z1 of upper bounds] + l(x - x0)
-        H3 = z2*(w + t) - l z2_0*s0
-        H4 = (up - low - z2)*t - l(up - low - z2_0)*t0
+        H1 = (1-l)[Ax + q + A'(x-end-z2) - z1 of lower + z1 of upper bounds] + l(x-x0)
+        H3 = z2*(w+t) - l z2_0*s0
+        H4 = (up-low-z2)*t - l(up-low-z2_0)*t0
 
-    Without bounds H3 = w + l give (z2 - z2_0). An index has 3 unknowns, 5 in a box, 2 without bounds; the core has
-    order n + 1.
+    Without bounds H3 = w + l give (z2-z2_0). An index has 3 unknowns, 5 in a box, 2 without bounds.
 
     Parameters
     ----------
     problem : MixedLCP
         Dense, sparse or, as sparse, banded.
     x0 : array_like, shape (n,), optional
-        Between the bounds, for an LCP positive; perhaps infeasible. Default: `default_start`.
+        Between the bounds, perhaps infeasible. Default: `default_start`.
     z1, z2 : array_like, optional
         Multipliers. z1: positive, one per finite bound, lower ones first. z2, of shape (n,): positive; for an upper
         bound alone negative; in a box between 0 and up - low. Default for an LCP: ones for a given, strictly feasible
-        x0 (the paper's start), else all products x0 z1 and w0 z2 are equal.
+        x0 (the paper's start), else equal products x0 z1 and w0 z2.
     w0 : array_like, optional
         Positive, one per finite bound: |w|, in a box s and t. Default for an LCP: A x0 + q if positive (the paper's
         start), else max(A x0 + q, 0) + max |q|.
@@ -73,7 +72,7 @@ class KKTHomotopy:
     TypeError
         If `problem` is no LCP.
     ValueError
-        If a vector is not finite, of the wrong length or out of range; the message names it.
+        If a vector is not finite, of the wrong length or out of range.
 
     References
     ----------
@@ -152,7 +151,7 @@ class KKTHomotopy:
 
     @cached_property
     def c(self) -> Array:
-        """The starting products of all pairs, zero without a bound; shape (2n,) for an LCP."""
+        """The starting products of all pairs, zero without a bound."""
         _, _, p, q, _ = self.parts(*self.start())
         return np.where(self.signs == 0.0, 0.0, p * q)
 
@@ -180,7 +179,7 @@ class KKTHomotopy:
         return np.concatenate([self.origin.x0, self.origin.z1, self.origin.z2, t0]), 1.0
 
     def at_solution(self, x: Array) -> Array:
-        """The zero of H at lambda = 0 for a solution x.
+        """The zero of H at lambda = 0 for a solution.
 
         Parameters
         ----------
@@ -207,7 +206,7 @@ class KKTHomotopy:
         return self.rows.split(y)
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Stationarity and x - x0; z1, z2, up - low - z2 times distances, w, t (see `interior`)."""
+        """Stationarity and x - x0; factors z1, z2, up - low - z2, and distances, w, t."""
         rows, start = self.rows, self.origin
         x, z1, z2, t = rows.split(y)
         if one:
@@ -239,6 +238,6 @@ class KKTHomotopy:
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix through a core of order n + 1; see `elimination`."""
+        """Factor the bordered matrix; see `elimination`."""
         # Callers may change their border.
         return factor_rows(System.at(self, y, lam), border.copy())

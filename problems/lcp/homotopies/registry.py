@@ -27,9 +27,9 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 class Registered:
     """One homotopy.
 
-    `name`: For arguments. `title`: For tables. `sentence`: For help. `make`: (problem, x0 or None, structure=...) to
-    the homotopy. `feasible`: Whether its default start is strictly feasible, by a linear program. `example`: A paper
-    example it solves. `bounds`: Whether it takes bounds.
+    `title`: For tables. `sentence`: For help. `make`: (problem, x0 or None, structure=...) to the homotopy. `feasible`:
+    Whether its default start is strictly feasible. `example`: A paper example it solves. `bounds`: Whether it takes
+    bounds.
     """
 
     name: str

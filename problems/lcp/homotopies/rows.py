@@ -1,6 +1,6 @@
 """The rows w = Ax + q of the KKT homotopy, with multipliers z.
 
-A lower bound alone requires w >= 0, an upper one w <= 0, none w = 0, a box w = s - t, s, t >= 0, with unknown t.
+A lower bound alone requires w >= 0, an upper one w <= 0, none w = 0, a box w = s - t with s, t >= 0.
 """
 
 from __future__ import annotations
@@ -96,8 +96,7 @@ class Rows:
 class RowPairs:
     """The linearised rows, ``factor dw + rest k = r``, after elimination in boxes.
 
-    In a box ``(u-l-z) dt - t dz = r3`` gives dz = a k + e r3, dt = b k + f r3 (`inner`), and r loses `taken` r3;
-    elsewhere k = dz.
+    In a box ``(u-l-z) dt - t dz = r3`` gives `inner`, and r loses `taken` r3; elsewhere k = dz.
     """
 
     rows: Rows
@@ -110,7 +109,7 @@ class RowPairs:
     def of_boxes(cls, rows: Rows, factor: Array, rest: Array, above: Array, t: Array) -> RowPairs:
         """Eliminate the unknown with the larger coefficient in boxes.
 
-        Rows are ``factor (dw + dt) + rest dz``; t and `above` = u - l - z have one number per box.
+        Rows are ``factor (dw + dt) + rest dz``; `above` is u - l - z in boxes.
         """
         boxed = rows.boxed
         if not boxed.size:

@@ -1,6 +1,7 @@
-"""The pairs of a problem with bounds: each finite bound has a force y and a distance, of product lambda c.
+"""The pairs of a problem with bounds: each finite bound, lower ones first, has a force y and a distance, of product
+lambda c.
 
-Lower bounds come first. Both forces of a box act on one row, w = s - t. The core keeps one unknown per index.
+Both forces of a box act on one row, w = s - t.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ class Sides:
 
 @frozen(eq=False)
 class BoundPairs:
-    """The pairs solved for one unknown per index, like `cores.Pairs`: dx = a k + ..., force = b k + ...
+    """The pairs solved for one unknown per index, like `cores.Pairs`.
 
     An eliminated force has dy = inverse t - slope sign dx; `main` ones are kept.
     """

@@ -21,8 +21,8 @@ from problems.options import finite_vector
 START_DISTANCES = (1.0, 2.5)
 """Decimal exponents of random starts' distances, in natural units or `typical_units`.
 
-Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). Of 70 paths of seven
-hard problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1, 4 from 0 to 0.5, none from nearer.
+Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). Of 70 paths of hard
+problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1, 4 from 0 to 0.5.
 """
 
 LOG_DEVIATION = 0.5
@@ -43,9 +43,9 @@ class Start:
     Attributes
     ----------
     x0, w0 : Array
-        The point, and the values taken for A x0 + q, with bounds one per bound.
+        The point, and the values taken for A x0 + q (one per bound).
     z1, z2 : Array
-        The multipliers of x >= 0, or each bound, and of Ax + q >= 0.
+        The multipliers of x >= 0 (one per bound) and Ax + q >= 0.
     """
 
     x0: Array
@@ -97,8 +97,8 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
     """`natural_units` with the root-mean-square row norm, which outliers hardly change.
 
-    Of 40 piles of bodies (n = 44 to 520) KKT paths from here solve 18 in 34 s, from natural units 17 in 39 s, from
-    twice this 19 in 31 s; but 22 monotone problems (n = 20 to 50) take 294, 276, 335 factorisations.
+    Of 40 piles of bodies (n = 44 to 520) KKT paths from here solve 18 in 34 s, from natural units 17 in 39 s; 22
+    monotone problems take 294 and 276 factorisations.
     """
     return _units(problem, np.mean)
 
@@ -115,7 +115,7 @@ def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, f
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
     """The start with equal products x0 z1 and w0 z2, the geometric mean of the x0_i w0_j.
 
-    With bounds x0 means distances; in a box s z2 = t (u - l - z2).
+    With bounds x0 means distances.
     """
     gaps = Sides(problem).gaps(x0)
     product = _product(gaps, w0)
@@ -127,7 +127,7 @@ def _product(gaps: Array, w0: Array) -> float:
 
 
 def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) -> Array:
-    """Multipliers whose products with w0 equal `product`, or each other in a box; x0 without bounds."""
+    """Multipliers whose products with w0 equal `product`, or each other in a box."""
     if problem.standard:
         return product / w0
     sides, z = Sides(problem), x0.copy()
@@ -141,7 +141,7 @@ def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) ->
 
 
 def default_start(problem: MixedLCP) -> Start:
-    """The centred start with equal components in typical units, feasible if possible.
+    """The centred start with equal components, feasible if possible.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """A start of random scale, balance and components; all products x0 z1 are equal, and all w0 z2.
 
-    The scale is a power of ten in natural units, without bounds in twice typical units: of 100 paths of ten Gaussian
+    The scale is a power of ten in natural units, without bounds in twice typical units: of 100 paths of Gaussian
     problems (n = 100) 36 solve so, 30 in typical, 28 in natural units.
 
     Parameters
@@ -231,7 +231,7 @@ def require_interior(problem: MixedLCP) -> None:
 
 
 def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
-    """A start (x0, y0) > 0, y0 by default A x0 + q; ValueError if that is not positive."""
+    """A start (x0, y0) > 0, y0 by default A x0 + q; ValueError if impossible."""
     require_lcp(problem)
     x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, problem.n)
     if y0 is None:

@@ -1,7 +1,4 @@
-"""The homotopies in (x, y) of Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno.
-
-Those of Yu, Wang and Kojima take bounds.
-"""
+"""The homotopies in (x, y) of Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ from problems.options import quiet
 class Blend:
     """``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]`` with these x_, y_, A_.
 
-    With bounds y is s - t, lower minus upper forces; x_ may vary by index.
+    With bounds y is s - t.
     """
 
     sign: int
@@ -57,7 +54,7 @@ class TwoVectorHomotopy:
     blend : Blend
         The coefficients in which the five differ.
     x0, y0 : Array
-        The start: x0 between the bounds, shape (n,); y0 positive, one per finite bound.
+        The start: x0 between the bounds, y0 positive, one per finite bound.
     references : tuple of str
     structure : Structure
     refine : bool
@@ -115,7 +112,7 @@ class TwoVectorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def at_solution(self, x: Array) -> Array:
-        """The zero (x, y) of H at lambda = 0 for a solution x.
+        """The zero (x, y) of H at lambda = 0 for a solution.
 
         Parameters
         ----------
@@ -125,7 +122,7 @@ class TwoVectorHomotopy:
         return np.concatenate([x, forces])
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Ax + q - y and its blend at lambda = 1; y and distances (see `interior`)."""
+        """Ax + q - y and its blend at lambda = 1; factors y and distances."""
         n, blend, sides = self.n, self.blend, self.sides
         x, y = y[:n], y[n:]
         if one:
@@ -147,7 +144,7 @@ class TwoVectorHomotopy:
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix through a core of order n + 1; see `factor_pairs`."""
+        """Factor the bordered matrix; see `factor_pairs`."""
         # Callers may change their border.
         return factor_pairs(System.at(self, y, lam), border.copy())
 
@@ -187,10 +184,8 @@ def ZhaoHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Default `strictly_feasible_start`; strictly feasible unless y0 is given.
-    y0 : array_like, shape (n,), optional
-        Any positive vector; default A x0 + q.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; default `strictly_feasible_start` and A x0 + q.
     structure : Structure, optional
         Of the problem, to share.
 
@@ -213,10 +208,8 @@ def XuHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Default `strictly_feasible_start`; strictly feasible unless y0 is given.
-    y0 : array_like, shape (n,), optional
-        Any positive vector; default A x0 + q.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; default `strictly_feasible_start` and A x0 + q.
     structure : Structure, optional
         Of the problem, to share.
 
@@ -234,7 +227,7 @@ def WangHomotopy(
 ) -> TwoVectorHomotopy:
     """Wang et al. 2010, for P*-matrices: ``(1-l)(Ax+q) - y + l y0``, ``xy - l x0 y0``.
 
-    The start may be infeasible. `KojimaMegiddoMizunoHomotopy` differs by l A(x-x0).
+    `KojimaMegiddoMizunoHomotopy` differs by l A(x-x0).
 
     Parameters
     ----------
@@ -251,7 +244,7 @@ def WangHomotopy(
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
-    # Unbounded rows have no force; x - x0 keeps their matrix regular at lambda = 1.
+    # x - x0 keeps unbounded rows regular at lambda = 1.
     return _made("Wang", problem, Blend(sign=1, x=sides.free, y=1), x0, y0, references.WANG, structure)
 
 
@@ -260,9 +253,9 @@ def KojimaMegiddoMizunoHomotopy(
 ) -> TwoVectorHomotopy:
     """Kojima, Megiddo and Mizuno 1993: ``Ax+q-y + l(y0 - A x0 - q)``, ``xy - l x0 y0``.
 
-    The central path of infeasible interior-point methods. With a, b of the source, (xy, y-Ax-q) = l(a, b); for b > 0
-    they prove convergence for classes up to L*- and copositive-plus matrices. If y0 = A x0 + q > 0, the path is
-    feasible. Han extended it to tensors.
+    The central path of infeasible interior-point methods. With (xy, y-Ax-q) = l(a, b) and b > 0 they prove convergence
+    for classes up to L*- and copositive-plus matrices. If y0 = A x0 + q > 0, the path is feasible. Han extended it to
+    tensors.
 
     Parameters
     ----------

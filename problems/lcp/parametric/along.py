@@ -46,8 +46,8 @@ def along(
 ) -> Path:
     """Follow the solutions of a problem as q + t d moves with t: exact between kinks, and at kinks to round-off.
 
-    t may turn back, or stand still while x moves. If up to ten switches vanish at once, trying all pieces finds all
-    rays; pivots choose the one to follow.
+    t may turn back, or stand still while x moves. If up to ten switches vanish at once, all rays are found; pivots
+    choose the one to follow.
 
     Parameters
     ----------
@@ -61,8 +61,7 @@ def along(
     x : array_like, shape (n,), optional
         A solution for t[0]; default that of `solve`.
     ray : array_like, shape (n + 1,), optional
-        Direction of (x, t) that selects the nearest of the rays that leave the start, such as one of ``kink.rays``; by
-        default t goes towards its end.
+        Direction of (x, t) that selects the nearest ray at the start; by default t goes towards its end.
     level : array_like, shape (n,), or one number
         If positive, unknowns without bounds pay t level_i |x_i|, t >= 0, as in penalised regression: w_i = -t level_i
         for x_i > 0, t level_i for x_i < 0, between them for x_i = 0.
@@ -74,8 +73,8 @@ def along(
     Returns
     -------
     continuation.Path
-        Its points are kinks and ends, its parameter t. ``path.kinks`` lists kinks with the pairs that switch and their
-        rays; ``path(t=0.5)`` is the first point with that t, ``path.crossings(t=0)`` are all.
+        Its points are kinks and ends, its parameter t. ``path.kinks`` lists kinks with pairs that switch and rays;
+        ``path(t=0.5)`` is the first point with that t, ``path.crossings(t=0)`` are all.
 
     Raises
     ------
@@ -131,7 +130,6 @@ def along(
 
 
 def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Exponents, Exponents]:
-    """The balanced problem and its exponents of two."""
     scaled = None if alike(problem) else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
     if scaled is None or not scaled.exact:
         none = np.zeros(problem.n, dtype=np.int64)

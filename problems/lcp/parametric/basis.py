@@ -12,7 +12,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from continuation.arrays import Array
 
 EXTENDED = 4096
-"""Largest block with residuals in extended precision (20 us). Kinks are then exact to round-off for any condition:
+"""Largest block with residuals in extended precision, at 20 us. Kinks are then exact to round-off for any condition:
 10,000 integer problems (n <= 6) to 1e-14.
 """
 
@@ -25,7 +25,7 @@ class SingularBasisError(ValueError):
 class Basis:
     """A square block of [A, d] and its factors.
 
-    `rows`, `columns`, of shape (k,): Column n is that of t. `block`, of shape (n, k): The columns, in all rows.
+    `rows`, `columns`, of shape (k,): Column n is that of t. `block`, of shape (n, k): All rows of the columns.
     """
 
     rows: NDArray[np.intp]

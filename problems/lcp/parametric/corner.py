@@ -1,4 +1,4 @@
-"""Corners where several switches vanish: rays, and solutions of the small LCP."""
+"""Corners where several switches vanish."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
-"""Most switches for which all 2^m pieces are tried (30 ms for ten), and largest order for all faces (0.1 s for ten, a
-second for twelve). Beyond, pivots find one ray.
+"""Most switches for which all 2^m pieces are tried (30 ms for ten; beyond, pivots find one ray), and largest order for
+all faces (0.1 s for ten).
 """
 
 

@@ -1,7 +1,6 @@
 """Proof of a piecewise linear path in rational numbers.
 
-A corner solves the equations of both its pieces. If two corners satisfy the limits of the piece between them, so does
-their segment, by convexity.
+If two corners satisfy the equations and limits of the piece between them, so does their segment, by convexity.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from problems.lcp.proof.rational import Integers, fractions, full_row_rank, inte
 from problems.options import finite_vector
 
 SAME_CORNER = 1e-6
-"""Largest relative distance of an exact corner from the path's; beyond, another path would be proved."""
+"""Largest relative distance of an exact corner from the path's; beyond, another path is proved."""
 
 Exactly = tuple[Fraction, ...]
 
@@ -41,12 +40,11 @@ class ExactPath:
     Attributes
     ----------
     points : tuple of tuples of Fraction
-        (x, t) of ends and kinks, in order. All points on the segments between them are exact solutions.
+        (x, t) of ends and kinks. All points on the segments between them are exact solutions.
     pieces : tuple of tuples of int
-        For each segment the state of every pair (-1, 0, 1: below, between and above its corners).
+        For each segment the state of every pair (-1, 0, 1: below, between, above its corners).
     single : bool
-        Whether no other path branches off: each segment is its piece's only line, and exactly one pair switches at each
-        kink.
+        Whether no other path branches off: each segment is its piece's only line, and one pair switches at each kink.
     """
 
     points: tuple[Exactly, ...]
@@ -60,7 +58,7 @@ class ExactPath:
 
 
 def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> ExactPath:
-    """Prove a path of `along` in rational arithmetic, taking the floats of A, q and d as exact.
+    """Prove a path of `along` in rational arithmetic, for A, q and d exactly as stored.
 
     Parameters
     ----------
@@ -78,7 +76,7 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     Raises
     ------
     UnprovenError
-        If the path is not as claimed: a ValueError.
+        If the path is not as claimed.
     TypeError, ValueError
         For bad input.
     """
@@ -185,7 +183,7 @@ class _Exactly:
         return whole
 
     def at_corners(self, state: State, point: Exactly, stretch: int) -> int:
-        """The number of pairs at a corner of their graphs.
+        """The number of pairs at corners of their graphs.
 
         Raises
         ------

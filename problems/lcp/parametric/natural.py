@@ -16,7 +16,7 @@ from problems.lcp.parametric.stairs import Stairs
 class NaturalMap:
     """x - mid(lower, x - w, upper), w = Ax + q + t d; for a level, w + mid(-t level, x - w, t level).
 
-    `d`, `level`, of shape (n,): As for `along`. `begin`, of shape (n + 1,): A point of the path.
+    `d`, `level`, of shape (n,), as for `along`; `begin`, of shape (n + 1,), on the path.
     """
 
     problem: MixedLCP

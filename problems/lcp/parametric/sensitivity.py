@@ -16,9 +16,7 @@ from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
 from problems.options import finite_vector, real_array
 
 BIACTIVE = 1e-10
-"""Relative to its row's terms, |w_i| up to this counts as zero and x_i as at its bound, as in the certificates of
-`solve`.
-"""
+"""Relative to its row's terms, |w_i| up to this is zero and x_i at its bound, as in certificates of `solve`."""
 
 
 class NotDifferentiableError(ValueError):
@@ -34,7 +32,7 @@ class Gradient:
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether biactive indices exist. Held at their bounds, they give an element of the generalised Jacobian.
+        Whether there are biactive indices, held at their bounds: an element of the generalised Jacobian.
     """
 
     q: Array
@@ -160,7 +158,6 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
 
 
 def _only(S: Array, r: Array) -> Array:
-    """The only solution of LCP(r, S)."""
     if r.size <= LARGEST_LISTED:
         found = [ray.grown / ray.driven for ray in rays(S, r) if ray.driven > 0.0]
         if len(found) != 1:

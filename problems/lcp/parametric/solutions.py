@@ -49,9 +49,8 @@ class Solutions:
     certificates : tuple of Certificate
         One per solution.
     complete : bool
-        Whether these are all solutions, by an exact test of all faces.
+        Whether these are all solutions, by an exact test.
     paths : int
-        Number of paths.
     message : str
     """
 
@@ -89,7 +88,7 @@ def solutions(
 
     For order ten or less each complementary face of an LCP is solved exactly, which finds all solutions, unless a face
     holds a continuum. Otherwise paths of q + t d, for random d, start from known solutions; each crossing of t = 0 is a
-    solution, and is certified.
+    solution. All are certified.
 
     Parameters
     ----------
@@ -97,12 +96,12 @@ def solutions(
     known : sequence of array_like, shape (n,)
         Solutions to start from; default that of `solve`.
     enumerate_faces : bool
-        Whether to try all faces if there are few.
+        Whether to try all faces.
     seed : int
         Of the directions d.
     budget : continuation.Budget, optional
-        Its steps are the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at least
-        twice the number of solutions, without a new one.
+        Of the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at least twice the
+        number of solutions, without a new one.
     tolerance : float
         As for `solve`.
 

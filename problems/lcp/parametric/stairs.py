@@ -1,7 +1,6 @@
 """The graph of each pair (x_i, w_i): up to three pieces that meet at two corners.
 
-A bound fixes x_i on outer pieces and w_i between; a level fixes x_i = 0 between, and w_i outside. The other one moves
-between limits.
+A bound fixes x_i on outer pieces and w_i between; a level fixes x_i = 0 between, and w_i outside.
 """
 
 from __future__ import annotations
@@ -20,12 +19,12 @@ Mask = NDArray[np.bool_]
 
 @frozen(eq=False)
 class Stairs:
-    """Fixed values and limits, by state (row state + 1) and index: shape (3, n).
+    """Fixed values and limits, by state (row state + 1) and index.
 
-    `moves_x`: Whether x_i moves and w_i is fixed, or vice versa. `values`, of shape (6, 3, n): The fixed value is
-    ``values[0] + t values[1]``, the limits are ``values[2] + t values[4]`` and ``values[3] + t values[5]``. `levels`,
-    of shape (n,): Where outer pieces fix w_i. `corner_x`, `corner_slope`, of shape (2, n): The corners, infinite if
-    absent; w_i is ``t corner_slope`` there.
+    `moves_x`, of shape (3, n): Whether x_i moves and w_i is fixed, or vice versa. `values`, of shape (6, 3, n): The
+    fixed value is ``values[0] + t values[1]``, the limits are ``values[2] + t values[4]`` and ``values[3] + t
+    values[5]``. `levels`, of shape (n,): Where outer pieces fix w_i. `corner_x`, `corner_slope`, of shape (2, n):
+    Corners, infinite if absent, with w_i = ``t corner_slope``.
     """
 
     moves_x: Mask

@@ -1,4 +1,4 @@
-"""The start of a walk: a ray, or a solution."""
+"""Starts of walks."""
 
 from __future__ import annotations
 

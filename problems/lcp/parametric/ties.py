@@ -1,4 +1,4 @@
-"""Corners of a walk: one switch is a pivot, several give a small LCP."""
+"""Corners of a walk: a pivot, or a small LCP."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Corner:
     switches : tuple of int
         The pairs at a corner of their graphs.
     directions : list of Array of shape (n + 1,)
-        Of all rays, if several (not too many) switches vanish.
+        Of all rays, if several switches vanish.
     dead : bool
         Whether only the ray of arrival exists.
     """
@@ -45,7 +45,7 @@ def turn(walk: Walk, step: float) -> Corner | None:
                 walk.switch(edges[onward[0]].grown > 0.0)
                 aim(walk, found[onward[0]], step)
                 return Corner(switches, found)
-            # The list is complete if it has the ray of arrival.
+            # Complete if the ray of arrival is found.
             return Corner(switches, found, dead=True) if edges else None
         switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
     walk.switch(switched)

@@ -24,8 +24,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 class Trail:
     """A path in the making.
 
-    `units`, of shape (n + 1,): Of x and t. `points`, `tangents`, of shape (n + 1,): Points and directions of arrival.
-    `kinks`: Point number to name, pairs, rays.
+    `units`: Of x and t. `points`, `tangents`: Points and directions of arrival, of shape (n + 1,). `kinks`: Point
+    number to name, pairs, rays.
     """
 
     units: Array
@@ -123,7 +123,6 @@ class Trail:
         self.tangents.append(unit)
 
     def _leave(self, walk: Walk, unit: Array, length: float, last: float) -> tuple[Status, str]:
-        """End the path on a ray."""
         far = 1.0 + largest(walk.u[0]) if walk.still else 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt)
         self._end(unit, far * length, walk.t if walk.still else walk.t + far * walk.dt)
         if math.isinf(last) and not walk.still and walk.dt * last > 0.0:
@@ -139,7 +138,7 @@ class Trail:
         return been
 
     def _closes(self, unit: Array, length: float) -> bool:
-        """Whether the path returns to its first point before the next corner, and ends."""
+        """Whether the path returns to its first point before the next corner."""
         first, last = self.points[0], self.points[-1]
         # Mostly t alone rules this out.
         if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
@@ -162,7 +161,6 @@ def state_at(walk: Walk, last: float, most: int) -> State | None:
 
 
 def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
-    """Whether t is `last` before or at the next corner."""
     if math.isinf(last) or math.isinf(step):
         return 0.0 <= to_last < math.inf
     off = abs(walk.t + step * walk.dt - last)

@@ -32,12 +32,11 @@ class Walk:
 
     `state`: The piece of each pair. `driver`: The variable that moves on: that of pair i on its piece, or t for i = n.
     `value`: Of x_driver or t at the last corner; of w_driver its distance from its corner. `sign`: Whether the driver
-    grows or falls. `sizes`, of shape (n,): The largest entry of each row of [A, d]. `moves_x`, of shape (n,): Where x
-    moves and w is fixed. `basis`: Rows of fixed w, columns of moving x and t, without the driver. `shares`, of shape
-    (n,): The column of t. `u`, of shape (2, n + 1): (x, t) at the last corner and its derivative. `still`: Whether t
-    stands still. `slopes`, of shape (2, n): Derivatives of the limits by t. `gaps`, `rates`, of shape (2, n): Distances
-    from lower and upper limits, and derivatives. `tied`: The pairs at the next corner; `low`: whether at lower limits.
-    `noise`, of shape (2, n): The scales of gaps and rates.
+    grows or falls. `sizes`: The largest entry of each row of [A, d]. `moves_x`: Where x moves and w is fixed. `basis`:
+    Rows of fixed w, columns of moving x and t, without the driver. `shares`: The column of t. `u`, of shape (2, n + 1):
+    (x, t) at the last corner and its derivative. `still`: Whether t stands still. `slopes`: Derivatives of limits by t.
+    `gaps`, `rates`, of shape (2, n): Distances from lower and upper limits, and derivatives. `tied`: The pairs at the
+    next corner. `low`: Whether at lower limits. `noise`: The scales of gaps and rates.
     """
 
     problem: MixedLCP
@@ -82,7 +81,7 @@ class Walk:
         rows = np.flatnonzero(self.moves_x)
         columns = np.append(rows[rows != j], np.full(int(j != n), n))
         if not by_x:
-            # Its w is the driver's way from its corner, which moves with t.
+            # Its w is the driver's distance from its corner, which moves with t.
             rows = np.append(rows, j)
             self.shares[j] -= self.slopes[0 if self.sign > 0.0 else 1, j]
         block = np.empty((n, columns.size), order="F")
