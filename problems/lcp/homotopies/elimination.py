@@ -24,8 +24,8 @@ An active row has 0 at lambda = 0. Corrections remove the error and the rounding
 """
 
 LEAST_GAP = 1e-13
-"""Least distance from a bound over its multiplier, in natural units. Of 2,300 systems of 90 paths (n = 6, 12, 30) 11
-need the robust core; 26 with 1e-16, 147 with 0.
+"""Least distance from a bound over its multiplier, in natural units. 11 of 2,300 systems (90 paths, n = 6, 12, 30) need
+the robust core; 26 with 1e-16, 147 with 0.
 """
 
 

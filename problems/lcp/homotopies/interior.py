@@ -38,11 +38,11 @@ INVERTIBLE = float(np.sqrt(np.finfo(float).tiny))
 class RelativeMetric:
     """The mean square of relative changes plus the parameter's squared change.
 
-    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes steps independent of n; a sum takes a tenth
-    more.
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n; a sum takes a
+    tenth more steps.
 
-    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns, which
-    scale with the distance from the nearer one; without bounds with their size, at least `unit`.
+    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns. Their
+    scale is the distance from the nearer bound, or without bounds their size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)

@@ -54,7 +54,7 @@ class KKTHomotopy:
     problem : MixedLCP
         Dense, sparse or, as sparse, banded.
     x0 : array_like, shape (n,), optional
-        Between the bounds, perhaps infeasible. Default: `default_start`.
+        Between the bounds; may be infeasible. Default: `default_start`.
     z1, z2 : array_like, optional
         Multipliers. z1: positive, one per finite bound, lower ones first. z2, of shape (n,): positive; for an upper
         bound alone negative; in a box between 0 and up - low. Default for an LCP: ones for a given, strictly feasible
@@ -63,7 +63,7 @@ class KKTHomotopy:
         Positive, one per finite bound: |w|, in a box s and t. Default for an LCP: A x0 + q if positive (the paper's
         start), else max(A x0 + q, 0) + max |q|.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
     refine : bool
         Whether bordered solves are corrected to round-off. False takes a third less time and suits loose tolerances.
 

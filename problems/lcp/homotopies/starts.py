@@ -21,8 +21,8 @@ from problems.options import finite_vector
 START_DISTANCES = (1.0, 2.5)
 """Decimal exponents of random starts' distances, in natural units or `typical_units`.
 
-Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). Of 70 paths of hard
-problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1, 4 from 0 to 0.5.
+Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). From 1 to 1.5 or
+further 17 of 70 paths of hard problems (n = 100) solve, from 0.5 to 1 11, from 0 to 0.5 4.
 """
 
 LOG_DEVIATION = 0.5
@@ -97,7 +97,7 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
     """`natural_units` with the root-mean-square row norm, which outliers hardly change.
 
-    Of 40 piles of bodies (n = 44 to 520) KKT paths from here solve 18 in 34 s, from natural units 17 in 39 s; 22
+    KKT paths from here solve 18 of 40 piles of bodies (n = 44 to 520) in 34 s, from natural units 17 in 39 s; 22
     monotone problems take 294 and 276 factorisations.
     """
     return _units(problem, np.mean)
@@ -115,7 +115,7 @@ def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, f
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
     """The start with equal products x0 z1 and w0 z2, the geometric mean of the x0_i w0_j.
 
-    With bounds x0 means distances.
+    With bounds x0 stands for the distances.
     """
     gaps = Sides(problem).gaps(x0)
     product = _product(gaps, w0)
@@ -167,8 +167,8 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """A start of random scale, balance and components; all products x0 z1 are equal, and all w0 z2.
 
-    The scale is a power of ten in natural units, without bounds in twice typical units: of 100 paths of Gaussian
-    problems (n = 100) 36 solve so, 30 in typical, 28 in natural units.
+    The scale is a power of ten in natural units, without bounds in twice typical units: with these 36 of 100 paths of
+    Gaussian problems (n = 100) solve, 30 in typical, 28 in natural units.
 
     Parameters
     ----------

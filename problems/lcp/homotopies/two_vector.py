@@ -161,7 +161,7 @@ def YuHomotopy(
         Positive; default ones, and 1/x0 (the published xy = le). With bounds x0 lies between them, y0 has one number
         each.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
 
     Raises
     ------
@@ -185,9 +185,9 @@ def ZhaoHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; default `strictly_feasible_start` and A x0 + q.
+        Positive; default `strictly_feasible_start` and A x0 + q. Without y0 x0 must be strictly feasible.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
 
     Raises
     ------
@@ -209,9 +209,9 @@ def XuHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; default `strictly_feasible_start` and A x0 + q.
+        As for `ZhaoHomotopy`.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
 
     Raises
     ------
@@ -233,9 +233,9 @@ def WangHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; default ones, and max(1, |q|). With bounds x0 lies between them, y0 has one number each.
+        As for `YuHomotopy`, but y0 is max(1, |q|) by default.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
 
     Raises
     ------
@@ -261,10 +261,9 @@ def KojimaMegiddoMizunoHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0. With bounds x0 lies between them, y0
-        has one number each.
+        As for `YuHomotopy`, but y0 is max(A x0 + q, 0) + max(1, |q|) by default, so that b > 0.
     structure : Structure, optional
-        Of the problem, to share.
+        Shared between starts.
 
     Raises
     ------

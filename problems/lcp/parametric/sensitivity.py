@@ -32,7 +32,8 @@ class Gradient:
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether there are biactive indices, held at their bounds: an element of the generalised Jacobian.
+        Whether biactive indices exist. The derivative holds them at their bounds, as an element of the generalised
+        Jacobian.
     """
 
     q: Array

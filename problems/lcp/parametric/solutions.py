@@ -98,10 +98,10 @@ def solutions(
     enumerate_faces : bool
         Whether to try all faces.
     seed : int
-        Of the directions d.
+        Seed of the directions d.
     budget : continuation.Budget, optional
-        Of the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at least twice the
-        number of solutions, without a new one.
+        Its steps limit the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at
+        least twice the number of solutions, without a new one.
     tolerance : float
         As for `solve`.
 

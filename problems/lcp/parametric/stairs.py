@@ -23,7 +23,7 @@ class Stairs:
 
     `moves_x`, of shape (3, n): Whether x_i moves and w_i is fixed, or vice versa. `values`, of shape (6, 3, n): The
     fixed value is ``values[0] + t values[1]``, the limits are ``values[2] + t values[4]`` and ``values[3] + t
-    values[5]``. `levels`, of shape (n,): Where outer pieces fix w_i. `corner_x`, `corner_slope`, of shape (2, n):
+    values[5]``. `levels`, of shape (n,): Whether outer pieces fix w_i. `corner_x`, `corner_slope`, of shape (2, n):
     Corners, infinite if absent, with w_i = ``t corner_slope``.
     """
 

@@ -20,7 +20,7 @@ class Corner:
     switches : tuple of int
         The pairs at a corner of their graphs.
     directions : list of Array of shape (n + 1,)
-        Of all rays, if several switches vanish.
+        All rays, if several switches vanish.
     dead : bool
         Whether only the ray of arrival exists.
     """

@@ -24,8 +24,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 class Trail:
     """A path in the making.
 
-    `units`: Of x and t. `points`, `tangents`: Points and directions of arrival, of shape (n + 1,). `kinks`: Point
-    number to name, pairs, rays.
+    `units`: Scales of x and t. `points`, `tangents`: Points and directions of arrival, of shape (n + 1,). `kinks`:
+    Point number to name, pairs, rays.
     """
 
     units: Array

@@ -31,12 +31,12 @@ class Walk:
     """A point of the path, and its continuation.
 
     `state`: The piece of each pair. `driver`: The variable that moves on: that of pair i on its piece, or t for i = n.
-    `value`: Of x_driver or t at the last corner; of w_driver its distance from its corner. `sign`: Whether the driver
-    grows or falls. `sizes`: The largest entry of each row of [A, d]. `moves_x`: Where x moves and w is fixed. `basis`:
-    Rows of fixed w, columns of moving x and t, without the driver. `shares`: The column of t. `u`, of shape (2, n + 1):
-    (x, t) at the last corner and its derivative. `still`: Whether t stands still. `slopes`: Derivatives of limits by t.
-    `gaps`, `rates`, of shape (2, n): Distances from lower and upper limits, and derivatives. `tied`: The pairs at the
-    next corner. `low`: Whether at lower limits. `noise`: The scales of gaps and rates.
+    `value`: x_driver or t at the last corner, or the distance of w_driver from its corner. `sign`: 1 if the driver
+    grows, -1 if it falls. `sizes`: The largest entry of each row of [A, d]. `moves_x`: Whether x moves and w is fixed.
+    `basis`: Rows of fixed w, columns of moving x and t, without the driver. `shares`: The column of t. `u`, of shape
+    (2, n + 1): (x, t) at the last corner and its derivative. `slopes`: Derivatives of limits by t. `gaps`, `rates`, of
+    shape (2, n): Distances from lower and upper limits, and derivatives. `tied`: The pairs at the next corner; `low`:
+    whether at lower limits. `noise`: The scales of gaps and rates.
     """
 
     problem: MixedLCP
