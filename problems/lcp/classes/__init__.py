@@ -1,9 +1,6 @@
-"""Exact matrix classes of the linear complementarity problem, each answer with its evidence.
+"""Exact matrix classes of the LCP, each answer with its evidence.
 
-Floats are rational numbers, so that a test in integers is a proof. There are four kinds of test: signs of principal
-minors (`minors`, and their limits, `closure`), a linear program for each index set (`cones`) or sign vector
-(`sufficiency`), and complementary cones subtracted from that of feasible right-hand sides (`solvability`). Beyond the
-order that a test names the answer is None.
+Floats are rational numbers, so a test in integers is a proof. Beyond a test's order the answer is None.
 """
 
 from __future__ import annotations
@@ -52,18 +49,17 @@ _TESTS: tuple[Callable[[Any], Membership], ...] = (
 
 
 def classify(A: Any) -> Classification:
-    """Every class test on one matrix, in exact arithmetic.
+    """Test one matrix for every class in exact arithmetic.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Floats are taken as the rational numbers that they are.
 
     Returns
     -------
     dict of str to Membership
-        In a fixed order. Beyond the documented limits of an exponential test (12 for minors, 10 and 8 for index sets,
-        7 for sign vectors, 5 for the cover by cones) the answer is None, with the reason.
+        In a fixed order. Beyond the limits of exponential tests (12 for minors, 10 and 8 for index sets, 7 for sign
+        vectors, 5 for cones) the answer is None, with the reason.
 
     Raises
     ------

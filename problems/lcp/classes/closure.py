@@ -1,8 +1,6 @@
 """N-bar and its relatives: limits of matrices whose principal minors have strict signs.
 
-A limit can be refuted (a minor of the wrong sign, or a sign pattern that no such matrix has) and it can be exhibited
-(a perturbation whose minors have the strict signs for every small parameter); we know no finite criterion that always
-does one of the two, so a third answer, not decided, remains.
+A sign pattern may refute a limit, a perturbation prove it. No finite criterion is known that always decides.
 """
 
 from __future__ import annotations
@@ -23,29 +21,28 @@ N_BAR_EXACT = "by analogy with Neogy and Das 2005: the limit of N-matrices of ex
 Signature = tuple[int, ...]
 
 PERTURBATIONS = 400
-"""Perturbations tried, from a fixed seed, before the answer is `not decided`."""
+"""Perturbations tried before the answer `not decided`."""
 
 
 @matrix_class
 def is_n_bar(matrix: ExactMatrix) -> Membership:
-    """N-bar: the limit of a sequence of N-matrices."""
+    """N-bar: the limit of N-matrices."""
     return _limit(matrix, "N-bar", matrix.n, N_BAR)
 
 
 @matrix_class
 def is_almost_n_bar(matrix: ExactMatrix) -> Membership:
-    """Almost N-bar: the limit of a sequence of almost N-matrices."""
+    """Almost N-bar: the limit of almost N-matrices."""
     return _limit(matrix, "almost N-bar", matrix.n - 1, ALMOST_N_BAR)
 
 
 @matrix_class
 def is_n_bar_of_exact_order(matrix: ExactMatrix) -> Membership:
-    """N-bar of exact order k, for some k: the limit of N-matrices of exact order k."""
+    """N-bar of exact order k: the limit of N-matrices of exact order k."""
     return of_exact_order(matrix, "N-bar", lambda matrix, name, last: _limit(matrix, name, last, N_BAR_EXACT))
 
 
 def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:
-    """The limit of matrices with minors negative up to order `last` and positive beyond."""
     weak = judge(matrix, name, two_signs("nonpositive", last, "nonnegative"), cited)
     if not weak.holds:
         return weak
@@ -74,7 +71,7 @@ def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:
 
 
 def _signature(matrix: ExactMatrix) -> Signature | None:
-    """A signature S with S A S <= 0 entry by entry, if there is one."""
+    """A signature S with S A S <= 0, if any."""
     n, entries = matrix.n, matrix.entries
     pairs = list(itertools.product(range(n), repeat=2))
     signatures = ((1, *signs) for signs in itertools.product((1, -1), repeat=n - 1))
@@ -82,10 +79,7 @@ def _signature(matrix: ExactMatrix) -> Signature | None:
 
 
 def _perturbation(matrix: ExactMatrix, last: int, signature: Signature | None) -> tuple[Rows, Rows] | None:
-    """Integer B and C for which A + t B + t^2 C has the strict signs for all small t > 0.
-
-    Where A is zero the perturbation takes the sign that the signature asks for, if there is one.
-    """
+    """Integer B and C for which A + t B + t^2 C has strict signs for small t > 0."""
     rng = random.Random(0)
     n = matrix.n
 
@@ -103,10 +97,10 @@ def _perturbation(matrix: ExactMatrix, last: int, signature: Signature | None) -
 
 
 def _strict_nearby(matrix: ExactMatrix, first: Rows, second: Rows, last: int) -> bool:
-    """Decide the signs of the minors of T^2 A + T B + C for all large T from one integer T.
+    """Decide the signs of the minors of T^2 A + T B + C for all large T from one T.
 
-    A minor is a polynomial in T with integer coefficients of size at most n! (a + b + c)^n, with a, b and c the largest
-    entries, so beyond one plus that bound it has no root (Cauchy) and keeps its sign.
+    They are polynomials in T with integer coefficients up to n! (a+b+c)^n, for largest entries a, b, c, and have no
+    root beyond one plus that bound (Cauchy).
     """
     sizes = (max(abs(v) for row in part for v in row) for part in (matrix.entries, first, second))
     large = 2 + math.factorial(matrix.n) * sum(sizes) ** matrix.n

@@ -1,6 +1,6 @@
-"""Classes that sign conditions on vectors define: copositive, semimonotone, R0, S and their relatives.
+"""Classes defined by signs on vectors: copositive, semimonotone, R0, S and relatives.
 
-Each condition is homogeneous, so on each index set it is one exact linear feasibility problem with x >= 1.
+Each index set needs one exact linear program with x >= 1.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_cl
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point, positive_point
 
 LARGEST_SUPPORTS = 10
-"""Largest order of the tests with one exact linear program an index set (0.02 s for integers of one digit)."""
+"""Largest order of tests with one linear program per index set (0.02 s)."""
 
 LARGEST_STAR = 8
-"""Largest order of the E0^s test, n linear programs an index set (0.03 s)."""
+"""Largest order of the E0^s test, n linear programs per index set (0.03 s)."""
 
 Build = Callable[[ExactMatrix, Indices], list[Constraint]]
 
@@ -29,13 +29,12 @@ def columns(matrix: ExactMatrix, support: Indices) -> list[list[int]]:
 
 
 def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
-    """The vector of length n with `values` on the support and zero elsewhere."""
+    """The vector with `values` on the support and zeros elsewhere."""
     known = dict(zip(support, values, strict=True))
     return tuple(known.get(i, Fraction(0)) for i in range(n))
 
 
 def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
-    """No index set has a violating vector; `words` say what a violation shows and what its absence proves."""
     if matrix.n > LARGEST_SUPPORTS:
         return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
     for support in map(indices, index_sets(matrix.n)):
@@ -48,7 +47,7 @@ def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str,
 
 
 def _all_at_most(bound: int) -> Build:
-    """Ax at most so much wherever x is positive: negative for -1, as the condition is homogeneous."""
+    """(Ax)_i <= bound where x_i > 0; -1 means negative."""
 
     def build(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
         block = columns(matrix, support)
@@ -89,7 +88,7 @@ def is_strictly_semimonotone(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_r0(matrix: ExactMatrix) -> Membership:
-    """R0: LCP(0, A) has no solution but zero."""
+    """R0: LCP(0, A) has only the zero solution."""
     return _by_supports(
         matrix,
         "R0",
@@ -101,13 +100,13 @@ def is_r0(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_copositive(matrix: ExactMatrix) -> Membership:
-    """Copositive (C0): x'Ax >= 0 for x >= 0. For the symmetric part that is E0 (CPS, section 3.9)."""
+    """Copositive (C0): x'Ax >= 0 for x >= 0; E0 of the symmetric part (CPS, section 3.9)."""
     return _copositive(matrix, "copositive", _all_at_most(-1), "nonnegative")
 
 
 @matrix_class
 def is_strictly_copositive(matrix: ExactMatrix) -> Membership:
-    """Strictly copositive (C): x'Ax > 0 for nonzero x >= 0. For the symmetric part that is E (CPS, section 3.9)."""
+    """Strictly copositive (C): x'Ax > 0 for nonzero x >= 0; E of the symmetric part (CPS, section 3.9)."""
     return _copositive(matrix, "strictly copositive", _all_at_most(0), "positive")
 
 
@@ -129,7 +128,7 @@ def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
 
 @matrix_class
 def is_almost_copositive(matrix: ExactMatrix) -> Membership:
-    """Almost C0: every principal submatrix of order n - 1 copositive, A itself not."""
+    """Almost C0: not copositive, but all principal submatrices of order n - 1 are."""
     cited = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
     plain = is_copositive(matrix)
     if plain.holds is None:
@@ -147,7 +146,7 @@ def is_almost_copositive(matrix: ExactMatrix) -> Membership:
 def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
     """E0^s as the paper prints it: x'Ax = 0, Ax >= 0, x >= 0 imply A'x <= 0.
 
-    Jana, Das and Sinha, whose class it is, ask for E0 as well; the sentence says whether that holds.
+    Jana, Das and Sinha also require E0; the evidence reports it.
     """
     cited = "Dutta, Das and Jana, section 2; Jana, Das and Sinha, On semimonotone star matrices, 2018, ask for E0 too"
     if matrix.n > LARGEST_STAR:
@@ -169,7 +168,7 @@ def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_s(matrix: ExactMatrix) -> Membership:
-    """S: Ax > 0 for some x > 0, so that every LCP(q, A) has a strictly feasible point. One linear program."""
+    """S: Ax > 0 for some x > 0, so every LCP(q, A) is strictly feasible."""
     cited = CPS + ", section 3.1; Ville's theorem"
     x = positive_point([at_least(row, 1) for row in matrix.entries], matrix.n)
     if x is not None:

@@ -1,8 +1,4 @@
-"""Exact linear algebra on small matrices: every float is a rational number, so every answer is a proof.
-
-A matrix is stored as integers over one positive scale. All class definitions are invariant under positive scaling,
-so the tests read the integers only; the scale serves when a value is reported.
-"""
+"""Exact linear algebra on small matrices, stored as integers over one positive scale."""
 
 from __future__ import annotations
 
@@ -23,7 +19,7 @@ Indices = tuple[int, ...]
 
 
 def _fraction(value: Any) -> Fraction:
-    """One entry, exactly; numpy scalars become Python numbers first, so that no integer wraps around."""
+    """One entry as a Fraction; converting NumPy scalars first prevents integer overflow."""
     plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain, float) and not math.isfinite(plain):
         raise ValueError(f"A: expected finite numbers, found {plain}")
@@ -33,11 +29,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def over_common_denominator(values: Sequence[Fraction]) -> tuple[list[int], int]:
-    """Integers and the positive scale with values = integers / scale.
-
-    In lowest terms, so that a matrix of small integers stays one; `problems.lcp.proof.rational.integers` takes vectors
-    of floats only and keeps 53 bits of each.
-    """
+    """Integers and the least positive scale with values = integers / scale."""
     scale = math.lcm(*(value.denominator for value in values))
     return [value.numerator * (scale // value.denominator) for value in values], scale
 
@@ -63,19 +55,19 @@ class ExactMatrix:
         Parameters
         ----------
         A : array_like or scipy sparse, shape (n, n)
-            Each float is taken as the rational number that it is: 0.8 is not 4/5.
+            The float 0.8 is not 4/5.
 
         Raises
         ------
         ValueError
-            If A is not a square matrix of at least one finite real number.
+            If A is not a nonempty square matrix of finite real numbers.
         """
         if isinstance(A, ExactMatrix):
             return A
         if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
             raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
         if sp.issparse(A):
-            # Looked at for what it refuses: floats hold no more than 53 bits of an integer.
+            # Only to reject bad input: its floats hold 53 bits.
             sound_sparse("A", A)
             A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
         dense = np.array(A, dtype=object)
@@ -103,21 +95,21 @@ class ExactMatrix:
 
     @cached_property
     def minors(self) -> tuple[int, ...]:
-        """All 2^n principal minors of the integer matrix; position m belongs to the index set of m's bits."""
+        """All 2^n principal minors of the integer matrix, by bit mask."""
         return tuple(principal_minors(self.entries))
 
     def minor(self, mask: int) -> Fraction:
-        """The principal minor of the index set `mask`, in the units of A.
+        """The principal minor of an index set, in the units of A.
 
         Parameters
         ----------
         mask : int
-            Bit i is set where the index i belongs to the set.
+            Bit i is set if index i belongs to the set.
         """
         return Fraction(self.minors[mask], self.scale ** mask.bit_count())
 
     def image(self, x: Sequence[Fraction]) -> tuple[Fraction, ...]:
-        """A x, in the units of A.
+        """Ax, in the units of A.
 
         Parameters
         ----------
@@ -128,23 +120,20 @@ class ExactMatrix:
 
 
 def indices(mask: int) -> Indices:
-    """The index set, counted from 0, whose bits are set in `mask`."""
+    """The index set of the bits in `mask`."""
     return tuple(i for i in range(mask.bit_length()) if mask >> i & 1)
 
 
 def index_sets(n: int) -> Iterator[int]:
-    """The nonempty index sets as masks, small ones first, so that a violation found first is a smallest one."""
+    """The nonempty index sets as masks, small ones first."""
     return iter(sorted(range(1, 1 << n), key=lambda mask: (mask.bit_count(), mask)))
 
 
 def principal_minors(rows: Sequence[IntRow]) -> list[int]:
-    """All 2^n principal minors of an integer matrix, by Schur complements that the index sets share.
+    """All 2^n principal minors of an integer matrix, by mask, from shared Schur complements.
 
-    Minors without the first index come from the rest of the matrix, minors with it from the fraction-free Schur
-    complement. Where the pivot is zero, the diagonal entry is raised by one: the determinant is linear in it, so the
-    minors without the index, which are known, undo the change exactly.
-
-    Returns list of int, length 2^n: Position m holds the minor of the index set given by m's bits.
+    Minors without the first index come from the remaining matrix, the others from the fraction-free Schur complement. A
+    zero pivot is raised by one, which the minors without the index then undo.
 
     References
     ----------
@@ -170,11 +159,10 @@ def _minors(block: list[list[int]], determinant_so_far: int) -> list[int]:
 
 
 def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[int]], int] | None:
-    """Numerators X and a positive denominator d with rows X = d right, or None for a singular matrix.
+    """Numerators X and a positive denominator d with rows X = d right; None for a singular matrix.
 
-    Fraction-free Gauss-Jordan elimination: every intermediate number is a minor, so every division is exact. At the
-    orders of the class tests it is faster than `problems.lcp.proof.rational.solve_exactly` (floats: 0.9 against 2.9 ms
-    at order 12), and slower beyond order 20 or so (1.07 against 0.12 s at order 60), so there are two.
+    Fraction-free Gauss-Jordan elimination, faster than `problems.lcp.proof.rational.solve_exactly` at small order (0.9
+    against 2.9 ms at 12), slower beyond about 20.
     """
     work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
     m, previous = len(work), 1
@@ -195,10 +183,7 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
 
 
 def consistent(rows: Sequence[IntRow]) -> bool:
-    """Whether equations have a solution, each row its coefficients and then its right-hand side.
-
-    By the same elimination, with rows of smaller rank left behind: what is left of those holds zeros.
-    """
+    """Whether equations [coefficients, right-hand side] have a solution."""
     work, previous = [list(row) for row in rows], 1
     for k in range(len(work[0]) - 1):
         pivot = next((row for row in work if row[k]), None)
@@ -210,7 +195,7 @@ def consistent(rows: Sequence[IntRow]) -> bool:
 
 
 def simplest(vector: Sequence[Fraction], accepts: Callable[[Sequence[Fraction]], bool]) -> tuple[Fraction, ...]:
-    """A positive multiple of the vector, rounded to integers as small as `accepts` allows, or else the vector."""
+    """A positive multiple of the vector in the smallest integers that `accepts` allows."""
     largest = max(abs(v) for v in vector)
     for bits in range(24):
         rounded = tuple(Fraction(round(v * 2**bits / largest)) for v in vector)

@@ -1,4 +1,4 @@
-"""One complementary piece in exact arithmetic: x at bounds outside of an index set, w zero inside it."""
+"""One complementary piece in exact arithmetic."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from problems.lcp.classes.simplex import Point, at_least, at_most, exactly, feas
 from problems.lcp.data.problem import MixedLCP
 
 Bound = tuple[int | None, int | None]
-"""The lower and the upper bound of an unknown, None where there is none."""
+"""(lower, upper), None if absent."""
 
 
 @frozen
 class FacePoint:
-    """A solution found on one face, and whether that holds no other."""
+    """A solution on one face; `only`: whether it is unique there."""
 
     x: Point
     w: Point
@@ -29,10 +29,10 @@ class FacePoint:
 
 @frozen
 class Piece:
-    """The conditions of one piece: the columns inside, and what the rows are where these are zero.
+    """The conditions of one piece.
 
-    `columns` of shape (n, number inside). `constants`: The rows with x at its bounds outside, and zero inside. `below`,
-    `above`: Outside: where w_i >= 0 is asked, and where w_i <= 0 is; neither where x_i is fixed. `bounds`: Inside.
+    `columns` of shape (n, number inside). `constants`: The rows for zero x inside. `below`, `above`: Outside indices
+    with w_i >= 0, or w_i <= 0. `bounds`: Inside.
     """
 
     columns: list[list[int]]
@@ -49,10 +49,9 @@ class Piece:
 
 
 def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) -> FacePoint | None:
-    """A point x >= 0, w = entries x + q >= 0 with x zero outside `support` and w zero on it, or None if there is none.
+    """A point x, w >= 0, w = entries x + q, with x zero outside `support` and w zero on it.
 
-    A nonsingular principal submatrix gives the only candidate; a singular one leaves a linear feasibility problem,
-    solved exactly. So None is a proof.
+    None proves that there is none.
     """
     rest = [i for i in range(len(q)) if i not in support]
     columns = [[row[j] for j in support] for row in entries]
@@ -62,10 +61,7 @@ def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) ->
 def piece_point(
     entries: Sequence[IntRow], q: Sequence[int], bounds: Sequence[Bound], unit: int, state: Sequence[int]
 ) -> FacePoint | None:
-    """The same with bounds, in integers over `unit`: x_i at the lower one where the state is -1, the upper one for 1.
-
-    Entries and q are those of w = entries x + q, and the bounds are times `unit`.
-    """
+    """A solution with bounds, integers over `unit`; states -1 and 1 put x_i at its lower and upper one."""
     inside = tuple(i for i, s in enumerate(state) if s == 0)
     ends = [0 if s == 0 else bounds[i][s > 0] for i, s in enumerate(state)]
     values = [value if value is not None else 0 for value in ends]
@@ -78,7 +74,6 @@ def piece_point(
 
 
 def _point(piece: Piece, values: list[int], unit: int) -> FacePoint | None:
-    """A point of the piece, x and w over `unit`; x is `values` outside."""
     solved = solve([piece.columns[i] for i in piece.inside], [[-piece.constants[i]] for i in piece.inside])
     found = _singular_piece(piece) if solved is None else _nonsingular_piece(piece, *solved)
     if found is None:
@@ -111,7 +106,7 @@ def _nonsingular_piece(piece: Piece, columns: Sequence[Sequence[int]], d: int) -
 
 
 def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
-    """By linear programming; an unknown that may be negative is a difference of two parts that are not."""
+    """A point by linear programming; unknowns that may be negative are differences."""
     if not consistent([[*piece.columns[i], -piece.constants[i]] for i in piece.inside]):
         return None
     m, parts = len(piece.inside), [j for j, (low, _) in enumerate(piece.bounds) if low != 0]
@@ -137,7 +132,7 @@ def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
 
 
 def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
-    """Whether a direction d != 0 leads from x to other solutions of the face (d = up - down, both nonnegative)."""
+    """Whether a direction d = up - down leads to other solutions."""
     m = len(piece.inside)
 
     def split(row: Sequence[int]) -> list[int]:
@@ -154,7 +149,7 @@ def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
 
 
 def bounds_over(values: Sequence[tuple[float, float]]) -> tuple[list[Bound], int]:
-    """Bounds (lower, upper) as integers over the least common denominator; an infinite one is None."""
+    """Bounds as integers over their least common denominator."""
     exact = [tuple(Fraction(v) if math.isfinite(v) else None for v in pair) for pair in values]
     unit = math.lcm(*(v.denominator for pair in exact for v in pair if v is not None))
     whole = [[None if v is None else int(v * unit) for v in pair] for pair in exact]
@@ -162,7 +157,7 @@ def bounds_over(values: Sequence[tuple[float, float]]) -> tuple[list[Bound], int
 
 
 def whole_numbers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The entries of A, those of q, and the scale over which these are integers."""
+    """A and q as integers, and their scale."""
     n = problem.n
     dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])

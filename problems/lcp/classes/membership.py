@@ -1,4 +1,4 @@
-"""What a class test returns: yes, no or not decided, with the evidence and the source of the criterion."""
+"""Results of class tests: answer, evidence, source."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ CPS = "Cottle, Pang and Stone, The Linear Complementarity Problem, 1992"
 
 @frozen
 class Evidence:
-    """The evidence for a membership, in data and in one sentence. Indices are counted from 0.
+    """The evidence for a membership; indices count from 0.
 
     Parameters
     ----------
     sentence : str
     indices : tuple of int, optional
-        The index set of the minor or principal submatrix, or the index pair, that decides.
+        The deciding index set or pair.
     value : Fraction, optional
-        The minor, quadratic form, entry or bound that decides.
+        The deciding minor, quadratic form, entry or bound.
     vector : tuple of Fraction, optional
-        A vector that decides (its meaning is in the sentence).
+        The deciding vector.
     perturbation : pair of integer matrices, optional
-        B and C of a sequence A + t B + t^2 C that decides a closure.
+        B and C of a sequence A + t B + t^2 C.
     """
 
     sentence: str
@@ -46,17 +46,18 @@ class Evidence:
 
 @frozen
 class Membership:
-    """Whether a matrix belongs to a class: `holds` is True, False, or None where it was not decided.
+    """Whether a matrix belongs to a class.
 
     Parameters
     ----------
     name : str
         The class.
     holds : bool or None
+        None if not decided.
     certificate : Evidence
-        Why; for None, why not decided.
+        The reason, also for None.
     cited : str
-        Source of the definition or of the criterion.
+        Source of the definition or criterion.
     """
 
     name: str
@@ -95,17 +96,17 @@ ValueError
 
 
 def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:
-    """Make a test of exact matrices one of any matrix, and say so in its docstring.
+    """Extend a test of exact matrices, and its docstring, to any matrix.
 
     Parameters
     ----------
     test : callable
-        An `ExactMatrix` to its `Membership`.
+        `ExactMatrix` to `Membership`.
 
     Returns
     -------
     callable
-        Any matrix, see `ExactMatrix.of`, to its `Membership`.
+        Any matrix to `Membership`.
     """
 
     @wraps(test)
@@ -118,7 +119,7 @@ def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], M
 
 
 def undecided(name: str, n: int, limit: int, cited: str) -> Membership:
-    """The answer for a matrix beyond the documented limit of an exponential test."""
+    """The answer beyond the limit of an exponential test."""
     sentence = f"the exact test is exponential in n and stops at n = {limit}, found n = {n}"
     return Membership(name, None, Evidence(sentence), cited)
 
@@ -134,14 +135,14 @@ def show_vector(vector: Sequence[Fraction]) -> str:
 
 
 def table(classification: Classification, width: int = 110) -> str:
-    """The classification as lines of text: class, answer, evidence.
+    """Lines of class, answer and evidence.
 
     Parameters
     ----------
     classification : mapping of str to Membership
         From `classify`.
     width : int
-        Longest evidence in characters; longer ones end in an ellipsis.
+        Longest evidence in characters.
     """
     first = max(len(name) for name in classification)
     second = max(len(text) for text in ANSWERS.values())

@@ -1,4 +1,4 @@
-"""Classes that signs of principal minors define."""
+"""Classes defined by signs of principal minors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
 LARGEST_MINORS = 12
-"""Largest order of the tests that read all 2^n - 1 principal minors (0.01 s for integers of one digit at n = 12)."""
+"""Largest order of tests that read all 2^n - 1 principal minors (0.01 s)."""
 
 PAPER = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
 EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618; " + PAPER
@@ -25,16 +25,16 @@ SIGNS: Mapping[str, Callable[[int], bool]] = {
 }
 
 Rule = Callable[[int], str]
-"""The sign asked of the minors of an order."""
+"""Order to required sign of its minors."""
 
 
 def two_signs(low: str, last: int, high: str) -> Rule:
-    """`low` up to the order `last`, `high` beyond it."""
+    """`low` up to order `last`, `high` beyond."""
     return lambda order: low if order <= last else high
 
 
 def judge(matrix: ExactMatrix, name: str, rule: Rule, cited: str = CPS) -> Membership:
-    """Membership in the class whose principal minors of each order have the sign that `rule` asks."""
+    """Membership by the signs that `rule` requires of principal minors."""
     n = matrix.n
     if n > LARGEST_MINORS:
         return undecided(name, n, LARGEST_MINORS, cited)
@@ -70,13 +70,13 @@ def is_p0(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_almost_p(matrix: ExactMatrix) -> Membership:
-    """Almost P: the proper principal minors positive, the determinant negative."""
+    """Almost P: proper principal minors positive, determinant negative."""
     return judge(matrix, "almost P", two_signs("positive", matrix.n - 1, "negative"), EXACT_ORDER)
 
 
 @matrix_class
 def is_almost_p0(matrix: ExactMatrix) -> Membership:
-    """Almost P0: the proper principal minors nonnegative, the determinant negative."""
+    """Almost P0: proper principal minors nonnegative, determinant negative."""
     return judge(matrix, "almost P0", two_signs("nonnegative", matrix.n - 1, "negative"), EXACT_ORDER)
 
 
@@ -94,19 +94,19 @@ def is_n0(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_almost_n(matrix: ExactMatrix) -> Membership:
-    """Almost N: the proper principal minors negative, the determinant positive (N of exact order 1)."""
+    """Almost N: proper principal minors negative, determinant positive (exact order 1)."""
     return judge(matrix, "almost N", two_signs("negative", matrix.n - 1, "positive"), PAPER)
 
 
 @matrix_class
 def is_almost_n0(matrix: ExactMatrix) -> Membership:
-    """Almost N0: the proper principal minors nonpositive, the determinant positive (N0 of exact order 1)."""
+    """Almost N0: proper principal minors nonpositive, determinant positive (exact order 1)."""
     return judge(matrix, "almost N0", two_signs("nonpositive", matrix.n - 1, "positive"), PAPER)
 
 
 @matrix_class
 def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
-    """N of exact order k, for some k with 1 <= k < n: minors negative up to order n - k and positive beyond.
+    """N of exact order k: minors negative up to order n - k, positive beyond, for some 1 <= k < n.
 
     The certificate's value is k.
     """
@@ -115,12 +115,12 @@ def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_n0_of_exact_order(matrix: ExactMatrix) -> Membership:
-    """N0 of exact order k, for some k: principal minors nonpositive up to order n - k, positive beyond."""
+    """N0 of exact order k: minors nonpositive up to order n - k, positive beyond, for some k."""
     return of_exact_order(matrix, "N0", _up_to("nonpositive"))
 
 
 Test = Callable[[ExactMatrix, str, int], Membership]
-"""(matrix, name, n - k) to membership in a class of exact order k."""
+"""(matrix, name, n - k) to membership."""
 
 
 def _up_to(low: str) -> Test:
@@ -128,7 +128,7 @@ def _up_to(low: str) -> Test:
 
 
 def of_exact_order(matrix: ExactMatrix, base: str, test: Test) -> Membership:
-    """The test for k = 1, ..., n - 1 until one holds."""
+    """Test k = 1, ..., n - 1 until one holds."""
     name = f"{base} of exact order k"
     results = [test(matrix, name, matrix.n - k) for k in range(1, matrix.n)]
     for k, result in enumerate(results, 1):
@@ -161,7 +161,7 @@ def is_z(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_k(matrix: ExactMatrix) -> Membership:
-    """K: Z and P (nonsingular M-matrix), read off the leading principal minors, so polynomial in n."""
+    """K: Z and P (nonsingular M-matrix), tested by leading principal minors."""
     cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
     z = is_z(matrix)
     if not z.holds:

@@ -1,7 +1,6 @@
-"""Exact feasibility of small linear systems: the simplex method on integers, with Bland's rule.
+"""Exact feasibility of small linear systems: the simplex method in integers with Bland's rule.
 
-A dictionary holds the basic variables as affine functions of the others, over one common denominator. One variable more
-is added to all slacks, which makes any system feasible; the least that it can be is zero where the system itself is.
+One added variable makes any system feasible; its minimum is zero if the original system is.
 """
 
 from __future__ import annotations
@@ -26,24 +25,24 @@ def at_most(row: Sequence[int], right: int = 0) -> Constraint:
 
 
 def exactly(constraints: Sequence[Constraint]) -> list[Constraint]:
-    """The same as equations: each row is at least its right-hand side, and their sum is not more than it should be."""
+    """The constraints as equations, by an upper limit on their sum."""
     rows, rights = [row for row, _ in constraints], [right for _, right in constraints]
     return [*constraints, at_most([sum(column) for column in zip(*rows)], sum(rights))]
 
 
 def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 0, of n numbers, that satisfies every constraint exactly, or None when there is none.
+    """A point x >= 0, of n numbers, that satisfies every constraint, or None.
 
     References
     ----------
-    Bland, Mathematics of Operations Research 2 (1977) 103-107: the least-index rule, so the method ends.
-    Edmonds, J. Res. Nat. Bur. Standards 71B (1967) 241-245: the pivot in integers with one common denominator.
+    Bland, Mathematics of Operations Research 2 (1977) 103-107: the least-index rule.
+    Edmonds, J. Res. Nat. Bur. Standards 71B (1967) 241-245: pivots in integers with a common denominator.
     """
     worst = max(range(len(constraints)), key=lambda i: constraints[i][1], default=0)
     if not constraints or constraints[worst][1] <= 0:
         return (Fraction(0),) * n
     table = [[*row, 1, -right] for row, right in constraints]
-    # The variable that is added is the first by number, so that it leaves where it can.
+    # The added variable is first, so it leaves early.
     free, basic = [*range(1, n + 1), 0], list(range(n + 1, n + 1 + len(table)))
     denominator = _exchange(table, basic, free, worst, n, 1)
     while 0 in basic and table[basic.index(0)][-1] > 0:
@@ -58,16 +57,12 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
 
 
 def positive_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 1 (in every component) that satisfies every constraint, or None.
-
-    For homogeneous constraints this decides whether a point x > 0 exists.
-    """
+    """A point x >= 1 that satisfies every constraint, or None; for homogeneous ones it proves x > 0."""
     point = feasible_point([(row, right - sum(row)) for row, right in constraints], n)
     return None if point is None else tuple(v + 1 for v in point)
 
 
 def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
-    """The row that leaves: smallest ratio, then least number."""
     best = -1
     for i, row in enumerate(table):
         if row[entering] < 0:
@@ -80,7 +75,7 @@ def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
 def _exchange(
     table: list[list[int]], basic: list[int], free: list[int], leaving: int, entering: int, denominator: int
 ) -> int:
-    """One pivot, in place; the new denominator, which is positive."""
+    """Pivot in place; return the new denominator."""
     top = table[leaving]
     pivot, sign = abs(top[entering]), 1 if top[entering] > 0 else -1
     for i, row in enumerate(table):

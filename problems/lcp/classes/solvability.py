@@ -1,4 +1,4 @@
-"""Q0 and Q: every feasible, or every, right-hand side gives a solvable problem."""
+"""Q0 and Q: every feasible, or every, right-hand side is solvable."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from problems.lcp.classes.simplex import Point, at_least, at_most, feasible_poin
 from problems.lcp.classes.sufficiency import is_row_sufficient
 
 LARGEST_COVER = 5
-"""Largest order for which the complementary cones are subtracted from the cone of feasible right-hand sides."""
+"""Largest order for which complementary cones are subtracted."""
 
 MOST_PROGRAMS = 4000
-"""Most linear programs spent on that subtraction before the answer is `not decided`."""
+"""Most linear programs for this before the answer `not decided`."""
 
 Normals = list[list[int]]
 
@@ -29,9 +29,8 @@ Normals = list[list[int]]
 def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
-    Z and row sufficient matrices are Q0. Otherwise, for n up to `LARGEST_COVER`: A is Q0 exactly when the full
-    complementary cones cover pos[I, -A]; they are subtracted from it one by one with exact linear programs, and what is
-    left over is a q that is feasible and has no solution.
+    Z and row sufficient matrices are Q0. Other A, n up to `LARGEST_COVER`, are Q0 exactly if the full complementary
+    cones cover pos[I, -A]. Exact linear programs subtract them; a remaining q is feasible without solution.
     """
     cited = CPS + ", sections 3.2, 3.5 and 3.11"
     for name, test in _SUFFICIENT_FOR_Q0.items():
@@ -45,7 +44,7 @@ _SUFFICIENT_FOR_Q0: dict[str, Callable[[Any], Membership]] = {"Z": is_z, "row su
 
 @matrix_class
 def is_q(matrix: ExactMatrix) -> Membership:
-    """Q: LCP(q, A) has a solution for every q. Q is the intersection of Q0 and S; E0 and R0 together imply it."""
+    """Q: LCP(q, A) has a solution for every q. Q is Q0 and S; E0 and R0 imply it."""
     cited = CPS + ", sections 3.1, 3.2 and 3.9"
     s = is_s(matrix)
     if not s.holds:
@@ -76,11 +75,10 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
 
 
 def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, programs: Iterator[int]) -> Point | None:
-    """A feasible q of a region with which the problem has no solution, or None if the cones cover the region.
+    """A feasible q of a region without a solution, or None if the cones cover the region.
 
-    The cone of feasible right-hand sides is q = y - A x with x, y >= 0; a region is a list of normals r with r . q > 0.
-    Only interiors matter: the union of the cones is closed, so what it misses is open. `programs`: As many as linear
-    programs may be solved; raises `StopIteration` if they do not suffice.
+    A region is a list of normals r with r . q > 0. Raises `StopIteration` after as many linear programs as `programs`
+    has items.
     """
     next(programs)
     n, entries = matrix.n, matrix.entries
@@ -100,9 +98,9 @@ def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, progra
 
 
 def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
-    """Move q off the lower-dimensional cones, staying in the open set that the full cones miss.
+    """Move q off lower-dimensional cones within the open set that full cones miss.
 
-    The directions lie on the moment curve, which meets each hyperplane finitely often, so the search ends.
+    The moment curve meets each hyperplane finitely often, so the search ends.
     """
     candidate, tries = q, 0
     while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(matrix, candidate):
@@ -113,10 +111,7 @@ def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
-    """Inner normals of each complementary cone with interior: q lies in it when every product is nonnegative.
-
-    The normals are the rows of the inverse of the complementary matrix: times q, they give x on the set and w off it.
-    """
+    """Inner normals of full-dimensional complementary cones: the rows of the complementary matrix's inverse."""
     n = matrix.n
     identity = [[int(i == j) for j in range(n)] for i in range(n)]
     cones = []
@@ -133,14 +128,14 @@ def full_cones(matrix: ExactMatrix) -> list[Normals]:
 
 
 def is_solvable(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether LCP(q, A) has a solution, where q is given in the units of the integer matrix."""
+    """Whether LCP(q, A) has a solution; q is in integer units."""
     scaled, _ = over_common_denominator(q)
     masks = (0, *index_sets(matrix.n))
     return any(face_point(matrix.entries, scaled, indices(mask)) is not None for mask in masks)
 
 
 def is_feasible(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether some x >= 0 has A x + q >= 0, where q is given in the units of the integer matrix."""
+    """Whether some x >= 0 has Ax + q >= 0; q is in integer units."""
     right, scale = over_common_denominator(q)
     system = [at_least([scale * v for v in row], -b) for row, b in zip(matrix.entries, right)]
     return feasible_point(system, matrix.n) is not None

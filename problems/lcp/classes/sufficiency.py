@@ -14,17 +14,17 @@ from problems.lcp.classes.minors import is_p, is_p0
 from problems.lcp.classes.simplex import Point, at_most, positive_point
 
 LARGEST_SIGNED = 7
-"""Largest order of the sufficiency test, one linear program a sign vector, (3^n - 1)/2 of them."""
+"""Largest order of the sufficiency test, (3^n - 1)/2 linear programs."""
 
 LARGEST_DENSE = 64
-"""Largest order of the elimination that decides positive semidefiniteness; numbers grow with n (0.6 s at 64)."""
+"""Largest order of the semidefiniteness test (0.6 s at 64)."""
 
 VALIAHO = "Väliaho, P_*-matrices are just sufficient, Linear Algebra Appl. 239 (1996) 103-108"
 
 
 @matrix_class
 def is_psd(matrix: ExactMatrix) -> Membership:
-    """PSD: x'Ax >= 0 for all x; A need not be symmetric. Polynomial in n."""
+    """PSD: x'Ax >= 0 for all x; A may be unsymmetric."""
     cited = CPS + ", section 3.1"
     if matrix.n > LARGEST_DENSE:
         return undecided("PSD", matrix.n, LARGEST_DENSE, cited)
@@ -39,7 +39,7 @@ def is_psd(matrix: ExactMatrix) -> Membership:
 
 
 def _negative_direction(S: list[list[Fraction]]) -> Point | None:
-    """A vector with x'Sx < 0 for symmetric S, or None when S is positive semidefinite."""
+    """A vector with x'Sx < 0 for symmetric S, or None."""
     if not S:
         return None
     top, rest = S[0], S[1:]
@@ -92,7 +92,7 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
 
 
 def _reversed_vector(matrix: ExactMatrix) -> tuple[Indices, Point] | None:
-    """An x with x_i (Ax)_i <= 0 for all i and < 0 for some i: one exact linear program a sign vector, up to x -> -x."""
+    """An x with x_i (Ax)_i <= 0 for all i, < 0 for some i: one linear program per sign vector."""
     for mask in index_sets(matrix.n):
         support = indices(mask)
         block = columns(matrix, support)
@@ -122,6 +122,6 @@ def is_sufficient(matrix: ExactMatrix) -> Membership:
 def is_p_star(matrix: ExactMatrix) -> Membership:
     """P_*: (1 + 4 kappa) sum_{I+} x_i (Ax)_i + sum_{I-} x_i (Ax)_i >= 0 for all x and some kappa >= 0.
 
-    P_* is the same as sufficient (Väliaho 1996), which decides it; the paper's tau is 4 kappa.
+    It equals sufficient (Väliaho 1996), which is tested; the paper's tau is 4 kappa.
     """
     return evolve(is_sufficient(matrix), name="P_*", cited=VALIAHO)

@@ -1,9 +1,4 @@
-"""Homotopies for the linear complementarity problem: plug-ins of `continuation`, each with its reduction to order n.
-
-Complementary pairs are eliminated one by one (`cores`, with bounds `sides` and `rows`), so that what is factored is of
-order n + 1 whatever the number of unknowns. The full system is known by its products alone, and corrections in it
-regain the digits that elimination loses near the boundary.
-"""
+"""LCP homotopies, plug-ins of `continuation`: they eliminate complementary pairs and factor matrices of order n + 1."""
 
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.homotopies.kkt import KKTHomotopy

@@ -1,9 +1,4 @@
-"""From H' to its core of order n + 1, or 2 n + 1, and back: the linearised pairs are solved for one unknown each.
-
-Eliminating is linear in the right-hand side, and the parameter's column is one: with `forward` from right-hand sides to
-those of the core, and `backward` from the core's unknowns k to all, the core of ``[[H_y, H_lam], [border]]`` has the
-column ``forward(H_lam)``, and what k leaves of z = (y, l) is ``backward(k, r - H_lam l)``.
-"""
+"""Elimination of linearised pairs from H', to a core of order n + 1 or 2 n + 1, and back."""
 
 from __future__ import annotations
 
@@ -23,20 +18,20 @@ if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
 
 LEAST_GIVE = 1e-9
-"""How far a row with bounds gives way at least to its multiplier in the core of order n + 1, in natural units.
+"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units.
 
-At lambda = 0 a row that is active does not, and could not be eliminated. What this adds, and what is lost to rounding,
-1e-7, the corrections in the full system take away.
+An active row has 0 at lambda = 0. Corrections remove the error and the rounding (1e-7).
 """
 
 LEAST_GAP = 1e-13
-"""The same for x and the multiplier of its bound, which is on the diagonal and takes no digits from others. On 90 paths
-without the finish (n = 6, 12, 30), 2,300 systems, 147 had the robust core without it, 11 have it; 26 with 1e-16."""
+"""Least distance from a bound over its multiplier, in natural units. 11 of 2,300 systems (90 paths, n = 6, 12, 30) need
+the robust core; 26 with 1e-16, 147 with 0.
+"""
 
 
 @frozen(eq=False)
 class Core:
-    """The full bordered system by way of its core."""
+    """The full bordered system, solved by its core."""
 
     way: OfPairs | OfRows
     border: Array
@@ -44,7 +39,7 @@ class Core:
 
     @classmethod
     def of(cls, way: OfPairs | OfRows, border: Array, definite: bool = False) -> Core:
-        """Factor the core; raises `SingularError` if that has no factorisation."""
+        """Factor the core, or raise `SingularError`."""
         with np.errstate(all="ignore"):
             column, known = way.forward(way.system.column)
             row = np.append(way.row(border[:-1]), border[-1] - float(border[:-1].dot(known)))
@@ -53,7 +48,7 @@ class Core:
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant of the full bordered matrix."""
+        """Sign of the full bordered determinant."""
         return self.way.sign * self.core.sign
 
     def solve(self, r: Array, rho: float) -> Array:
@@ -68,9 +63,9 @@ class Core:
 
 @frozen(eq=False)
 class OfPairs:
-    """Order n + 1, of the homotopies in (x, y): of each pair the better pivot eliminated, or y.
+    """Elimination to order n + 1 for homotopies in (x, y): the better pivot of each pair if `larger`, else y.
 
-    The matrix is alpha A diag(a) + a diagonal, symmetric with A where all y are eliminated.
+    With all y eliminated the matrix is symmetric with A.
     """
 
     system: System
@@ -79,12 +74,12 @@ class OfPairs:
 
     @property
     def sign(self) -> int:
-        """Of the determinant of what is eliminated; the core's first n rows are those in the brackets of `Blend`."""
+        """Sign of the eliminated determinant, with `blend.sign` of the first n rows."""
         odd = self.system.of.blend.sign < 0 and self.system.of.n % 2 == 1
         return -self.first.sign if odd else self.first.sign
 
     def forward(self, r: Array) -> tuple[Array, Array]:
-        """The core's right-hand side, and the unknowns that go with k = 0."""
+        """The core's right-hand side; the unknowns for k = 0."""
         homotopy, n = self.system.of, self.system.of.n
         alpha, beta, gamma = homotopy.blend.slopes(self.system.lam)
         v, force, dy = self.first.known(r[n:])
@@ -98,23 +93,22 @@ class OfPairs:
         return np.concatenate(self.first.of(k, r[k.size :]))
 
     def row(self, border: Array) -> Array:
-        """The coefficients of k in border . y."""
+        """Coefficients of k in border . y."""
         n = self.system.of.n
         return border[:n] * self.first.a + self.first.row(border[n:])
 
     def matrix(self) -> Matrix:
-        """That of the core."""
+        """The core's matrix."""
         alpha, beta, gamma = self.system.of.blend.slopes(self.system.lam)
         return self.system.of.structure.scaled(alpha, self.first.a, beta * self.first.a - gamma * self.first.b)
 
 
 def factor_pairs(system: System, border: Array) -> BorderedSystem:
-    """The bordered system of a homotopy in (x, y), of order 2n + 1 for an LCP, from a factorisation of order n + 1.
+    """The bordered system of a homotopy in (x, y), by a core of order n + 1.
 
-    With y eliminated the core is alpha A + beta I + gamma diag(y/x), with s/(x-l) + t/(u-x) for y/x: Cholesky if A is
-    symmetric positive semidefinite and alpha, beta, gamma >= 0. Else of each index the unknown with the larger
-    coefficient is kept, for LU. Without `refine` solutions are those of the definite core, where there is one. Raises
-    `SingularError` if no core has a factorisation.
+    Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
+    if A is symmetric positive semidefinite and alpha, beta, gamma >= 0, otherwise LU the core of better pivots. Without
+    `refine` the definite core's solutions stay uncorrected. Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
     structure = homotopy.structure
@@ -130,11 +124,11 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
 
 @frozen(eq=False)
 class OfRows:
-    """Of the KKT homotopy: order n + 1, all multipliers eliminated; without `second` 2n + 1, z2 is kept.
+    """Elimination for the KKT homotopy: to order n + 1, or without `second` to 2n + 1, keeping z2.
 
-    The first leaves a symmetric matrix for dx, ``(1 - lam) [A + A' + diag(z1/gap) + A' diag(D) A] + lam I``, where
-    D = z2/w for a row with one bound, 1/(s/z2 + t/(u - l - z2)) in a box, and the inverse of what gives way where there
-    is no bound. The other squares nothing, and eliminates of each distance and its force the better pivot.
+    The first core is symmetric, ``(1-lam) [A + A' + diag(z1/gap) + A' diag(D) A] + lam I``. D is z2/w for one bound,
+    1/(s/z2 + t/(u-l-z2)) in a box, the inverse relaxation without bounds. The second eliminates better pivots and does
+    not square A.
     """
 
     system: System
@@ -144,11 +138,11 @@ class OfRows:
 
     @property
     def sign(self) -> int:
-        """Of the determinant of what is eliminated."""
+        """Sign of the eliminated determinant."""
         return self.first.sign * self.pairs.sign * (1 if self.second is None else self.second.sign)
 
     def forward(self, r: Array) -> tuple[Array, Array]:
-        """The core's right-hand side, and the unknowns that go with k = 0."""
+        """The core's right-hand side; the unknowns for k = 0."""
         structure, mu = self.system.of.structure, 1.0 - self.system.lam
         r1, r2, r3, r4 = self.pairs.rows.split(r)
         v, force, d1 = self.first.known(r2)
@@ -171,7 +165,7 @@ class OfRows:
         return np.concatenate([dx, d1, *self.pairs.of(inner, r4)])
 
     def row(self, border: Array) -> Array:
-        """The coefficients of k in border . y."""
+        """Coefficients of k in border . y."""
         bx, b1, b2, b3 = self.pairs.rows.split(border)
         outer, inner = bx * self.first.a + self.first.row(b1), self.pairs.row(b2, b3)
         if self.second is None:
@@ -180,7 +174,7 @@ class OfRows:
         return row
 
     def matrix(self) -> Matrix:
-        """That of the core."""
+        """The core's matrix."""
         structure, first, pairs, lam = self.system.of.structure, self.first, self.pairs, self.system.lam
         mu = 1.0 - lam
         if self.second is None:
@@ -190,16 +184,15 @@ class OfRows:
 
 
 def factor_rows(system: System, border: Array) -> BorderedSystem:
-    """The bordered system of the KKT homotopy, from a factorisation of order n + 1, or 2n + 1 where that loses digits.
+    """The bordered system of the KKT homotopy, by a core of order n + 1, or 2n + 1 where that loses digits.
 
-    Without `refine` solutions are those of the core of order n + 1, where there is one. Raises `SingularError` if no
-    core has a factorisation.
+    `refine` and `SingularError` as in `factor_pairs`.
     """
     homotopy, (_, _, p, q, _) = system.of, system.parts
     rows, structure, n, m = homotopy.rows, homotopy.structure, homotopy.n, homotopy.rows.sides.index.size
     z1, gap, factor, rest = p[:m], q[:m], p[m : m + n], q[m : m + n]
     if not structure.problem.standard:
-        # Without bounds dw + lam give dz2.
+        # Unbounded rows are dw + lam give dz2.
         factor, rest = np.where(rows.free, 1.0, factor), np.where(rows.free, system.lam * homotopy.give, rest)
     pairs = RowPairs.of_boxes(rows, factor, rest, p[m + n :], q[m + n :])
 
@@ -219,7 +212,6 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
 
 
 def _or_none(make: Callable[[], Core]) -> Core | None:
-    """A core; None where a pair is so near zero that it does not exist, or is singular."""
     try:
         return make()
     except SingularError:
@@ -229,11 +221,7 @@ def _or_none(make: Callable[[], Core]) -> Core | None:
 def _refining(
     system: System, border: Array, quick: Core | None, robust: Callable[[], Core], coefficients: Array
 ) -> BorderedSystem:
-    """The system to solve with: the quick core alone, or both, corrected; without `refine` the quick core as it is.
-
-    Raises `SingularError` if there is no quick core and the robust one has no factorisation: said here, not at the
-    first solve.
-    """
+    """Both cores with corrections, or without `refine` the quick core."""
     if quick is not None and not system.of.refine:
         return quick
     found = CoreSystem(system.apply, border, system.sizes, coefficients, quick, robust)

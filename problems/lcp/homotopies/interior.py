@@ -1,9 +1,8 @@
-"""What all homotopies of this package are: rows that blend two ends, and pairs whose products fade with lambda.
+"""The common form of the homotopies: rows blend two ends, products of pairs fade with lambda.
 
     ((1 - lam) goal + lam origin,  p q + plain - lam c)
 
-with goal, origin, p, q and plain affine in u = (y, lam). A homotopy says those, as `parts`; its residual, derivative,
-series, longest step and proof follow from them here. Inside, p and q have the signs of their starts.
+`parts` defines goal, origin, p, q, plain, affine in u = (y, lam). Inside, p and q keep their signs.
 """
 
 from __future__ import annotations
@@ -24,21 +23,20 @@ from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
 Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
-"""(goal, origin, p, q, plain), at a point or, without constants, of a direction."""
+"""(goal, origin, p, q, plain) at a point; without constants, of a direction."""
 
 LARGEST_FALL = 1e-3
-"""A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
+"""Largest fall of a scale per step, so that ends at zero have a metric."""
 
 @frozen
 class RelativeMetric:
-    """The mean square of relative changes, plus the square of the parameter's change.
+    """The mean square of relative changes plus the parameter's squared change.
 
-    ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` for N unknowns, anew at each point: interior paths live in
-    orders of magnitude. The mean makes the step length independent of n; the sum takes about a tenth more steps.
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n; a sum takes a
+    tenth more steps.
 
-    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,): Bounds of the first n unknowns, which change
-    relative to their distances from the nearer one; without any bound relative to themselves, but at least to `unit`.
-    Default: zero, for all unknowns.
+    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns. Their
+    scale is the distance from the nearer bound, or without bounds their size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -47,7 +45,7 @@ class RelativeMetric:
     unit: float = 1.0
 
     def sizes(self, u: Array) -> Array:
-        """In what each number is large or small."""
+        """The scales of u."""
         size: Array = np.abs(u)
         if self.lower is not None and self.upper is not None:
             n = self.lower.size
@@ -59,7 +57,7 @@ class RelativeMetric:
         """1/(N u_i^2), and `lam` for the parameter."""
         n, size = u.size - 1, np.maximum(self.sizes(u), INVERTIBLE)
         if current is not None:
-            # The size one step before is 1 / sqrt(n current).
+            # The last step's size is 1 / sqrt(n current).
             np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
         weights: Array = 1.0 / (n * size * size)
         weights[-1] = self.lam
@@ -67,10 +65,10 @@ class RelativeMetric:
 
 
 class OwnMetric:
-    """The metric of a homotopy: of one class, but with the bounds of its problem where there are any."""
+    """A homotopy's metric; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
-        """`own_metric`, of the class the metric of an LCP."""
+        """`own_metric`; on the class, an LCP's."""
         return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 
@@ -102,14 +100,14 @@ class System:
 
     @property
     def sizes(self) -> Array:
-        """In what changes of y are large or small."""
+        """The scales of y."""
         sizes: Array = self.of.metric.sizes(self.y)
         return sizes
 
 
 @define(eq=False)
 class Recent:
-    """The system at the last point that was asked for: the engine asks for many products there, one by one."""
+    """The system at the last point, for many products there."""
 
     found: tuple[bytes, float, System] | None = None
 
@@ -143,8 +141,7 @@ def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
 def taylor(self: Any, point: Linearization, order: int) -> Array:
     """Coefficients of the path in the pseudo-arclength of `point`, one a row.
 
-    H is quadratic, so that coefficient k solves H' c_k = -(products of lower ones): one solve and two products with A
-    an order (Cochelin's asymptotic numerical method).
+    H is quadratic: each takes one solve and two products with A (Cochelin's asymptotic numerical method).
     """
     n, size = self.n, point.u.size - 1
     c = np.zeros((order + 1, size + 1))

@@ -1,4 +1,4 @@
-"""The homotopies of this package as affine parts and one product: what a proof of their paths needs."""
+"""The homotopies as affine parts and one product."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from problems.lcp.proof.certificate import certify, certify_exactly
 from problems.lcp.quadratic.form import Affine, Quadratic
 
 END_DISTANCE = 1e-6
-"""How far the exact solution may be from the end of the path, in sizes of x, to be that end."""
+"""Largest distance, relative to x, of a path's end from its exact solution."""
 
 NO_SOLUTION = 1e-2
-"""A relative residual above this is not that of a point so near to a solution: rational arithmetic need not say so."""
+"""Relative residual above which no solution is so near: the rational test is skipped."""
 
 
 def exact_end(problem: MixedLCP, x: Array) -> str:
-    """What is proved of the end x of a path, in rational arithmetic; empty where nothing is."""
-    # What is zero at the end may be all that there is in a row.
+    """The sentence proved of a path's end x in rational arithmetic, or ""."""
+    # A row may consist of vanishing components.
     if min(certify(problem, x, zero).relative_residual for zero in (0.0, END_DISTANCE)) > NO_SOLUTION:
         return ""
     found = certify_exactly(problem, x)

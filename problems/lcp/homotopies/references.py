@@ -1,4 +1,4 @@
-"""BibTeX entries of the homotopies of this package, one constant a source."""
+"""BibTeX entries of the homotopies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ DUTTA_DAS_JANA = """@misc{DuttaDasJana,
   title = {Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems},
 }"""
 
-# The source quotes these four by name and matrix class; what it does not say of them is not made up here.
+# The source gives only name and matrix class of these four.
 YU = """@misc{Yu2006,
   author = {Yu and others},
   year = {2006},

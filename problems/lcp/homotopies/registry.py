@@ -1,4 +1,4 @@
-"""The homotopies for the LCP by name: what `solve`, its restarts, the plug-ins, the shell and the charts offer."""
+"""The LCP homotopies by name."""
 
 from __future__ import annotations
 
@@ -27,10 +27,9 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 class Registered:
     """One homotopy.
 
-    `name`: For arguments and the command line. `title`: For tables. `sentence`: What it is and where it starts; a first
-    line of help. `make`: (problem, x0 or None, structure=...) to the homotopy. `feasible`: Whether its own start must
-    be strictly feasible, so that it has to be found by a linear program. `example`: One of the paper's examples that it
-    solves. `bounds`: Whether it takes problems with bounds other than 0 and infinity.
+    `title`: For tables. `sentence`: For help. `make`: (problem, x0 or None, structure=...) to the homotopy. `feasible`:
+    Whether its default start is strictly feasible. `example`: A paper example it solves. `bounds`: Whether it takes
+    bounds.
     """
 
     name: str
@@ -42,14 +41,11 @@ class Registered:
     bounds: bool = False
 
     def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
-        """The homotopy from x0, or its own start."""
+        """The homotopy from x0 or its default."""
         return self.make(problem, x0, structure=structure)
 
     def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
-        """The homotopy at a start of all four vectors, feasible or not; one in (x, y) takes x0 and w0 of it.
-
-        `refine` says whether its bordered solves are corrected to round-off.
-        """
+        """The homotopy at a start; one in (x, y) uses x0 and w0."""
         if self.make is KKTHomotopy:
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
         return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
@@ -82,4 +78,4 @@ HOMOTOPIES: Mapping[str, Registered] = {
         ),
     )
 }  # fmt: skip
-"""By name. One that is added here needs an entry point in pyproject.toml as well; a test compares the two."""
+"""By name. Each needs an entry point in pyproject.toml; a test compares both."""

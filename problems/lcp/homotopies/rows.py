@@ -1,7 +1,6 @@
-"""The rows w = A x + q of the KKT homotopy: a multiplier z of each, and in a box one unknown more.
+"""The rows w = Ax + q of the KKT homotopy, with multipliers z.
 
-What a row asks for depends on the bounds of its index: w >= 0 where there is a lower one alone, w <= 0 where there is
-an upper one alone, w = 0 where there is neither. In a box w = s - t with s, t >= 0, of which t is the unknown.
+A lower bound alone requires w >= 0, an upper one w <= 0, none w = 0, a box w = s - t with s, t >= 0.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _NONE = np.zeros(0)
 
 @frozen(eq=False, slots=False)
 class Rows:
-    """What the rows of a problem ask for."""
+    """The rows of a problem."""
 
     problem: MixedLCP | LCP
 
@@ -38,19 +37,19 @@ class Rows:
 
     @cached_property
     def width(self) -> Array:
-        """The distances of two bounds, one a box."""
+        """The widths of boxes."""
         with np.errstate(over="ignore"):
             width = self.problem.upper[self.boxed] - self.problem.lower[self.boxed]
         return np.minimum(width, float(np.finfo(float).max))
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
-        """Where there is no bound, shape (n,)."""
+        """Which indices have no bound, shape (n,)."""
         return np.broadcast_to(np.greater(self.sides.free, 0), self.problem.n)
 
     @cached_property
     def end(self) -> Array | float:
-        """The bound from which the gap measures x: the lower one, else the upper one; zero where there is none."""
+        """The reference bound of gaps: lower, else upper, else zero."""
         if self.problem.standard:
             return 0.0
         low, high = self.problem.lower, self.problem.upper
@@ -58,12 +57,12 @@ class Rows:
 
     @cached_property
     def signs(self) -> Array:
-        """Of w and its multiplier: -1 where there is an upper bound alone, shape (n,)."""
+        """Signs of w and its multiplier: -1 for an upper bound alone, shape (n,)."""
         return np.where(np.isfinite(self.problem.lower) | self.free, 1.0, -1.0)
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """Of the multipliers: [0, inf) with a lower bound alone, (-inf, 0] with an upper one, [0, u - l] in a box."""
+        """Multiplier ranges: [0, inf), for an upper bound alone (-inf, 0], in a box [0, u - l]."""
         lower = np.where((self.signs < 0.0) | self.free, -np.inf, 0.0)
         upper = np.where(self.signs < 0.0, 0.0, np.inf)
         upper[self.boxed] = self.width
@@ -86,7 +85,7 @@ class Rows:
         return self.ends[2] + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
-        """What z is complementary to: w, and s = w + t in a box."""
+        """The complement of z: w, in a box s = w + t."""
         if not self.boxed.size:
             return w
         raised = w.copy()
@@ -96,10 +95,9 @@ class Rows:
 
 @frozen(eq=False, slots=False)
 class RowPairs:
-    """The linearised rows, ``factor dw + rest k = r``, for an unknown k of each, once those of boxes are solved.
+    """The linearised rows, ``factor dw + rest k = r``, after elimination in boxes.
 
-    In a box ``(u - l - z) dt - t dz = r3`` gives dz = a k + e r3 and dt = b k + f r3; where there is none, k = dz.
-    `inner` has the a, b, e, f of boxes, `taken` what r3 takes from r in a box.
+    In a box ``(u-l-z) dt - t dz = r3`` gives `inner`, and r loses `taken` r3; elsewhere k = dz.
     """
 
     rows: Rows
@@ -110,9 +108,9 @@ class RowPairs:
 
     @classmethod
     def of_boxes(cls, rows: Rows, factor: Array, rest: Array, above: Array, t: Array) -> RowPairs:
-        """Solve the equations of boxes for the unknown with the larger coefficient.
+        """Eliminate the unknown with the larger coefficient in boxes.
 
-        The rows are ``factor (dw + dt) + rest dz``, with dt in boxes; t and `above` = u - l - z have one number a box.
+        Rows are ``factor (dw + dt) + rest dz``; `above` is u - l - z in boxes.
         """
         boxed = rows.boxed
         if not boxed.size:
@@ -123,12 +121,12 @@ class RowPairs:
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant of what is eliminated for boxes."""
+        """Sign of the determinant eliminated in boxes."""
         return 1 if self.inner is None else self.inner.sign
 
     @cached_property
     def turn(self) -> Array | None:
-        """The factor a of k in dz, shape (n,); None for ones."""
+        """The factor of k in dz, shape (n,); None for ones."""
         if self.inner is None:
             return None
         turn = np.ones(self.rest.size)
@@ -136,7 +134,7 @@ class RowPairs:
         return turn
 
     def right(self, r2: Array, r3: Array) -> Array:
-        """The right-hand side r of the rows."""
+        """The right-hand side r."""
         if self.inner is None:
             return r2
         right = r2.copy()
@@ -152,7 +150,7 @@ class RowPairs:
         return dz, dt
 
     def row(self, b2: Array, b3: Array) -> Array:
-        """The coefficients of k in ``b2 . dz + b3 . dt``."""
+        """Coefficients of k in ``b2 . dz + b3 . dt``."""
         if self.inner is None or self.turn is None:
             return b2
         row = b2 * self.turn

@@ -1,8 +1,7 @@
-"""The pairs of a problem with bounds: a force y and a distance from each finite bound, with lambda c as their product.
+"""The pairs of a problem with bounds: each finite bound, lower ones first, has a force y and a distance, of product
+lambda c.
 
-Lower bounds come first, then upper ones. An LCP has one pair an unknown, y_i x_i. A two-sided index has two, and both
-forces act on one row: w = s - t. The unknowns are (x, y); of each index one unknown is kept, the others eliminated, so
-that the matrix is of order n whatever the number of bounds.
+Both forces of a box act on one row, w = s - t.
 """
 
 from __future__ import annotations
@@ -20,18 +19,18 @@ from problems.lcp.homotopies.cores import Pairs, larger_eliminated, parity, seco
 
 @frozen(eq=False, slots=False)
 class Sides:
-    """Which bounds are finite."""
+    """The finite bounds."""
 
     problem: MixedLCP | LCP
 
     @cached_property
     def low(self) -> NDArray[np.intp]:
-        """The indices with a lower bound."""
+        """Indices with a lower bound."""
         return np.flatnonzero(self.problem.lower > -np.inf)
 
     @cached_property
     def high(self) -> NDArray[np.intp]:
-        """The indices with an upper bound."""
+        """Indices with an upper bound."""
         return np.flatnonzero(self.problem.upper < np.inf)
 
     @cached_property
@@ -41,35 +40,35 @@ class Sides:
 
     @cached_property
     def sign(self) -> Array:
-        """1 for the pairs of lower bounds, -1 for those of upper ones."""
+        """1 for lower bounds, -1 for upper ones."""
         return np.repeat([1.0, -1.0], [self.low.size, self.high.size])
 
     @cached_property
     def free(self) -> int | Array:
-        """1 where an index has no bound, else 0: shape (n,), or 0 where all have one."""
+        """1 without bounds, else 0: shape (n,), or 0 if all have one."""
         free = np.bincount(self.index, minlength=self.problem.n) == 0
         return 1.0 * free if free.any() else 0
 
     def gaps(self, x: Array) -> Array:
-        """The distances from the bounds, one a pair."""
+        """The distances from the bounds."""
         if self.problem.standard:
             return x
         return np.concatenate([(x - self.problem.lower)[self.low], (self.problem.upper - x)[self.high]])
 
     def pull(self, v: Array) -> Array:
-        """The change of the distances with that of x, in the last axis."""
+        """The change of distances with x, along the last axis."""
         return v if self.problem.standard else self.sign * v[..., self.index]
 
     def force(self, y: Array) -> Array:
-        """What the forces add to the rows: s - t, shape (n,)."""
+        """The forces on the rows, s - t, shape (n,)."""
         return y if self.problem.standard else self._summed(self.sign * y)
 
     def _summed(self, values: Array) -> Array:
-        # Times 1.0: of no values numpy counts in integers; and interval arrays are to pass.
+        # bincount of nothing gives integers; interval arrays must pass.
         return np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
 
     def eliminated(self, y: Array, gap: Array, larger: bool) -> Pairs | BoundPairs:
-        """Keep dx of each index, or, where `larger`, the change of a force that is larger than its distance."""
+        """Keep dx of each index, or if `larger` a force that exceeds its distance."""
         if self.problem.standard:
             return (larger_eliminated if larger else second_eliminated)(y, gap)
         n = self.problem.n
@@ -78,7 +77,7 @@ class Sides:
             steepest = np.full(n, -np.inf)
             np.maximum.at(steepest, self.index, ratio)
             main = (ratio > 1.0) & (ratio == steepest[self.index]) & larger
-            # Of two that are equal, the lower one.
+            # The lower bound wins ties.
             first = main & (self.sign > 0.0)
             main &= first | ~(self._summed(first * 1.0) > 0.0)[self.index]
             swapped = self._summed(main * 1.0)
@@ -93,9 +92,9 @@ class Sides:
 
 @frozen(eq=False)
 class BoundPairs:
-    """The pairs solved for one unknown of each index, as `cores.Pairs` for an LCP: dx = a k + ..., force = b k + ...
+    """The pairs solved for one unknown per index, like `cores.Pairs`.
 
-    A pair that is eliminated for its force has dy = inverse t - slope sign dx; where it is `main` its force is kept.
+    An eliminated force has dy = inverse t - slope sign dx; `main` ones are kept.
     """
 
     sides: Sides
@@ -109,14 +108,14 @@ class BoundPairs:
     total: Array
 
     def known(self, t: Array) -> tuple[Array, Array, Array]:
-        """What right-hand sides t add: to dx, to the force on the rows, and to the dy."""
+        """Contributions of t to dx, to forces on rows, and to dy."""
         sides = self.sides
         v = sides._summed(self.into_v * t)
         dy = self.inverse * t - self.slope * sides.pull(v)
         return v, sides.force(dy), dy
 
     def row(self, border: Array) -> Array:
-        """The coefficients of k in border . dy."""
+        """Coefficients of k in border . dy."""
         sides = self.sides
         return sides._summed(border * sides.sign * np.where(self.main, 1.0, -self.slope * self.a[sides.index]))
 

@@ -1,8 +1,4 @@
-"""Where the paths begin: checks of given vectors, and default and random starts in the problem's own units.
-
-The KKT homotopy starts from any x0, z1, z2, w0 > 0: with w = A x + q + lambda (w0 - A x0 - q) it need not be feasible.
-With bounds z1 and w0 have a number for each of them, which is as much as the homotopies in (x, y) need.
-"""
+"""Starts of paths."""
 
 from __future__ import annotations
 
@@ -23,34 +19,33 @@ from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
 START_DISTANCES = (1.0, 2.5)
-"""Ten to a power from this interval is the distance of a random start in natural units, or `typical_units`.
+"""Decimal exponents of random starts' distances, in natural units or `typical_units`.
 
-Measured on random nonmonotone problems (docs/lcp_benchmark.md): paths from so far out solve several times as often as
-those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100) 17 solve from 1 to 1.5 or further, 11
-from 0.5 to 1, 4 from 0 to 0.5, and none from nearer.
+Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). From 1 to 1.5 or
+further 17 of 70 paths of hard problems (n = 100) solve, from 0.5 to 1 11, from 0 to 0.5 4.
 """
 
 LOG_DEVIATION = 0.5
-"""Standard deviation of the natural logarithms of the components; with 0 or 1 half as many paths solve (measured)."""
+"""Standard deviation of the components' natural logarithms; with 0 or 1 half as many paths solve."""
 
 BALANCE = (0.05, 0.1)
-"""Mean and standard deviation of the decimal logarithm of the products w z2 over the products x z1.
+"""Mean and standard deviation of log10 of the products w z2 over x z1.
 
-At a point where all x_i w_i are equal, z1 = w and z2 = x satisfy the optimality conditions where the two products are
-equal: then a central point of the LCP is one of the path. At a ratio of 4 or 1/4 next to no path solves (measured).
+If both are equal, a central point (x_i w_i equal, z1 = w, z2 = x) lies on the path. With ratios of 4 or 1/4 hardly any
+path solves.
 """
 
 
 @frozen(eq=False)
 class Start:
-    """A start of the KKT homotopy; each array has shape (n,) and is positive where there are no bounds but 0.
+    """A start of the KKT homotopy; for an LCP arrays are positive, of shape (n,).
 
     Attributes
     ----------
     x0, w0 : Array
-        The point, and what A x + q is taken for there; with bounds one number for each of them, as for forces.
+        The point, and the values taken for A x0 + q (one per bound).
     z1, z2 : Array
-        The multipliers of x >= 0, or of each bound, and of A x + q >= 0.
+        The multipliers of x >= 0 (one per bound) and Ax + q >= 0.
     """
 
     x0: Array
@@ -60,7 +55,7 @@ class Start:
 
 
 def positive_vector(name: str, value: Any, n: int) -> Array:
-    """A copy of `value` as n positive finite floats; `ValueError`, by name, for anything else."""
+    """`value` as n positive finite floats; a `ValueError` names it otherwise."""
     array = finite_vector(name, value)
     if array.size != n:
         raise ValueError(f"{name}: expected {n} positive numbers, found shape {array.shape}")
@@ -72,10 +67,7 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
 
 
 def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array, Array] | None = None) -> Array:
-    """A copy of `value` as n finite floats strictly between the bounds; for an LCP positive ones.
-
-    The bounds may be others than those of the problem. Raises `ValueError`, by name, for anything else.
-    """
+    """`value` as n finite floats strictly between `bounds`, by default the problem's."""
     if problem.standard:
         return positive_vector(name, value, problem.n)
     array = finite_vector(name, value, problem.n)
@@ -89,34 +81,30 @@ def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array,
 
 
 def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
-    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer."""
+    """The point nearest to zero at a distance from all bounds, or midway between closer ones."""
     if problem.standard:
         return np.full(problem.n, distance)
-    # Halves, as the difference of two bounds may overflow.
+    # Halves avoid overflow.
     half = np.minimum(0.5 * problem.upper - 0.5 * problem.lower, distance)
     return np.minimum(np.maximum(0.0, problem.lower + half), problem.upper - half)
 
 
 def natural_units(problem: MixedLCP) -> tuple[float, float]:
-    """Sizes (of x, of w) at which A x and q balance: |q|_inf over the largest row norm of A, and |q|_inf.
-
-    One where A or q is zero.
-    """
+    """Sizes of x and w that balance Ax and q: |q|_inf over A's largest row norm, and |q|_inf; zeros count as one."""
     return _units(problem, np.max)
 
 
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
-    """The same for a typical row: one row or column in twice the units changes next to nothing.
+    """`natural_units` with the root-mean-square row norm, which outliers hardly change.
 
-    Rows of 2 to 4 times the length that balancing leaves make x by `natural_units` so much smaller. Of 40 piles of
-    bodies (n = 44 to 520) KKT paths from here solve 18 in 34 s, from natural units 17 in 39 s, from twice this 19 in
-    31 s; but 22 monotone problems (n = 20 to 50) take 294, 276 and 335 factorisations.
+    KKT paths from here solve 18 of 40 piles of bodies (n = 44 to 520) in 34 s, from natural units 17 in 39 s; 22
+    monotone problems take 294 and 276 factorisations.
     """
     return _units(problem, np.mean)
 
 
 def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, float]:
-    # Squares of what is far from 1 are no floats; over a power of two no digit is another one.
+    # Squares may overflow; a power of two is exact.
     unit = 2.0 ** (math.frexp(largest_entries(problem)[1])[1] - 1)
     A = problem.A / unit
     row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
@@ -125,9 +113,9 @@ def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, f
 
 
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
-    """The start whose products x0 z1 and w0 z2 all equal the geometric mean of the x0_i w0_j.
+    """The start with equal products x0 z1 and w0 z2, the geometric mean of the x0_i w0_j.
 
-    With bounds x0 stands for the distances from them, and w0 has a number for each; in a box s z2 = t (u - l - z2).
+    With bounds x0 stands for the distances.
     """
     gaps = Sides(problem).gaps(x0)
     product = _product(gaps, w0)
@@ -139,7 +127,7 @@ def _product(gaps: Array, w0: Array) -> float:
 
 
 def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) -> Array:
-    """Those whose products with w0 all equal one, or each other in a box; x0 where nothing bounds them."""
+    """Multipliers whose products with w0 equal `product`, or each other in a box."""
     if problem.standard:
         return product / w0
     sides, z = Sides(problem), x0.copy()
@@ -147,13 +135,13 @@ def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) ->
     s[sides.low], t[sides.high] = w0[: sides.low.size], w0[sides.low.size :]
     alone, above, both = (s > 0.0) & (t == 0.0), (s == 0.0) & (t > 0.0), (s > 0.0) & (t > 0.0)
     z[alone], z[above] = product / s[alone], -product / t[above]
-    # Halves, as the difference of two bounds may overflow.
+    # Halves avoid overflow.
     z[both] = (0.5 * problem.upper[both] - 0.5 * problem.lower[both]) * (t[both] / (0.5 * s[both] + 0.5 * t[both]))
     return z
 
 
 def default_start(problem: MixedLCP) -> Start:
-    """All components of x alike, in typical units; feasible where that is, else relaxed; centred.
+    """The centred start with equal components, feasible if possible.
 
     Parameters
     ----------
@@ -164,9 +152,9 @@ def default_start(problem: MixedLCP) -> Start:
 
 
 def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
-    """The centred start at a point, feasible where that is; in boxes s and t are such that z2 = x0 - l.
+    """The centred start at x0, feasible if possible; in boxes z2 = x0 - l.
 
-    With s - t = w there paths of 24 monotone problems with all kinds of bounds take a tenth more factorisations.
+    With s - t = w there 24 monotone problems take a tenth more factorisations.
     """
     sides = Sides(problem)
     w0, gaps = sides.pull(problem.w(x0)), sides.gaps(x0)
@@ -177,16 +165,16 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 
 
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
-    """A relaxed start for another try: scale, balance and components random; all products x0 z1 equal, and all w0 z2.
+    """A start of random scale, balance and components; all products x0 z1 are equal, and all w0 z2.
 
-    The scale is a power of ten, in natural units, without bounds in twice those that are typical: of 100 paths of ten
-    Gaussian problems (n = 100) 36 solve so, 30 in these, 28 in natural ones.
+    The scale is a power of ten in natural units, without bounds in twice typical units: with these 36 of 100 paths of
+    Gaussian problems (n = 100) solve, 30 in typical, 28 in natural units.
 
     Parameters
     ----------
     problem : MixedLCP
     generator : numpy.random.Generator
-        Its state decides, so that restarts can be repeated.
+        Its state makes restarts repeatable.
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
@@ -204,7 +192,7 @@ def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
 
 
 def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, w: float) -> Start:
-    """The same for bounds: x0 about as far from the bounds as x, and one w0 for each of them."""
+    """A random start with bounds."""
     normal = generator.standard_normal((2, problem.n))
     x0 = inside_start(problem, x) + np.where(np.isinf(problem.lower) & np.isinf(problem.upper), x * normal[0], 0.0)
     rows, forces = problem.w(x0), []
@@ -215,7 +203,7 @@ def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, 
 
 
 def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
-    """The given vectors, checked, with the defaults of `KKTHomotopy` for the others; `ValueError` names a bad one."""
+    """The given vectors, checked, with defaults of `KKTHomotopy`."""
     rows = Rows(problem)
     bounds = rows.sides.index.size
     given = {
@@ -235,7 +223,7 @@ def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
 
 
 def require_interior(problem: MixedLCP) -> None:
-    """Raise unless the argument `problem` is an LCP, with bounds or without, between whose bounds there is room."""
+    """Raise unless `problem` is an LCP whose bounds, if any, differ."""
     require_problem(problem)
     if problem.fixed.any():
         i = int(np.argmax(problem.fixed))
@@ -243,7 +231,7 @@ def require_interior(problem: MixedLCP) -> None:
 
 
 def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
-    """A start (x0, y0) > 0 with y0 = A x0 + q unless y0 is given; ValueError where that is not positive."""
+    """A start (x0, y0) > 0, y0 by default A x0 + q; ValueError if impossible."""
     require_lcp(problem)
     x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, problem.n)
     if y0 is None:
@@ -256,13 +244,13 @@ def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
 
 
 def made_of_x0(y0: Array) -> Array:
-    """The other vector of a start, which was computed from x0; ValueError where floats do not hold it."""
+    """y0, computed from x0; ValueError if not finite."""
     if not np.isfinite(y0).all():
         raise ValueError(f"x0: expected numbers from which a finite y0 comes (or give y0 > 0), found {y0.max()} in it")
     return y0
 
 
 def given_inside(problem: MixedLCP, x0: Any) -> Array:
-    """x0 between the bounds, checked; by default at a distance of one from them."""
+    """x0, checked to lie between the bounds; by default one from them."""
     require_interior(problem)
     return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)

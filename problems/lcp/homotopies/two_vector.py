@@ -1,7 +1,4 @@
-"""The homotopies in (x, y): Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno; one system, five sets of data.
-
-Those of Yu, Wang, and Kojima, Megiddo and Mizuno take bounds of any kind.
-"""
+"""The homotopies in (x, y) of Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno."""
 
 from __future__ import annotations
 
@@ -25,9 +22,9 @@ from problems.options import quiet
 
 @frozen(kw_only=True)
 class Blend:
-    """``sign [(1 - lam) (A x + q - y) + lam (x_ (x - x0) + y_ (y0 - y) + A_ A (x - x0))]`` with these x_, y_, A_.
+    """``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]`` with these x_, y_, A_.
 
-    For y read s - t, the forces at lower and at upper bounds; x_ may differ from index to index.
+    With bounds y is s - t.
     """
 
     sign: int
@@ -36,32 +33,32 @@ class Blend:
     A: int = 0
 
     def slopes(self, lam: float) -> tuple[float, float | Array, float]:
-        """Alpha, beta and gamma of the derivatives of [...], alpha A + beta I by x and -gamma I by y."""
+        """Alpha, beta, gamma: [...] has derivatives alpha A + beta I by x, -gamma I by y."""
         return 1.0 - lam + lam * self.A, lam * self.x, 1.0 - lam + lam * self.y
 
 
 @frozen(eq=False, slots=False)
 class TwoVectorHomotopy:
-    """A blend of ``A x + q = y`` with equations that the start satisfies, and ``x y = lambda x0 y0`` componentwise.
+    """A blend of ``Ax + q = y`` with equations true at the start, and ``xy = lambda x0 y0``.
 
-    With bounds l and u, y stands for s - t, and the second equations are ``s (x - l) = lambda s0 (x0 - l)`` where l is
-    finite, ``t (u - x) = lambda t0 (u - x0)`` where u is; the unknowns are (x, s, t).
+    With bounds y is s - t, ``s(x-l) = lambda s0(x0-l)`` for finite l, ``t(u-x) = lambda t0(u-x0)`` for finite u; the
+    unknowns are (x, s, t).
 
-    Made by `YuHomotopy`, `ZhaoHomotopy`, `XuHomotopy`, `WangHomotopy` and `KojimaMegiddoMizunoHomotopy`, which see to
-    the start. Where such a path reaches lambda = 0 its end solves the LCP; where it cannot, it diverges.
+    `YuHomotopy` and the other four functions make it. A path that reaches lambda = 0 ends at a solution; others
+    diverge.
 
     Attributes
     ----------
     name : str
     problem : MixedLCP
     blend : Blend
-        What tells the five apart.
+        The coefficients in which the five differ.
     x0, y0 : Array
-        The start: x0 between the bounds, shape (n,), and y0 positive, one for each finite bound.
+        The start: x0 between the bounds, y0 positive, one per finite bound.
     references : tuple of str
     structure : Structure
     refine : bool
-        Whether bordered solves are corrected to round-off; see `KKTHomotopy`.
+        As for `KKTHomotopy`.
     """
 
     name: str
@@ -89,7 +86,7 @@ class TwoVectorHomotopy:
 
     @property
     def n(self) -> int:
-        """The order of A: the unknowns of an LCP are 2n."""
+        """The order of A."""
         return self.problem.n
 
     @cached_property
@@ -99,7 +96,7 @@ class TwoVectorHomotopy:
 
     @cached_property
     def own_metric(self) -> RelativeMetric:
-        """Relative changes of the forces, and of the distances from the nearest bounds."""
+        """The metric of relative changes of forces and distances."""
         if self.problem.standard:
             return RelativeMetric()
         unit = natural_units(self.problem)[0]
@@ -107,7 +104,7 @@ class TwoVectorHomotopy:
 
     @cached_property
     def c(self) -> Array:
-        """The distances from the bounds times y at the start; for an LCP X y, shape (n,)."""
+        """Distances times y at the start; shape (n,) for an LCP."""
         return self.sides.gaps(self.x0) * self.y0
 
     def start(self) -> tuple[Array, float]:
@@ -115,7 +112,7 @@ class TwoVectorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def at_solution(self, x: Array) -> Array:
-        """(x, y) with y = w, of bounds their forces: the zero of H at lambda = 0 that a solution is; (2n,) for an LCP.
+        """The zero (x, y) of H at lambda = 0 for a solution.
 
         Parameters
         ----------
@@ -125,7 +122,7 @@ class TwoVectorHomotopy:
         return np.concatenate([x, forces])
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """A x + q - y and what the blend puts in its place at lambda = 1; y and the distances: see `interior`."""
+        """Ax + q - y and its blend at lambda = 1; factors y and distances."""
         n, blend, sides = self.n, self.blend, self.sides
         x, y = y[:n], y[n:]
         if one:
@@ -138,38 +135,38 @@ class TwoVectorHomotopy:
         return blend.sign * (w - sides.force(y)), blend.sign * origin, y, gaps, 0.0
 
     def rounded(self) -> tuple[str, Array, Array]:
-        """Which end of the rows is exact in floats; of the other sizes of what is summed, by x and for constants."""
+        """The end of the rows that is exact in floats; the other's term sizes, by x and constant."""
         A, blend = self.problem.A.toarray() if self.problem.sparse else self.problem.A, self.blend
         by_x = np.abs(blend.x) * np.eye(self.n) + abs(blend.A) * np.abs(A)
-        # The sums of A x0 and of forces have many terms, the error that goes with these is that of eight.
+        # Sums count as eight terms; A x0 and forces have more.
         constants = by_x @ np.abs(self.x0) + abs(blend.y) * np.bincount(self.sides.index, self.y0, self.n)
         return "goal", by_x, constants * (1.0 + (self.n + self.y0.size) / 4.0)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix by way of one of order n + 1; see `factor_pairs`."""
-        # Copied, as what is factored must not follow a caller that goes on to change it in place.
+        """Factor the bordered matrix; see `factor_pairs`."""
+        # Callers may change their border.
         return factor_pairs(System.at(self, y, lam), border.copy())
 
 
 def YuHomotopy(
     problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
-    """Yu et al. 2006, for positive semidefinite A: ``(1-l)(A x + q - y) + l (x - x0)``, ``x y - l x0 y0``.
+    """Yu et al. 2006, for positive semidefinite A: ``(1-l)(Ax+q-y) + l(x-x0)``, ``xy - l x0 y0``.
 
     Parameters
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and 1/x0, which makes the second equation the published x y = l e. With bounds x0 is
-        between them, and y0 has a number for each.
+        Positive; default ones, and 1/x0 (the published xy = le). With bounds x0 lies between them, y0 has one number
+        each.
     structure : Structure, optional
-        That of the problem, to be shared.
+        Shared between starts.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument.
+        For bad input.
     """
     x0 = given_inside(problem, x0)
     with np.errstate(over="ignore"):
@@ -180,24 +177,22 @@ def YuHomotopy(
 def ZhaoHomotopy(
     problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
-    """Zhao et al. 2010, for N-matrices: ``(1-l)(y - A x - q) + l (x - x0)``, ``x y - l x0 y0``.
+    """Zhao et al. 2010, for N-matrices: ``(1-l)(y-Ax-q) + l(x-x0)``, ``xy - l x0 y0``.
 
-    The reduced matrix (1-l)(A + diag(y/x)) - l I is indefinite even for positive definite A.
+    The reduced matrix (1-l)(A + diag(y/x)) - lI is indefinite even for positive definite A.
 
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Strictly feasible where y0 is not given; by default one found by `strictly_feasible_start`.
-    y0 : array_like, shape (n,), optional
-        Positive; A x0 + q by default. Any one satisfies the equations at l = 1.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; default `strictly_feasible_start` and A x0 + q. Without y0 x0 must be strictly feasible.
     structure : Structure, optional
-        That of the problem, to be shared.
+        Shared between starts.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
+        For bad input; `NoStrictlyFeasiblePoint` if no default start exists.
     """
     x0, y0 = feasible_start(problem, x0, y0)
     return _made("Zhao", problem, Blend(sign=-1, x=-1), x0, y0, references.ZHAO, structure)
@@ -206,24 +201,22 @@ def ZhaoHomotopy(
 def XuHomotopy(
     problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
-    """Xu et al., for P-matrices: ``(1-l)(y - A x - q) - l (x - x0)``, ``x y - l x0 y0``.
+    """Xu et al., for P-matrices: ``(1-l)(y-Ax-q) - l(x-x0)``, ``xy - l x0 y0``.
 
-    The first equation is Yu's with the sign changed: the same path if y0 is the same, started at y0 = A x0 + q.
+    Yu's path for equal y0, with one sign changed and another default y0.
 
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Strictly feasible where y0 is not given; by default one found by `strictly_feasible_start`.
-    y0 : array_like, shape (n,), optional
-        Positive; A x0 + q by default. Any one satisfies the equations at l = 1.
+    x0, y0 : array_like, shape (n,), optional
+        As for `ZhaoHomotopy`.
     structure : Structure, optional
-        That of the problem, to be shared.
+        Shared between starts.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
+        For bad input; `NoStrictlyFeasiblePoint` if no default start exists.
     """
     x0, y0 = feasible_start(problem, x0, y0)
     return _made("Xu", problem, Blend(sign=-1, x=1), x0, y0, references.XU, structure)
@@ -232,52 +225,50 @@ def XuHomotopy(
 def WangHomotopy(
     problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
-    """Wang et al. 2010, for P*-matrices: ``(1-l)(A x + q) - y + l y0``, ``x y - l x0 y0``.
+    """Wang et al. 2010, for P*-matrices: ``(1-l)(Ax+q) - y + l y0``, ``xy - l x0 y0``.
 
-    No feasibility is needed. Not the homotopy of Kojima, Megiddo and Mizuno, whose y - A x - q fades in proportion to
-    l: the two differ by l A (x - x0), see `KojimaMegiddoMizunoHomotopy`.
+    `KojimaMegiddoMizunoHomotopy` differs by l A(x-x0).
 
     Parameters
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and max(1, |q|). With bounds x0 is between them, and y0 has a number for each.
+        As for `YuHomotopy`, but y0 is max(1, |q|) by default.
     structure : Structure, optional
-        That of the problem, to be shared.
+        Shared between starts.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument.
+        For bad input.
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
-    # Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular.
+    # x - x0 keeps unbounded rows regular at lambda = 1.
     return _made("Wang", problem, Blend(sign=1, x=sides.free, y=1), x0, y0, references.WANG, structure)
 
 
 def KojimaMegiddoMizunoHomotopy(
     problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
-    """Kojima, Megiddo and Mizuno 1993: ``A x + q - y + l (y0 - A x0 - q)``, ``x y - l x0 y0``.
+    """Kojima, Megiddo and Mizuno 1993: ``Ax+q-y + l(y0 - A x0 - q)``, ``xy - l x0 y0``.
 
-    The central path of infeasible interior-point methods, which Han carried over to tensors. With a and b of the
-    source, (x y, y - A x - q) = l (a, b): for b > 0 they prove convergence for classes up to L*- and copositive-plus
-    matrices. For a strictly feasible start with y0 = A x0 + q the path is feasible throughout.
+    The central path of infeasible interior-point methods. With (xy, y-Ax-q) = l(a, b) and b > 0 they prove convergence
+    for classes up to L*- and copositive-plus matrices. If y0 = A x0 + q > 0, the path is feasible. Han extended it to
+    tensors.
 
     Parameters
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0. With bounds x0 is between
-        them, and y0 has a number for each.
+        As for `YuHomotopy`, but y0 is max(A x0 + q, 0) + max(1, |q|) by default, so that b > 0.
     structure : Structure, optional
-        That of the problem, to be shared.
+        Shared between starts.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument.
+        For bad input.
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     if y0 is None:

@@ -1,4 +1,4 @@
-"""`along`: the piecewise linear path of LCP(q + t d, A), and of its kin with bounds and levels, as a `Path`."""
+"""`along`: the piecewise linear path of LCP(q + t d, A)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from problems.lcp.search.solver import solve
 from problems.options import check_budget, finite_vector
 
 CORNERS = 100_000
-"""Where no budget is given: Murty's example of order 16 has 65,535."""
+"""Default budget; Murty's example of order 16 has 65,535 kinks."""
 
 
 def along(
@@ -44,11 +44,10 @@ def along(
     budget: Budget | None = None,
     archive: str | PathLike[str] | None = None,
 ) -> Path:
-    """Follow the solutions of a problem as q + t d moves with t: exact between kinks, and at each kink to round-off.
+    """Follow the solutions of a problem as q + t d moves with t: exact between kinks, and at kinks to round-off.
 
-    The path is piecewise linear. Each kink is found by a ratio test and solved for afresh; t may turn back, or stand
-    still while x moves. Where several switches vanish at once all rays that leave are found, by trying all pieces up to
-    ten switches, and one is followed, which pivots choose.
+    t may turn back, or stand still while x moves. If up to ten switches vanish at once, all rays are found; pivots
+    choose the one to follow.
 
     Parameters
     ----------
@@ -56,38 +55,36 @@ def along(
         A sparse matrix is made dense.
     d : array_like, shape (n,)
     t : (float, float)
-        Where the path begins and where it ends. From t = inf it comes along a ray, if the point nearest to zero solves
-        the problem for large t, as with d > 0: Lemke's method is ``t=(inf, 0)``. To inf or -inf it goes on through
-        all values until a ray leads away.
+        Start and end. From t = inf the path comes along a ray, if the point nearest to zero solves the problem for
+        large t, as with d > 0 (Lemke's method is ``t=(inf, 0)``). Towards inf or -inf it continues until a ray leads
+        away.
     x : array_like, shape (n,), optional
-        A solution for t[0]; by default `solve` finds one.
+        A solution for t[0]; default that of `solve`.
     ray : array_like, shape (n + 1,), optional
-        Of several rays that leave the start the one that is nearest to this direction of (x, t), such as one of
-        ``kink.rays``; by default one on which t goes towards its end.
+        Direction of (x, t) that selects the nearest ray at the start; by default t goes towards its end.
     level : array_like, shape (n,), or one number
-        Where it is positive, unknowns without bounds pay t level_i |x_i|, as in a penalised regression (for which
-        t >= 0): w_i = -t level_i where x_i > 0, t level_i where x_i < 0, and between them where x_i = 0.
+        If positive, unknowns without bounds pay t level_i |x_i|, t >= 0, as in penalised regression: w_i = -t level_i
+        for x_i > 0, t level_i for x_i < 0, between them for x_i = 0.
     budget : continuation.Budget, optional
-        100,000 kinks by default.
+        Default 100,000 kinks.
     archive : path, optional
-        A new HDF5 file for the path.
+        A new HDF5 file.
 
     Returns
     -------
     continuation.Path
-        Its points are the kinks and the two ends, its parameter is t. ``path.kinks`` has the kinks, each with the
-        pairs that switch and the rays that meet there; ``path(t=0.5)`` is where the path first has that t,
-        ``path.crossings(t=0)`` are all such points.
+        Its points are kinks and ends, its parameter t. ``path.kinks`` lists kinks with pairs that switch and rays;
+        ``path(t=0.5)`` is the first point with that t, ``path.crossings(t=0)`` are all.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument; where x does not solve the problem, or no ray comes from t = inf.
+        For bad input; if x does not solve the problem, or no ray comes from t = inf.
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.5; Osborne, Presnell and Turlach,
-    "A new approach to variable selection in least squares problems", IMA J. Numer. Anal. 20, 2000 (for levels).
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.5; for levels Osborne, Presnell and
+    Turlach, "A new approach to variable selection in least squares problems", IMA J. Numer. Anal. 20, 2000.
     """
     began = time.perf_counter()
     require_problem(problem)
@@ -133,7 +130,6 @@ def along(
 
 
 def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Exponents, Exponents]:
-    """The problem in units in which its rows and columns are comparable, and the exponents of two that lead there."""
     scaled = None if alike(problem) else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
     if scaled is None or not scaled.exact:
         none = np.zeros(problem.n, dtype=np.int64)
@@ -148,10 +144,7 @@ _CITED = (
 
 
 def levels_of(level: Any, problem: MixedLCP) -> Array:
-    """The levels, zero where there are bounds.
-
-    Raises `ValueError` if one is negative, or is given where there is a bound.
-    """
+    """The levels, zero at bounds; `ValueError` for others."""
     free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
     if np.ndim(level) == 0 and free.any():
         level = np.where(free, level, 0.0)
@@ -176,7 +169,6 @@ def _interval(t: Any) -> tuple[float, float]:
 
 
 def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> Array:
-    """A solution for t: the one given, or one that `solve` finds."""
     at = evolve(problem, q=problem.q + t * d)
     if x is None:
         if levels.any():

@@ -1,4 +1,4 @@
-"""The square part of the equations on one piece, factored at each corner, its solutions refined."""
+"""A piece's square equations, factored, with refined solutions."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from continuation.arrays import Array
 
 EXTENDED = 4096
-"""Entries up to which what is left is computed in extended precision, which costs 20 us for so many: then refinement
-makes kinks exact to round-off whatever the condition, and 10,000 problems of integers (n <= 6) to 1e-14."""
+"""Largest block with residuals in extended precision, at 20 us. Kinks are then exact to round-off for any condition:
+10,000 integer problems (n <= 6) to 1e-14.
+"""
 
 
 class SingularBasisError(ValueError):
@@ -22,9 +23,9 @@ class SingularBasisError(ValueError):
 
 @frozen(eq=False)
 class Basis:
-    """Rows and columns of [A, d], equally many, and the factors of their block.
+    """A square block of [A, d] and its factors.
 
-    `rows`, `columns`, of shape (k,): Column n is that of t. `block`, of shape (n, k): The columns, all rows of them.
+    `rows`, `columns`, of shape (k,): Column n is that of t. `block`, of shape (n, k): All rows of the columns.
     """
 
     rows: NDArray[np.intp]
@@ -34,7 +35,7 @@ class Basis:
 
     @classmethod
     def of(cls, rows: NDArray[np.intp], columns: NDArray[np.intp], block: Array) -> Self:
-        """Factor the block; raises `SingularBasisError` if it has no inverse."""
+        """Factor the block; raises `SingularBasisError` if singular."""
         if not rows.size:
             return cls(rows, columns, block, (None, None))
         lu, pivots, singular = dgetrf(block[rows])
@@ -43,10 +44,7 @@ class Basis:
         return cls(rows, columns, block, (lu, pivots))
 
     def solve(self, right: Array) -> tuple[Array, Array]:
-        """Basic variables z with ``block z + right = 0`` on the rows, and what is left of that on all of them.
-
-        Refined twice. `right` of shape (n, m). Returns z, of shape (k, m), and left, of shape (n, m).
-        """
+        """Basic variables z, shape (k, m), with ``block z + right = 0`` on the rows, and the residual of all rows."""
         if not self.rows.size:
             return np.zeros((0, right.shape[1])), right
         block, fine = self.block, self.block.size <= EXTENDED
@@ -59,7 +57,7 @@ class Basis:
         return z, left
 
     def row_of_inverse(self, column: int) -> Array:
-        """How one of the basic variables depends on the rows, shape (k,)."""
+        """The dependence of one basic variable on the rows, shape (k,)."""
         return self._inverse((self.columns == column).astype(float), transposed=1)
 
     def _inverse(self, right: Array, transposed: int = 0) -> Array:

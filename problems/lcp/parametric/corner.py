@@ -1,4 +1,4 @@
-"""A corner of a path where several switches vanish at once: all rays that leave it, and solutions of its small LCP."""
+"""Corners where several switches vanish."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
-"""Switches up to which all 2^m pieces are tried: 30 ms for ten; beyond, the one ray that pivots find. And orders up to
-which all faces are, 0.1 s for ten; about a second for twelve."""
+"""Most switches for which all 2^m pieces are tried (30 ms for ten; beyond, pivots find one ray), and largest order for
+all faces (0.1 s for ten).
+"""
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
-    """All rays, that from which the path has come included; where they fill a cone, its edges.
+    """All rays, including that of arrival; the edges if they fill a cone.
 
     Parameters
     ----------
     S : ndarray, shape (m, m)
     r : ndarray, shape (m,)
-        The path has come with e' = 1 and u' = r <= 0.
+        The path arrived with e' = 1 and u' = r <= 0.
     """
     m = r.size
-    # Rows and columns in like units, so that zero may be told.
+    # Comparable units make zero recognisable.
     unit = np.maximum(np.abs(r), np.abs(S).max(axis=1))
     unit = np.where(unit > 0.0, unit, 1.0)
     whole = np.column_stack([S / unit[:, None], r / unit])
@@ -54,7 +55,7 @@ def rays(S: Array, r: Array) -> list[Ray]:
 
 
 def _edges(signs: Array) -> list[Array]:
-    """The edges of the cone ``signs @ c >= 0``, each a vector c."""
+    """The edges of the cone ``signs @ c >= 0``."""
     dimension = signs.shape[1]
     if dimension == 0:
         return []
@@ -67,7 +68,7 @@ def _edges(signs: Array) -> list[Array]:
 
 
 def a_solution(S: Array, r: Array) -> Array | None:
-    """A v' >= 0 with ``S v' + r >= 0``, complementary, by Lemke's method; None where that ends on a ray.
+    """A complementary v' >= 0 with ``S v' + r >= 0`` by Lemke's method, or None.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
-"""A piecewise linear path proved: its corners in rational numbers, each stretch on one piece, exactly.
+"""Proof of a piecewise linear path in rational numbers.
 
-On a piece every pair has one equation in (x, t): x_i, or w_i, is what is fixed there. A corner solves the equations of
-both of its pieces; where it is within the limits of both, so is all between two corners, by convexity.
+If two corners satisfy the equations and limits of the piece between them, so does their segment, by convexity.
 """
 
 from __future__ import annotations
@@ -25,29 +24,27 @@ from problems.lcp.proof.rational import Integers, fractions, full_row_rank, inte
 from problems.options import finite_vector
 
 SAME_CORNER = 1e-6
-"""How far, relatively, the exact corner may be from a path's: else another path would be proved."""
+"""Largest relative distance of an exact corner from the path's; beyond, another path is proved."""
 
 Exactly = tuple[Fraction, ...]
 
 
 class UnprovenError(ValueError):
-    """The corners of a path are not what is claimed, exactly; the message says where."""
+    """The path's corners are not exactly as claimed."""
 
 
 @frozen
 class ExactPath:
-    """Corners in rational numbers, joined by solutions.
+    """Rational corners, joined by solutions.
 
     Attributes
     ----------
     points : tuple of tuples of Fraction
-        (x, t) of the two ends and of all kinks, in order. Everything on the straight lines between them solves the
-        problem, exactly.
+        (x, t) of ends and kinks. All points on the segments between them are exact solutions.
     pieces : tuple of tuples of int
-        Of each stretch the state of every pair (-1, 0, 1: below, between and above its two corners).
+        For each segment the state of every pair (-1, 0, 1: below, between, above its corners).
     single : bool
-        Whether nothing else can be followed: each stretch is all that its piece has nearby, and at each kink exactly
-        one pair switches, so that two rays meet there.
+        Whether no other path branches off: each segment is its piece's only line, and one pair switches at each kink.
     """
 
     points: tuple[Exactly, ...]
@@ -56,19 +53,19 @@ class ExactPath:
 
     @property
     def u(self) -> Array:
-        """The points in floats, each number correctly rounded, shape (m, n + 1)."""
+        """The points, correctly rounded, shape (m, n + 1)."""
         return np.array([[float(value) for value in point] for point in self.points])
 
 
 def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> ExactPath:
-    """Prove a path that `along` has followed, in rational arithmetic; the floats of A, q and d are taken as they are.
+    """Prove a path of `along` in rational arithmetic, for A, q and d exactly as stored.
 
     Parameters
     ----------
     problem : LCP or MixedLCP
     d : array_like, shape (n,)
     path : continuation.Path
-        Of `along`, or read from an archive.
+        From `along` or an archive.
     level : array_like, shape (n,), or one number
         As for `along`.
 
@@ -79,9 +76,9 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     Raises
     ------
     UnprovenError
-        If the path is not what it seems: a ValueError.
+        If the path is not as claimed.
     TypeError, ValueError
-        For bad input, naming the argument.
+        For bad input.
     """
     require_problem(problem)
     require_path(path)
@@ -93,7 +90,7 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
         raise ValueError(f"path: expected two points of {problem.n} unknowns at least, found {path!r}")
     exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
     u = path.u
-    # What is at a bound is there exactly, at both ends.
+    # Both ends hold a bound exactly.
     states = [exact.stairs.states(problem, 0.5 * a[:-1] + 0.5 * b[:-1]) for a, b in pairwise(u)]
     tied = {event.step: event.switches for event in path.kinks}
     points = [exact.point(states[0], states[0], u[0], held=_mostly(u[1] - u[0]))]
@@ -106,13 +103,13 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
         at_corners = [exact.at_corners(state, points[k + end], k) for end in (0, 1)]
         first, last = k == 0, k == len(states) - 1
         equations = exact.equations(every, state.astype(np.intp) + 1)
-        # Where the equations of a piece are independent all of it is one line.
+        # With independent equations a piece is one line.
         single &= (first or at_corners[0] == 1) and (last or at_corners[1] == 1) and full_row_rank(equations[:, :-1])
     return ExactPath(tuple(points), tuple(tuple(state.tolist()) for state in states), bool(single))
 
 
 def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
-    """That the events of the path are its kinks, called what they are, and that it goes on in each of its points."""
+    """Check that events are kinks, rightly named, and nothing turns back."""
     kinks = {event.step: event for event in path.kinks}
     wrong = [e for e in path.events if kinks.get(e.step) is not e or not 0 < e.step < len(path) - 1]
     wrong += [e for e in path.kinks if not np.array_equal(e.u, path.u[e.step])]
@@ -133,9 +130,8 @@ def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
 
 @frozen(eq=False)
 class _Exactly:
-    """The data as integers over 2^shift: `table` the rows of [A, d, q], `values` those of the stairs, 0 for infinity.
-
-    `floats` of shape (n, n + 2): [A, d, q].
+    """Integers over 2^shift: `table` holds [A, d, q], `values` the stairs, 0 for infinity; `floats`, of shape (n, n +
+    2), is [A, d, q].
     """
 
     stairs: Stairs
@@ -146,7 +142,6 @@ class _Exactly:
 
     @classmethod
     def of(cls, problem: MixedLCP, d: Array, stairs: Stairs) -> _Exactly:
-        """Of the floats of a dense problem, as they are."""
         floats, n = np.column_stack([problem.A, d, problem.q]), problem.n
         values = np.where(np.isfinite(stairs.values), stairs.values, 0.0)
         whole, shift = integers(np.append(floats.ravel(), values.ravel()))
@@ -154,7 +149,7 @@ class _Exactly:
         return cls(stairs, floats, table.reshape(floats.shape), rest.reshape(6, 3, n), shift)
 
     def equations(self, pairs: NDArray[np.intp], pieces: NDArray[np.intp]) -> Integers:
-        """What is fixed of each pair on a piece (0, 1, 2): rows [a, b] with a (x, t) + b = 0, shape (m, n + 2)."""
+        """Each pair's equation on a piece (0, 1, 2): rows [a, b] with a (x, t) + b = 0."""
         rows: Integers = np.zeros((pairs.size, self.table.shape[1]), dtype=object)
         by_w = self.stairs.moves_x[pieces, pairs]
         rows[by_w] = self.table[pairs[by_w]]
@@ -165,10 +160,10 @@ class _Exactly:
     def point(
         self, before: State, after: State, near: Array, tied: tuple[int, ...] = (), held: int | None = None
     ) -> Exactly:
-        """The corner between two pieces, of these pairs at least; or the point of a piece with one number held."""
+        """The corner between two pieces where `tied` switch, or a point with one number held."""
         there = before != after
         there[list(tied)] = True
-        # At the nearer corner of a pair two of its pieces meet.
+        # Two pieces of a pair meet at its nearer corner.
         x, w = near[:-1], self.floats @ np.append(near, 1.0)
         corners = np.where(self.stairs.levels, w - near[-1] * self.stairs.corner_slope, x - self.stairs.corner_x)
         corner, at, rest = np.abs(corners).argmin(axis=0), np.flatnonzero(there), np.flatnonzero(~there)
@@ -188,12 +183,12 @@ class _Exactly:
         return whole
 
     def at_corners(self, state: State, point: Exactly, stretch: int) -> int:
-        """How many pairs are at a corner of their graphs in a point of a piece.
+        """The number of pairs at corners of their graphs.
 
         Raises
         ------
         UnprovenError
-            If the point is not on the piece.
+            If the point is off the piece.
         """
         unit, piece = lcm(*(value.denominator for value in point)), (state.astype(np.intp) + 1, np.arange(state.size))
         whole: Integers = np.array([int(value * unit) for value in point] + [unit], dtype=object)
@@ -210,6 +205,7 @@ class _Exactly:
             raise UnprovenError(f"path: pair {i} is beyond its limits on stretch {stretch}, if by rounding only")
         return int(((low & (moved == least)) | (high & (moved == most))).sum())
 
+
 def _mostly(change: Array) -> int:
-    """Which number to hold at an end: t, unless that stands still."""
+    """The number to hold at an end: t, if it moves."""
     return change.size - 1 if change[-1] != 0.0 else int(np.abs(change).argmax())

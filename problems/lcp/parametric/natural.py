@@ -1,4 +1,4 @@
-"""The natural map of a problem whose q moves with t, as a homotopy with pieces: what a path of `along` satisfies."""
+"""The natural map along a path of `along`."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from problems.lcp.parametric.stairs import Stairs
 
 @frozen(eq=False)
 class NaturalMap:
-    """x - mid(lower, x - w, upper), w = A x + q + t d; for a level, x less what t |x| shrinks x - w to.
+    """x - mid(lower, x - w, upper), w = Ax + q + t d; for a level, w + mid(-t level, x - w, t level).
 
-    `problem`: Dense. `d` of shape (n,). `level`, of shape (n,): Where it is positive, unknowns without bounds pay t
-    level_i |x_i|. `begin`, of shape (n + 1,): A point of the path.
+    `d`, `level`, of shape (n,), as for `along`; `begin`, of shape (n + 1,), on the path.
     """
 
     problem: MixedLCP
@@ -30,18 +29,12 @@ class NaturalMap:
         return self.begin[:-1], float(self.begin[-1])
 
     def residual(self, y: Array, lam: float) -> Array:
-        """Zero on the path, shape (n,).
-
-        `y` of shape (n,).
-        """
+        """Zero on the path, shape (n,) like y."""
         found: Array = self.residuals(np.append(y, lam)[None])[0]
         return found
 
     def residuals(self, u: Array) -> Array:
-        """Those of many points, shape (m, n).
-
-        `u` of shape (m, n + 1).
-        """
+        """Residuals of points u, shape (m, n + 1) to (m, n)."""
         y, lam = u[:, :-1], u[:, -1:]
         w = y @ self.problem.A.T + (self.problem.q + lam * self.d)
         width = lam * self.level
@@ -49,19 +42,13 @@ class NaturalMap:
         return np.where(self.level > 0.0, w + kept, self.problem.natural_map(y, w))
 
     def switches(self, y: Array, lam: float) -> Array:
-        """How far x - w is from the lower corner of each pair, and then from the upper one, where there is one.
-
-        `y` of shape (n,).
-        """
+        """Distances of x - w from the finite lower, then upper corners."""
         stairs = Stairs.of(self.problem, self.level)
         off: Array = y - self.problem.w(y) - lam * self.d - stairs.corner_x + lam * stairs.corner_slope
         return off[np.isfinite(stairs.corner_x)]
 
     def piece(self, signs: Array) -> Homotopy:
-        """The linear equations where these signs hold: w_i, or x_i, is what is fixed.
-
-        `signs` of shape (m,).
-        """
+        """The linear equations of the piece with these signs."""
         stairs = Stairs.of(self.problem, self.level)
         side = np.zeros(stairs.corner_x.shape)
         side[np.isfinite(stairs.corner_x)] = signs

@@ -1,4 +1,4 @@
-"""How a solution moves with A and q: a linear map, or, where x_i and w_i vanish together, one for each direction."""
+"""Derivatives of a solution by A and q."""
 
 from __future__ import annotations
 
@@ -16,25 +16,24 @@ from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
 from problems.options import finite_vector, real_array
 
 BIACTIVE = 1e-10
-"""Relative to the terms of the rows, a w_i below this is zero, and an x_i is at its bound that shows in no row: what
-`solve` asks of its certificates."""
+"""Relative to its row's terms, |w_i| up to this is zero and x_i at its bound, as in certificates of `solve`."""
 
 
 class NotDifferentiableError(ValueError):
-    """The solution is not isolated, or moves in no direction, or in several."""
+    """The solution is not isolated, or moves in no or several directions."""
 
 
 @frozen(eq=False)
 class Gradient:
-    """Of a loss with gradient g with respect to x: ``d loss = q . dq + sum(A * dA)``.
+    """Derivative of a loss with gradient g by x: ``d loss = q . dq + sum(A * dA)``.
 
     Attributes
     ----------
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether there are biactive indices, which are held at their bounds here: then this is the derivative only for
-        changes that keep them there, and one element of the generalised Jacobian.
+        Whether biactive indices exist. The derivative holds them at their bounds, as an element of the generalised
+        Jacobian.
     """
 
     q: Array
@@ -44,19 +43,19 @@ class Gradient:
 
 @frozen(eq=False)
 class Sensitivity:
-    """Derivatives of a solution with respect to A and q.
+    """Derivatives of a solution by A and q.
 
     Attributes
     ----------
     x : ndarray, shape (n,)
     moving : ndarray of int
-        Where x is off its bounds, and w_i = 0.
+        Indices off their bounds, with w_i = 0.
     biactive : ndarray of int
-        Where x is at a bound and w_i = 0: derivatives are one-sided there.
+        Indices at a bound with w_i = 0.
     side : ndarray, shape (n,)
         1 at a lower bound, -1 at an upper one.
     factors : tuple
-        Of A on the moving indices.
+        LU of A on the moving indices.
     A : ndarray, shape (n, n)
     """
 
@@ -69,11 +68,11 @@ class Sensitivity:
 
     @property
     def differentiable(self) -> bool:
-        """Whether there are no biactive indices, so that the derivative is a linear map."""
+        """Whether no index is biactive."""
         return not self.biactive.size
 
     def jvp(self, dq: Any = None, dA: Any = None) -> Array:
-        """How x moves as q and A move by (dq, dA): at biactive indices the one-sided derivative in this direction.
+        """The derivative of x along (dq, dA), one-sided at biactive indices.
 
         Parameters
         ----------
@@ -87,7 +86,7 @@ class Sensitivity:
         Raises
         ------
         NotDifferentiableError
-            If, at biactive indices, x moves in no direction or in more than one.
+            If biactive x move in no direction, or in several.
 
         References
         ----------
@@ -111,7 +110,7 @@ class Sensitivity:
         return dx
 
     def vjp(self, g: Any) -> Gradient:
-        """The gradient in A and q of a loss whose gradient in x is g.
+        """The gradient by A and q of a loss with gradient g by x.
 
         Parameters
         ----------
@@ -139,7 +138,7 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
     Raises
     ------
     NotDifferentiableError
-        If A is singular where x is off its bounds: the solution is not isolated, or vanishes.
+        If A is singular on the moving indices.
     """
     w = problem.w(x)
     A = problem.A.toarray() if problem.sparse else problem.A
@@ -160,7 +159,6 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
 
 
 def _only(S: Array, r: Array) -> Array:
-    """The solution of LCP(r, S), which is the direction."""
     if r.size <= LARGEST_LISTED:
         found = [ray.grown / ray.driven for ray in rays(S, r) if ray.driven > 0.0]
         if len(found) != 1:

@@ -1,4 +1,4 @@
-"""`solutions`: several solutions of a problem, or all, by paths from one to the next, and by trying all faces."""
+"""`solutions`: several or all solutions of a problem."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ from problems.lcp.search.solver import solve
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
 SAME_SOLUTION = 1e-7
-"""Solutions whose every x_i agrees this well, relative to the largest, are the same."""
+"""Relative difference up to which solutions are equal."""
 
 IN_VAIN = 30
-"""So many paths in a row that find nothing new, and twice as many as there are solutions, end the search. From one of
-the 31 equilibria of the coordination game m = 5 all others are found with 10."""
+"""Directions in a row without a new solution, at least twice the number found, that end the search. 10 suffice for all
+31 equilibria of the coordination game m = 5.
+"""
 
 CORNERS_A_PATH = 50
-"""Times the order: a path that goes on for longer is left."""
+"""Longest path, in kinks per unknown."""
 
 
 @frozen(eq=False)
 class Solutions:
-    """What was found, in order; iterating gives the certificates.
+    """The solutions in order found; iteration gives certificates.
 
     Attributes
     ----------
     problem : MixedLCP
     certificates : tuple of Certificate
-        Of one point each, all different by value.
+        One per solution.
     complete : bool
-        Whether these are all solutions, which only trying all faces in exact arithmetic tells.
+        Whether these are all solutions, by an exact test.
     paths : int
-        How many were followed.
     message : str
     """
 
@@ -84,25 +84,24 @@ def solutions(
     budget: Budget | None = None,
     tolerance: float = 1e-10,
 ) -> Solutions:
-    """Look for several solutions of an LCP(q, A), or of a problem with bounds.
+    """Find several solutions of an LCP(q, A), with or without bounds.
 
-    An LCP of order ten at most is solved on each of its complementary faces, in exact arithmetic: then the list is
-    complete, unless a face holds a continuum. Else paths are followed: from a solution found along which q + t d has
-    solutions, for a random d, through t = 0 again and again until a ray leads away. Each crossing of t = 0 is a
-    solution. All are certified, and told apart by value.
+    For order ten or less each complementary face of an LCP is solved exactly, which finds all solutions, unless a face
+    holds a continuum. Otherwise paths of q + t d, for random d, start from known solutions; each crossing of t = 0 is a
+    solution. All are certified.
 
     Parameters
     ----------
     problem : LCP or MixedLCP
     known : sequence of array_like, shape (n,)
-        Solutions to begin at; by default the one that `solve` finds.
+        Solutions to start from; default that of `solve`.
     enumerate_faces : bool
-        Whether faces are tried where there are few.
+        Whether to try all faces.
     seed : int
-        Of the directions d.
+        Seed of the directions d.
     budget : continuation.Budget, optional
-        Its steps are the kinks of all paths together. By default 200,000, and the search ends before where 30 paths in
-        a row, and twice as many as there are solutions, find nothing new.
+        Its steps limit the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at
+        least twice the number of solutions, without a new one.
     tolerance : float
         As for `solve`.
 
@@ -113,7 +112,7 @@ def solutions(
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument; where a point of `known` is no solution.
+        For bad input, or if a point of `known` is no solution.
 
     References
     ----------
@@ -156,7 +155,7 @@ def _on_faces(problem: LCP, tolerance: float) -> Solutions:
 
 @define(eq=False)
 class _Search:
-    """What was found, and where the next path begins."""
+    """The search for solutions."""
 
     structure: Structure
     tolerance: float
@@ -172,10 +171,10 @@ class _Search:
         return self.structure.problem
 
     def take(self, x: Array) -> bool:
-        """Take a point into the list, if it is a solution, and new."""
+        """Add a point if it is a new solution."""
         if self._known(x):
             return False
-        # The solution of the equations of its piece is better than a point between two corners.
+        # Its piece's equations are more accurate than interpolation.
         finish = Finish(Faces(self.structure), self.tolerance)
         piece = Stairs.of(self.problem, np.zeros(x.size)).states(self.problem, x)
         solved = finish.settle(piece, Policy(steps=0), x)
@@ -190,7 +189,7 @@ class _Search:
         return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in self.found)
 
     def run(self) -> str:
-        """Follow paths from all that is found; why no more were."""
+        """Follow paths from all solutions; return why the search ended."""
         n, in_vain, tried = self.problem.n, 0, 0
         while in_vain < max(IN_VAIN, 2 * len(self.found)):
             left = self.budget.steps - self.counts.accepted

@@ -1,4 +1,4 @@
-"""Where a walk begins: on a ray, or at a solution for some t."""
+"""Starts of walks."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ from problems.lcp.parametric.walk import FLAT, Walk
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
-    """The walk that comes from t = +inf (sign = -1), or from -inf.
+    """The walk from t = +inf (sign = -1), or -inf.
 
-    `problem`: Dense. `d`, `level` of shape (n,). Raises `ValueError` if the point nearest to zero is no solution for
-    large t.
+    Raises `ValueError` if the point nearest to zero is no solution for large t.
     """
     state: State = np.where(
         level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
@@ -29,7 +28,7 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     walk = Walk(problem, d, Stairs.of(problem, level), state, problem.n, 0.0, -sign)
     walk.locate()
     gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
-    # As t grows out of sight no gap may shrink.
+    # No gap may shrink for ever.
     wrong = ((rates < 0.0) | ((rates == 0.0) & (gaps < 0.0))) & np.isfinite(gaps)
     if wrong.any():
         i = int(np.argmax(wrong)) % problem.n
@@ -46,10 +45,9 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
 def from_solution(
     problem: MixedLCP, d: Array, level: Array, x: Array, t: float, sign: float, ray: Array | None = None
 ) -> Walk | None:
-    """The walk from a solution, along a ray that leaves it with t growing, or falling; or along the one given.
+    """The walk from a solution along the ray nearest to `ray`, or with t going by `sign`; None without such a ray.
 
-    `problem`: Dense. `d`, `level`, `x` of shape (n,). `ray` of shape (n + 1,). Returns Walk or None: None if no ray
-    leaves that way. Raises `SingularBasisError` if the ray is not the only one on its piece.
+    Raises `SingularBasisError` if its piece holds more rays.
     """
     stairs = Stairs.of(problem, level)
     walk = Walk(problem, d, stairs, stairs.states(problem, x), problem.n, t, sign)
@@ -79,7 +77,6 @@ def from_solution(
 
 
 def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
-    """How far a direction is the one wanted."""
     length = float(np.linalg.norm(direction))
     if ray is not None:
         return float(direction @ ray) / length
@@ -87,7 +84,7 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
 
 
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
-    """Where A is singular on the moving x: the path goes along the kernel of [A, d] there."""
+    """The walk along the kernel of [A, d], if A is singular."""
     moving = np.flatnonzero(walk.moves_x)
     block = np.column_stack([walk.problem.A[np.ix_(moving, moving)], walk.shares[moving]])
     q, r, _ = qr(block.T, pivoting=True)

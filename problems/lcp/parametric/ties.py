@@ -1,4 +1,4 @@
-"""Where a walk comes to a corner: one switch is a pivot, several at once a small LCP whose solutions are all rays."""
+"""Corners of a walk: a pivot, or a small LCP."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from problems.lcp.parametric.walk import FLAT, SLOW_RATE, Walk
 
 @frozen(eq=False)
 class Corner:
-    """What happened at a corner.
+    """A corner.
 
     Attributes
     ----------
     switches : tuple of int
-        The indices of the pairs at a corner of their graphs.
+        The pairs at a corner of their graphs.
     directions : list of Array of shape (n + 1,)
-        Of all rays, where several switches vanish, and not too many.
+        All rays, if several switches vanish.
     dead : bool
-        Whether none leaves but the one that was come on.
+        Whether only the ray of arrival exists.
     """
 
     switches: tuple[int, ...]
@@ -31,7 +31,7 @@ class Corner:
 
 
 def turn(walk: Walk, step: float) -> Corner | None:
-    """Take the corner that so long a step leads to; what it was, or None where no way on was found."""
+    """Take the corner after this step; None without a way on."""
     found: list[Array] = []
     switched = np.ones(1, dtype=bool)
     driver, switches = 0, tuple(walk.tied.tolist())
@@ -45,7 +45,7 @@ def turn(walk: Walk, step: float) -> Corner | None:
                 walk.switch(edges[onward[0]].grown > 0.0)
                 aim(walk, found[onward[0]], step)
                 return Corner(switches, found)
-            # That no other ray leaves may be said if the one come on is found.
+            # Complete if the ray of arrival is found.
             return Corner(switches, found, dead=True) if edges else None
         switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
     walk.switch(switched)
@@ -54,7 +54,7 @@ def turn(walk: Walk, step: float) -> Corner | None:
 
 
 def aim(walk: Walk, direction: Array, step: float = 0.0) -> None:
-    """Go on along a direction from where so long a step leads: driven by t, or by the x that moves most."""
+    """Continue along a direction, driven by t or the fastest x."""
     n = walk.problem.n
     moves_x = walk.stairs.moves_x[walk.state.astype(np.intp) + 1, np.arange(n)]
     moving = np.abs(np.where(np.append(moves_x, True), direction, 0.0))
@@ -64,7 +64,7 @@ def aim(walk: Walk, direction: Array, step: float = 0.0) -> None:
 
 
 def small(walk: Walk) -> tuple[Array, Array, Array]:
-    """S and r of the small LCP, and how (x, t) moves with each of its variables."""
+    """S and r of the small LCP, and the derivatives of (x, t)."""
     n, basis, tied = walk.problem.n, walk.basis, walk.tied
     m = tied.size
     sign = np.where(walk.low, 1.0, -1.0)
@@ -81,7 +81,7 @@ def small(walk: Walk) -> tuple[Array, Array, Array]:
     moving = walk.moves_x[tied]
     j = walk.driver
     if j < n and not walk.moves_x[j]:
-        # Its w moves with the corner that it left.
+        # Its w moves with the corner it left.
         left[j] = (walk.d[j] - walk.shares[j]) * along[n, :m]
     rates = np.where(moving[:, None], along[tied, :m], left[tied])
     side = np.where(walk.low, 0, 1), tied

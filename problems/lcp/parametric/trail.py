@@ -1,4 +1,4 @@
-"""A walk written down as a `Path`: its corners as steps and kinks, and how it ended."""
+"""A walk recorded as a `Path`."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from problems.lcp.parametric.walk import FLAT, Walk
 
 @define(eq=False)
 class Trail:
-    """A path while it is made.
+    """A path in the making.
 
-    `units`, of shape (n + 1,): Of x and t. `points`, `tangents`, of shape (n + 1,): The points so far, and the
-    directions in which they were come on. `kinks`: By the number of the point: name, pairs that switch, rays.
+    `units`: Scales of x and t. `points`, `tangents`: Points and directions of arrival, of shape (n + 1,). `kinks`:
+    Point number to name, pairs, rays.
     """
 
     units: Array
@@ -37,10 +37,7 @@ class Trail:
     _left: list[tuple[Array, Array]] = field(factory=list, init=False)
 
     def follow(self, walk: Walk, last: float, budget: Budget) -> tuple[Status, str]:
-        """Follow a walk to its end; what that was, and a sentence.
-
-        `last`: The t at which it ends.
-        """
+        """Follow a walk to t = `last`; return its status and a sentence."""
         began = time.perf_counter()
         corner: Corner | None = None
         t = walk.t
@@ -85,10 +82,7 @@ class Trail:
                 return Status.DEAD_END, str(Status.DEAD_END)
 
     def steps(self, residuals: Array) -> tuple[list[Step], list[LocatedEvent]]:
-        """The points as steps, and the kinks.
-
-        `residuals`, of shape (m,): Of the points.
-        """
+        """The points as steps, with `residuals`, and the kinks."""
         gaps = [0.0, *(math.sqrt(float(gap @ gap)) for gap in np.diff(self.points, axis=0))]
         arcs, last = np.cumsum(gaps).tolist(), len(self.points) - 1
         kinds = [Kind.KINK if k in self.kinks else Kind.TARGET if k == last else Kind.REGULAR for k in range(last + 1)]
@@ -107,7 +101,7 @@ class Trail:
         return steps, events
 
     def _add(self, u: Array, unit: Array, corner: Corner | None) -> None:
-        # At a kink the tangent is that of the arrival, as the engine's is; the first ray leads back, the second on.
+        # A kink's tangent is that of arrival, as in the engine; its first ray leads back, the second on.
         arrival = unit if self._unit is None else self._unit
         if corner is not None:
             back = -arrival
@@ -129,7 +123,6 @@ class Trail:
         self.tangents.append(unit)
 
     def _leave(self, walk: Walk, unit: Array, length: float, last: float) -> tuple[Status, str]:
-        """Along a ray, to a point of it."""
         far = 1.0 + largest(walk.u[0]) if walk.still else 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt)
         self._end(unit, far * length, walk.t if walk.still else walk.t + far * walk.dt)
         if math.isinf(last) and not walk.still and walk.dt * last > 0.0:
@@ -138,16 +131,16 @@ class Trail:
         return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
-        """Whether it has left this kink in this direction before, as it may where more than two rays meet."""
+        """Whether the path left this kink in this direction before."""
         size = ZERO_COMPONENT * (1.0 + largest(u))
         been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
         self._left.append((u, unit))
         return been
 
     def _closes(self, unit: Array, length: float) -> bool:
-        """Whether the path comes back to its first point before the next corner; it ends there then."""
+        """Whether the path returns to its first point before the next corner."""
         first, last = self.points[0], self.points[-1]
-        # Mostly t alone tells that it is not there.
+        # Mostly t alone rules this out.
         if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
             return False
         gap = first - last
@@ -162,13 +155,12 @@ class Trail:
 
 
 def state_at(walk: Walk, last: float, most: int) -> State | None:
-    """The pieces of the point where t is `last`, by a walk of at most so many corners; None where it leads away."""
+    """The pieces at t = `last` after at most `most` corners, or None."""
     status, _ = Trail(np.ones(walk.problem.n + 1)).follow(walk, last, Budget(steps=most))
     return walk.state if status is Status.REACHED_TARGET else None
 
 
 def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
-    """Whether t is where the path ends before the next corner, or on it."""
     if math.isinf(last) or math.isinf(step):
         return 0.0 <= to_last < math.inf
     off = abs(walk.t + step * walk.dt - last)
@@ -185,5 +177,4 @@ def _unit(a: Array) -> Array:
 
 
 def _same(a: Array, b: Array) -> bool:
-    """Whether two unit directions are one."""
     return largest(a - b) <= ZERO_COMPONENT
