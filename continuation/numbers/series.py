@@ -114,7 +114,7 @@ def _over(a: Any, b: Any) -> Any:
     return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
 
 
-# --- helpers
+# Helpers
 
 
 def _room(*series: PowerSeries) -> PowerSeries:

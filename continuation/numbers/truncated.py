@@ -167,7 +167,7 @@ class Truncated(NDArrayOperatorsMixin):
         )
 
     def moved(self, move: Callable[[Array], Array]) -> Any:
-        """Apply `move`, which selects entries, to arrays (coefficients, *shape); intervals have a second axis of boxes."""
+        """Apply `move`, which selects entries, to arrays (coefficients, *shape), or (coefficients, boxes, *shape)."""
         return wrap(moved(move, self.c), self.algebra)
 
     def lifted(self, x: Any) -> Any:
