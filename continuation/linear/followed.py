@@ -1,4 +1,4 @@
-"""One eigenvalue, followed from a matrix to others near to it with one factorisation."""
+"""One eigenvalue, followed to nearby matrices with one factorisation."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from continuation.linear.nullspace import NearlySingular, null_vectors
 from continuation.linear.spectrum import OFF_AXIS
 
 FOLLOWING = Contraction(iterations=15)
-"""Newton's chord ends where round-off ends the contraction; by 15 increments one that halves gains five digits."""
+"""Increments that halve gain five digits in 15."""
 
 
 @frozen(eq=False)
 class FollowedEigenvalue:
-    """An eigenvalue of a matrix, with its vector, and a bordered factorisation made with a value near to it.
+    """An eigenvalue, its vector, and a bordered factorisation made nearby.
 
-    `turned`, of shape (N + 1,): The bordered solution for the vector: what a change of the eigenvalue makes of it.
+    `turned`: derivative of the bordered solution by the eigenvalue, shape (N + 1,).
     """
 
     value: complex
@@ -30,10 +30,7 @@ class FollowedEigenvalue:
 
     @classmethod
     def of(cls, matrix: Matrix, value: complex) -> FollowedEigenvalue:
-        """The eigenvalue nearest to a value.
-
-        `matrix` of shape (N, N). Raises `ArithmeticError` if the bordered matrix is singular.
-        """
+        """The eigenvalue nearest to `value`; `ArithmeticError` if the bordered matrix is singular."""
         n = matrix.shape[0]
         eye = sp.eye_array(n, format="csc") if sp.issparse(matrix) else np.eye(n)
         b, c = np.split(generic_vector(2 * n), 2)
@@ -41,9 +38,9 @@ class FollowedEigenvalue:
         return cls(value, near, near.factors.solve(np.append(near.right, 0.0)))
 
     def at(self, matrix: Matrix) -> tuple[complex, int]:
-        """The eigenvalue of a matrix nearby, and how many solves it took: Newton's chord for (A - z) v = 0, c*v fixed.
+        """A nearby matrix's eigenvalue and the solves for it, by Newton's chord for (A - z) v = 0, c*v fixed.
 
-        `matrix` of shape (N, N). Raises `ArithmeticError` if it does not converge.
+        Raises `ArithmeticError` if it does not converge.
         """
         pair = Iteration(np.append(self.near.right, self.value), FOLLOWING)
 
