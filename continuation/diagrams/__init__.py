@@ -1,7 +1,6 @@
-"""Diagrams: all branches that hang together, each once, and by deflation those that hang on nothing.
+"""Diagrams: all connected branches, each once, and by deflation disconnected ones.
 
-A branch is one smooth curve; at a point where branches meet each ray is followed once, breadth first, and a path that
-comes back to a known point marks the ray by which it came. Nothing is left open where no ray is.
+Each ray of a junction is followed once, breadth first; a path that returns to a known point marks its ray as used.
 """
 
 from continuation.diagrams.asking import diagram
