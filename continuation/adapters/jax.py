@@ -25,9 +25,7 @@ def from_jax(
     target: float | None = 0.0,
     jacobian: str = "dense",
 ) -> Adapted:
-    """Make a homotopy of a residual in JAX.
-
-    JAX compiles it, and computes derivatives, products and the coefficients of SERIES.
+    """Make a homotopy of a residual in JAX, with its derivatives and the coefficients of SERIES.
 
     Parameters
     ----------
@@ -90,8 +88,7 @@ def from_jax(
         jax.eval_shape(series, u, np.zeros((2, u.size)))
         more["taylor"] = partial(_taylor, series)
     except (KeyError, NotImplementedError, TypeError, ValueError):
-        # Without a rule in jet, points of the path serve. Nested forward derivatives compile slowly: 0.5, 2.4, 18 s for
-        # three unknowns and order 4, 6, 8.
+        # Nested forward derivatives compile slowly: 0.5, 2.4, 18 s for three unknowns, order 4, 6, 8.
         pass
     again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
     return Adapted(
@@ -100,18 +97,17 @@ def from_jax(
 
 
 def _series(jax: Any, at: Callable[[Any], Any]) -> Any:
-    """Taylor coefficients of the residual along a curve, from the curve's, times factorials."""
+    """Taylor coefficients of the residual, times factorials."""
     jet = library("jax.experimental.jet")
     return jax.jit(lambda u, terms: jax.numpy.stack(jet.jet(at, (u,), (list(terms),))[1]))
 
 
 def _taylor(series: Callable[[Any, Any], Any], point: TangentPoint, order: int) -> Array:
-    """Taylor coefficients of the path."""
     coefficients = np.zeros((order + 1, point.u.size))
     coefficients[:2] = point.u, point.tangent
     factorials = np.array([float(factorial(k)) for k in range(order + 1)])[:, None]
     for k in range(2, order + 1):
-        # Zeros beyond k keep the length, which avoids compilation.
+        # Zeros beyond k avoid another compilation.
         defect = series(point.u, (coefficients * factorials)[1:])[k - 1]
         coefficients[k] = point.solve(-np.asarray(defect) / factorials[k, 0])
     return coefficients

@@ -22,10 +22,9 @@ def from_sympy(
     expressions: Sequence[Any], unknowns: Sequence[Any], parameter: Any, start: tuple[Any, float],
     *, target: float | None = 0.0,
 ) -> Adapted:  # fmt: skip
-    """Make a homotopy of SymPy expressions.
+    """Make a homotopy of SymPy expressions, with a symbolic derivative; symbols are real.
 
-    The derivative is symbolic; SERIES uses `continuation.jets`, and symbolic derivatives of special functions. Symbols
-    are real numbers.
+    SERIES uses `continuation.jets`, and symbolic derivatives of special functions.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The start of a curve: its event, and a point brought onto the curve."""
+"""The start of a curve."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ from continuation.step.start import at_parameter
 from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
-"""Kinds that define a condition; other events need their function."""
+"""Kinds that define a condition."""
 
 NEAREST = 40
-"""Number of eigenvalues searched for a Hopf pair, from zero: in discretised problems others are far on the stable
-side."""
+"""Eigenvalues searched for a Hopf pair, nearest to zero: others are far on the stable side."""
 
 NEAR_AXIS = 0.1
-"""Largest real part of a pair, relative to its modulus, that Newton's method must move to the axis."""
+"""Largest real part of a pair, relative to its modulus, for Newton's method."""
 
 
 def as_event(value: Any) -> Any:
@@ -44,7 +43,7 @@ def as_event(value: Any) -> Any:
 
 
 def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
-    """The pair (y, lam) as numbers; `name` is the argument's."""
+    """The pair (y, lam) as numbers."""
     if hasattr(at, "u"):
         at = (at.u[:-1], float(at.u[-1]))
     if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
@@ -56,7 +55,7 @@ def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
 
 
 def as_size(size: Any, at: Any, u: Array) -> Array:
-    """The scale of each component: given, else from the event's metric, else the point's size."""
+    """Scales of components: given, else from the event's metric, else the point's size."""
     if size is None:
         weights = getattr(at, "weights", None)
         return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))
@@ -67,7 +66,7 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
 
 
 def corrected(homotopy: Any, u: Array) -> Array:
-    """The unknowns, shape (N + 1,), after Newton's method at the parameter of u; the guess if that fails."""
+    """The unknowns after Newton's method at fixed parameter; the guess if that fails."""
     try:
         with np.errstate(all="ignore"):
             return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance()), u)[:-1]
@@ -76,10 +75,7 @@ def corrected(homotopy: Any, u: Array) -> Array:
 
 
 def frequency_at(H_y: Matrix) -> float:
-    """Imaginary part of the pair nearest to the axis.
-
-    Raises `ValueError` if no pair is near.
-    """
+    """Imaginary part of the pair nearest to the axis; ValueError if none is near."""
     values = nearest_zero(H_y, NEAREST)
     pairs = values[values.imag > 0.0]
     off = np.abs(pairs.real) / np.abs(pairs)

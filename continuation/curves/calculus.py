@@ -1,4 +1,4 @@
-"""Derivatives of a family H(y, lam; mu): first by all variables, second along a vector."""
+"""Derivatives of a family H(y, lam; mu)."""
 
 from __future__ import annotations
 
@@ -29,11 +29,10 @@ Member = Callable[[Any], Any]
 
 @frozen(eq=False, slots=False)
 class Calculus:
-    """Differentiation of a family, by methods chosen at a point.
+    """How a family is differentiated, decided at a point.
 
-    `derivative`: of members without their own. `jets`: whether jets give second derivatives and those by mu. `u0`: the
-    point (y, lam, mu). `extent`: scales of (y, lam), for difference steps. `reach`, `bend`: relative difference steps
-    in mu for H and for H' v.
+    `derivative`: of members without their own. `jets`: whether jets give second derivatives and those by mu. `u0`: (y,
+    lam, mu). `extent`: scales of (y, lam). `reach`, `bend`: relative difference steps in mu for H and H' v.
     """
 
     family: Member
@@ -57,18 +56,18 @@ class Calculus:
 
     @cached_property
     def rows(self) -> Array:
-        """Row sizes of H' at the start, shape (N,), to scale equations."""
+        """Row sizes of H' at the start, shape (N,)."""
         return row_sizes(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))
 
     def scaled(self, matrix: Matrix) -> Matrix:
-        """A matrix such as H_y with columns multiplied by extents and rows divided by their sizes."""
+        """The matrix times extents, divided by row sizes."""
         extent = self.extent[:-1]
         if sp.issparse(matrix):
             return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(extent))
         return matrix * extent / self.rows[:, None]
 
     def borders(self, matrix: Matrix) -> tuple[Array, Array]:
-        """Approximate null vectors of a scaled matrix, by inverse iteration from generic vectors."""
+        """Approximate null vectors of a scaled matrix, by inverse iteration."""
         n = self.rows.size
         b, c = generic_vector(n), generic_vector(2 * n)[n:]
         for _ in range(2):
@@ -77,7 +76,7 @@ class Calculus:
         return b / np.linalg.norm(b), c / np.linalg.norm(c)
 
     def unscaled(self, factors: Bordered) -> BorderedSystem:
-        """Factors of a scaled bordered matrix, used for the unscaled one; positive scales keep the sign."""
+        """Factors of a scaled bordered matrix, for the unscaled one."""
 
         def solve(r: Array, rho: float) -> Array:
             x = factors.solve(np.append(r / self.rows, rho))
@@ -102,7 +101,7 @@ class Calculus:
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
 
     def second(self, u: Array, mu: float, v: Array, left: Array) -> Array:
-        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,); v is real, `left` may be complex."""
+        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,); v is real."""
         if not v.any():
             return np.zeros(u.size + 1)
         if self.jets:
@@ -112,7 +111,6 @@ class Calculus:
         return self._by_two_jacobians(u, mu, v, left)
 
     def _by_two_jacobians(self, u: Array, mu: float, v: Array, left: Array) -> Array:
-        """Central differences of H' along v, and of H' v along mu."""
         extent = np.maximum(self.extent, np.abs(u - self.u0[:-1]))
         eps, h = SECOND / float(np.abs(v / extent).max()), self.bend * self._size(mu)
         evaluator = self.evaluator(mu)
@@ -125,7 +123,7 @@ class Calculus:
 
 
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
-    """Try at a point how to differentiate a family."""
+    """How to differentiate a family, tried at a point."""
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
     derivative = None if own else from_residual(homotopy.residual, (u[:-1], float(u[-1])))

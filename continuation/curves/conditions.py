@@ -1,4 +1,4 @@
-"""Conditions of folds, Hopf points and branch points: null vectors of H_y - i omega."""
+"""Conditions of folds, Hopf and branch points."""
 
 from __future__ import annotations
 
@@ -21,14 +21,13 @@ from continuation.status import Kind
 class Eigenvalue:
     """H_y is singular (fold), has an eigenvalue i omega (Hopf point), or H' loses a rank (branch point).
 
-    The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1). Folds have omega = 0 (Griewank and
-    Reddien, SIAM J. Numer. Anal. 21, 1984); for Hopf points omega is an unknown and s = 0 two real equations (Griewank
-    and Reddien, IMA J. Numer. Anal. 3, 1983). Matrices stay sparse.
+    The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1), sparse: for folds omega = 0 (Griewank and
+    Reddien, SIAM J. Numer. Anal. 21, 1984), for Hopf points an unknown (Griewank and Reddien, IMA J. Numer. Anal. 3,
+    1983).
 
-    Branch points also require w'H_lam = 0, one equation too many since H' loses a rank. H + (w'H_lam) b = 0 and s = 0
-    are regular at simple branch points with transversal branches, including pitchforks, and no symmetry is named.
-    w'H_lam vanishes along the curve if the family keeps its branch points. (Moore, SIAM J. Numer. Anal. 17, 1980, makes
-    that number an unknown.)
+    Branch points also satisfy w'H_lam = 0. H + (w'H_lam) b = 0 and s = 0 are regular at simple branch points with
+    transversal branches, including pitchforks, without a named symmetry; w'H_lam stays zero if the family keeps its
+    branch points. (Moore, SIAM J. Numer. Anal. 17, 1980, makes that number an unknown.)
     """
 
     calculus: Calculus
@@ -39,7 +38,7 @@ class Eigenvalue:
 
     @classmethod
     def at_start(cls, calculus: Calculus, kind: Kind, frequency: float) -> Eigenvalue:
-        """The condition with borders made at the start."""
+        """With borders made at the start."""
         tangential = Tangential.at_start(calculus) if kind == Kind.HOPF else None
         found = cls(calculus, kind, tangential, np.empty(0), np.empty(0))
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
@@ -65,7 +64,7 @@ class Eigenvalue:
         return null_vectors(self.matrix(full, omega), self.b, self.c)
 
     def null_vector(self, u: Array) -> Array:
-        """The null vector at a curve point (last entry mu), of length one in the start's extents."""
+        """The null vector, of length one in the start's extents."""
         member, beside = np.split(u[:-1], [self.calculus.extent.size])
         full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
         right = self.near(full, float(beside.sum())).right
@@ -94,14 +93,14 @@ class Eigenvalue:
         sign = base.sign
         values = np.array([sign * near.s.real])
         if self.kind == Kind.TURNING_POINT:
-            # Both det and the product of null vectors change sign with a border.
+            # det and the product of null vectors change sign with a border.
             signs = {
                 "cusp": lambda rows: float(-sign * rows[0, :-1] @ v),
                 "Bogdanov-Takens": lambda _: float(sign * (w @ v[:-1])),
             }
             one = np.empty((w.size, 0))
             return Here(calculus, u, mu, values, lambda: sign * gradient(v)[None, :], lambda: base, one, signs=signs)
-        # The extent of lam makes the addition comparable to H in any unit.
+        # The extent of lam makes the term comparable to H in any unit.
         reach = calculus.extent[-1]
         z = base.solve(reach * last_column(full), 0.0)
 

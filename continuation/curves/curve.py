@@ -26,11 +26,11 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Cached points and members: correctors ask repeatedly at one point, events at ends of arcs."""
+"""Cached points and members, which correctors and events ask for repeatedly."""
 
 PERSISTS = 1e-6
-"""Largest relative effect of mu on H along the left null vector at persistent branch points; the square root of
-round-off and difference errors."""
+"""Largest relative effect of mu on H along the left null vector at persistent branch points: about the square root of
+round-off."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -51,29 +51,29 @@ class Curve:
     ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
-    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; where only mu turns, two branches of the
-    member cross or a closed one shrinks to a point. Hopf curves end at frequency zero, a Bogdanov-Takens point;
-    "zero-Hopf" points are singular H_y on them.
+    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; if only mu turns, two branches of the
+    member cross or a closed one shrinks to a point. Hopf curves end at frequency zero, a Bogdanov-Takens point, and
+    locate singular H_y, "zero-Hopf" points.
 
-    The system is solved by elimination with the family's own factorisation, or a bordered one of H_y, and stays sparse.
-    Second derivatives come from jets (up to 128 unknowns) or two Jacobians.
+    Elimination uses the family's own factorisation, or one of H_y with a border, and stays sparse. Second derivatives
+    come from jets (up to 128 unknowns) or two Jacobians.
 
     Parameters
     ----------
     family : callable
-        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. A jet must give a homotopy that
-        accepts jets, or raise TypeError or ValueError.
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Given a jet, it returns a
+        homotopy that runs on jets, or raises TypeError or ValueError.
     event : LocatedEvent, Kind or Event
         A point on a path of a member, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a
         monitor.
     at : LocatedEvent, Step or (y, lam), optional
-        Approximate start; by default the located event.
+        Approximate start; by default the event.
     mu : float, optional
-        Its second parameter; by default the `Family`'s value.
+        By default the `Family`'s value.
     frequency : float, optional
-        Approximate Hopf frequency; by default from the eigenvalues of H_y nearest to the imaginary axis.
+        Approximate Hopf frequency; by default from eigenvalues of H_y.
     size : array_like, shape (N + 1,), optional
-        Scales of y and lam; by default from the event's metric, or the sizes of y and lam.
+        Scales of y and lam; by default from the event's metric, or their sizes.
 
     Raises
     ------
@@ -143,7 +143,7 @@ class Curve:
 
     @cached_property
     def _corrected(self) -> Array:
-        """The start brought onto the curve, if Newton's method converges."""
+        """The start after Newton's method."""
         beside = [self._frequency] if self.event == Kind.HOPF else []
         return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]))
 
@@ -162,13 +162,13 @@ class Curve:
 
     @cached_property
     def _signs(self) -> Array | None:
-        """Signs of the switches at the start: the curve's piece."""
+        """Signs of the switches at the start."""
         member = self.family(self.mu)
         return np.where(member.switches(*self.at) >= 0.0, 1, -1) if isinstance(member, SupportsPieces) else None
 
     @cached_property
     def _switch(self) -> int | None:
-        """Number of the switch that vanishes along a curve of kinks."""
+        """Number of the switch that vanishes."""
         return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at)))) if self.event == Kind.KINK else None
 
     def _member(self, mu: Any) -> Any:
@@ -196,7 +196,7 @@ class Curve:
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
-        """The condition as a function of (y, lam, mu), one vector or jet; None if it needs the tangent."""
+        """The condition, of one vector or jet (y, lam, mu); None if it needs the tangent."""
         k = self._switch
         if k is not None:
             return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
@@ -226,7 +226,7 @@ class Curve:
         return self._at(y, lam).residual()
 
     def written_out(self, points: Array) -> WrittenOut | None:
-        """Equations without factorisations, by which `certify` proves a path; None if not needed.
+        """Equations without factorisations, for `certify`; None if not needed.
 
         Parameters
         ----------
@@ -326,7 +326,6 @@ class Curve:
         return dict(self.family(lam).observe(y[:n], float(y[n])))
 
     def _room(self, u: Array, v: Array) -> float:
-        """The member's bound on a step; mu is fixed for it."""
         return float(self._member(u[-1]).max_step(u[: self.size.size], v[: self.size.size]))
 
 

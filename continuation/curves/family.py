@@ -15,11 +15,11 @@ from continuation.arguments.checks import complain
 class Family:
     """The homotopies that differ from a given one in one attribute.
 
-    A family is any map from a number mu to a homotopy. ``Family(homotopy, "eps")`` makes one from a class with
-    constants as attributes; unlike a lambda it has a name, a start value, and can be pickled and archived.
+    ``Family(homotopy, "eps")`` maps a number mu to a homotopy, as functions do, but has a name, a start value, and can
+    be archived.
 
-    attrs objects are rebuilt (`attrs.evolve`), so derived values follow; other objects are copied shallowly. Jets give
-    derivatives by mu if the residual is plain numpy and the class accepts jets, else differences do.
+    attrs objects are rebuilt, so derived values follow; others are copied shallowly. Jets give derivatives by mu if the
+    residual is plain numpy and the class accepts jets, else differences do.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Family:
     Raises
     ------
     TypeError, ValueError
-        If the homotopy has no such attribute, or it is no number.
+        If the homotopy has no such number.
     """
 
     homotopy: Any

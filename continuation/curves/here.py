@@ -1,4 +1,4 @@
-"""A curve's equations at one point: residual, derivative, and factorisations."""
+"""A curve's equations at one point."""
 
 from __future__ import annotations
 
@@ -23,12 +23,11 @@ from continuation.linear.system import Solver
 
 @frozen(eq=False, slots=False)
 class Here:
-    """Values and derivatives of a curve at the point `u` = (y, lam), computed on demand.
+    """Values and derivatives of a curve at a point, computed on demand.
 
-    `values`: k conditions to vanish; `gradients` makes their `rows`. `factored` makes `base`, factors of [[H_y, b],
-    [c', d]]. `column`, (N, k - 1): derivative of H = 0 by the additional unknown. `hidden`: value of that unknown if it
-    depends on the others, by the last row, and is added to H along the column. `signs`: functions of the rows that
-    change sign at degenerate points.
+    `u`: (y, lam). `values`: k conditions; `gradients` makes their `rows`. `factored` makes `base`, factors of [[H_y,
+    b], [c', d]]. `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if it follows
+    from the others by the last row. `signs`: functions of the rows that change sign at degenerate points.
     """
 
     calculus: Calculus
@@ -58,7 +57,7 @@ class Here:
 
     @cached_property
     def apply(self) -> Callable[[Array], Array]:
-        """The map v -> H' v of the member; EvaluationError if it has its own factorisation but no `differential`."""
+        """The map v -> H' v; EvaluationError without a `differential`."""
         apply = self.evaluator.differential(self.u)
         if apply is None:
             raise EvaluationError("the family has a factorisation of its own and no `differential`")
@@ -71,7 +70,7 @@ class Here:
 
     @cached_property
     def _rows(self) -> tuple[Array, Array | None]:
-        """Gradients, over visible unknowns, of the conditions and of the hidden unknown."""
+        """Gradients of the conditions and of the hidden unknown."""
         rows, n = self.rows, self.u.size
         if self.hidden is None:
             return rows, None
@@ -90,10 +89,7 @@ class Here:
         return np.append(H, rows @ v)
 
     def matrices(self) -> tuple[Matrix, Array]:
-        """The derivatives by the unknowns, dense or sparse as the family's, and by mu.
-
-        A hidden unknown adds a rank-one matrix to H', an operator if sparse.
-        """
+        """The derivatives by the unknowns and by mu; an operator if sparse with a hidden unknown."""
         full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
         column = self.column
         last = np.append(self.by_parameter, rows[:, -1])
@@ -108,8 +104,8 @@ class Here:
     def bordered(self, border: Array) -> BorderedSystem:
         """The bordered derivative, by elimination of y.
 
-        The member's factors are of F = [[H_y, b], [c', d]]. A new unknown sigma makes the equations F (y, s) = (r,
-        sigma), s = 0, conditions and border: four blocks, the first being F.
+        The member's factors are of F = [[H_y, b], [c', d]]. With a new unknown sigma the equations are F (y, s) = (r,
+        sigma), s = 0, conditions and border.
         """
         base, n, hidden = self.base, self.u.size, self.hidden is not None
         columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), self.column, self.by_parameter])

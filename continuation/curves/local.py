@@ -15,7 +15,7 @@ from continuation.linear.nullspace import LONG, REFRESHED
 
 @frozen(eq=False)
 class Tangential:
-    """[H_y, H_lam] with a border that is not orthogonal to the kernel: the start's, or the kernel."""
+    """[H_y, H_lam] with a border not orthogonal to the kernel."""
 
     calculus: Calculus
     row: Array
@@ -29,7 +29,7 @@ class Tangential:
         return cls(calculus, t / float(np.linalg.norm(t)) / calculus.extent)
 
     def factored(self, u: Array, mu: float) -> tuple[Any, Array]:
-        """The family's factorisation, and the oriented kernel, of length one in the start's extents."""
+        """The family's factorisation, and the oriented unit kernel."""
         extent, row = self.calculus.extent, self.row
         evaluator = self.calculus.evaluator(mu)
         for _ in range(REFRESHED):

@@ -1,4 +1,4 @@
-"""Conditions given as functions of a point, or of point and tangent."""
+"""Conditions given as functions."""
 
 from __future__ import annotations
 
@@ -24,9 +24,8 @@ from continuation.linear.nullspace import Bordered
 class Vanishing:
     """A function vanishes: a target value, a switch, or a monitor.
 
-    If it depends on the tangent t (`along`), M dt = -H''[t, .] with M = [H_y, H_lam] bordered, and one solve with M',
-    give the derivative. `function` takes (y, lam, mu), or (y, lam, tangent), as one vector or jet; `gradient` that
-    vector.
+    It takes (y, lam, mu), or (y, lam, tangent) if `along`. The tangent t has M dt = -H''[t, .], with M = [H_y, H_lam]
+    bordered: one solve with M' gives the derivative.
     """
 
     calculus: Calculus
@@ -38,14 +37,14 @@ class Vanishing:
 
     @classmethod
     def at_start(cls, calculus: Calculus, function: Callable[[Any], Any], along: bool) -> Vanishing:
-        """The condition, with a gradient tried at the start."""
+        """With a gradient tried at the start."""
         tangential, x = Tangential.at_start(calculus), calculus.u0
         if along:
             x = np.append(x[:-1], tangential.factored(x[:-1], float(x[-1]))[1])
         return cls(calculus, tangential, function, gradient_of(function, x), along)
 
     def null_vector(self, u: Array) -> Array:
-        """The member's tangent at a curve point (last entry mu), in the start's extents."""
+        """The member's tangent, in the start's extents."""
         return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.calculus.extent
 
     def at(self, u: Array, beside: float, mu: float) -> Here:
@@ -69,7 +68,7 @@ class Vanishing:
 
 
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
-    """The event's function of (y, lam, mu), one vector or jet; None if, tried at `u`, it needs the tangent."""
+    """The event's function of (y, lam, mu); None if it needs the tangent."""
     if isinstance(event, TargetValue):
         place = event.component % u.size
         return lambda U: U[place] - event.value
@@ -87,7 +86,7 @@ def plainly(event: Any) -> Callable[[Any, Any], Any]:
 
 
 def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:
-    """The gradient of a function of a vector: by jets, or by differences if these fail at x0."""
+    """The gradient of a function, by jets or by differences."""
     from continuation import jets
 
     def at(x: Array, last: float) -> Array:

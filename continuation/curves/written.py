@@ -1,14 +1,12 @@
 """Equations of curves without factorisations, with the null vector among the unknowns.
 
-Tracing solves [[H_y, b], [c', 0]] (v, s) = (0, 1). With v as an unknown, plain arithmetic suffices:
-
     H(y, lam; mu) = 0,   H_y v = 0,             |v| = 1                     (folds)
     H(y, lam; mu) = 0,   H_y v = i omega v,     c* v = 1,   v complex       (Hopf points)
     H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
 
-These are regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J. Numer. Anal. 3
-(1983)). Dual numbers give derivatives along v. If the system has one curve in a tube, its projection on (y, lam, omega,
-mu) is the traced curve.
+These are plain arithmetic, and regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J.
+Numer. Anal. 3 (1983)). Dual numbers give derivatives along v. One curve in a tube has the traced curve as its
+projection.
 """
 
 from __future__ import annotations
@@ -30,8 +28,7 @@ DECIMALS = 6
 class WrittenOut:
     """The system, a homotopy in mu; its unknowns are the vector, in the start's extents, then the curve's.
 
-    `first`: a curve point (last entry mu). `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents,
-    since some unknowns may not change.
+    `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents, since unknowns may not change.
     """
 
     condition: Any
@@ -42,10 +39,7 @@ class WrittenOut:
 
     @classmethod
     def of(cls, condition: Any, points: Array) -> WrittenOut:
-        """The system for a path with rows `points`.
-
-        For Hopf curves c is the unit vector nearest to all null vectors.
-        """
+        """The system for a path with rows `points`; c is nearest to all null vectors."""
         vectors, c = np.array([condition.null_vector(u) for u in points]), None
         if condition.beside:
             c = np.linalg.svd(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))[2][0]
@@ -64,7 +58,7 @@ class WrittenOut:
         return u[:-1], float(u[-1])
 
     def lifted(self, u: Array, before: Array | None) -> Array:
-        """A curve point with its vector in front, signed as in `before`, a lifted point nearby."""
+        """A curve point with its vector in front; `before` decides the sign."""
         v = self.condition.null_vector(u)
         if self.c is not None:
             v = v / np.vdot(self.c, v)
@@ -74,10 +68,7 @@ class WrittenOut:
         return np.concatenate([v, u])
 
     def residual(self, y: Any, lam: Any) -> Any:
-        """The equations, for arrays of any kind.
-
-        `y`: the vector, then the curve's unknowns. `lam`: the second parameter, mu.
-        """
+        """The equations, for arrays of any kind."""
         calculus = self.condition.calculus
         extent, mu = calculus.extent, np.stack([lam])
 

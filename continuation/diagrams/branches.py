@@ -25,7 +25,7 @@ LABELS = {
     Kind.HOPF: "HB",
     Kind.KINK: "KP",
 }
-"""Labels as in AUTO (limit point, branch point, Hopf bifurcation), with numbers; KP is a kink."""
+"""As in AUTO (limit point, branch point, Hopf bifurcation); KP is a kink."""
 
 
 @frozen(eq=False)
@@ -159,7 +159,7 @@ class Diagram:
 
 
 def from_point(event: LocatedEvent, ray: Array, path: Path, weights: Array) -> Path:
-    """Extend a path to the branch point beside which it starts; `ray` is its direction there, `weights` the metric."""
+    """Extend a path to the branch point beside which it starts, along `ray`."""
     first = path.steps[0]
     chord = first.u - event.u
     length = norm(weights, chord)

@@ -1,4 +1,4 @@
-"""Deflation: Newton's method finds new solutions after known ones are divided out."""
+"""Deflation: known solutions are divided out."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
-"""Largest ratio of Newton increments of H and M H; beyond it half of the digits cancel."""
+"""Largest ratio of Newton increments of H and M H: half of the digits cancel."""
 
 SAME_SOLUTION_DISTANCE = 1e-6
-"""Closer solutions are one: double solutions are found to the square root of round-off."""
+"""Relative; double solutions are found to the square root of round-off."""
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:

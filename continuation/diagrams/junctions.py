@@ -1,4 +1,4 @@
-"""Junctions of branches, and which of their rays were followed."""
+"""Junctions of branches."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from continuation.status import Kind
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
 
 RAY_COSINE = 0.99
-"""Least cosine between a ray and the branch along it; of rays within eight degrees the nearest is taken."""
+"""Cosine between a ray and a branch along it; of rays within eight degrees the nearest is taken."""
 
 STRAIGHT_ON = -1.0 + 1e-3
-"""Largest cosine between two rays of one smooth branch; rays of multiple branch points are extrapolated."""
+"""Cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
 
 
 @define(eq=False)
 class Junction:
     """A point where branches meet.
 
-    `rays`, (k, N + 1): directions away from it, the first two those of the path that found it; `starts`: for the other
-    rays; `used`: rays already followed; `weights`: the metric. `label`: empty until a finished branch contains it;
-    `number`: order of labels; `generation`: of that branch. `failed`: why its rays are unknown.
+    `rays`, (k, N + 1): directions away from it, two of them of the path that found it; `starts`: for the others;
+    `used`: those followed. `label`: empty until a finished branch contains it; `number`, `generation`: of the label and
+    branch. `failed`: why rays are unknown.
     """
 
     event: LocatedEvent
@@ -71,7 +71,7 @@ class Junction:
         return [k for k in range(2, 2 + len(self.starts)) if k not in self.used]
 
     def opposite(self, ray: int) -> int | None:
-        """The ray opposite to `ray` on one smooth branch; None at kinks, or if there is none."""
+        """The ray that makes one smooth branch with `ray`, or None."""
         if self.event.kind == Kind.KINK:
             return None
         along = self._cosines(self.rays[ray])
@@ -80,7 +80,7 @@ class Junction:
 
 
 def meetings(path: Path) -> list[LocatedEvent]:
-    """The path's events where other branches may leave."""
+    """The path's events where branches may leave."""
     several = (event for event in path.events if event.kind in MEETING)
     return [e for e in several if e.kind != Kind.KINK or (e.rays is not None and len(e.rays) > 2)]
 

@@ -1,4 +1,4 @@
-"""An index of points, searched by one number, then in each point's metric."""
+"""An index of points."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.metric import norm
 from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
-"""Distance, in extents of the path, between locations of one point; they are polished to 1e-10."""
+"""Distance between locations of one point, in extents of the path; they are polished to 1e-10."""
 
 Item = TypeVar("Item")
 
@@ -22,8 +22,8 @@ Item = TypeVar("Item")
 class PointIndex(Generic[Item]):
     """Items at points, each with its metric.
 
-    Items are sorted by a . u with a generic vector a. Cauchy-Schwarz bounds differences of that number by |a / w^(1/2)|
-    times the distance in the metric w, so bisection finds candidates.
+    Items are sorted by a . u with a generic vector a; Cauchy-Schwarz bounds it by the distance, so bisection finds
+    candidates.
     """
 
     _axis: Array = field(factory=lambda: np.empty(0))

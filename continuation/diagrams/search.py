@@ -1,4 +1,4 @@
-"""`diagram`: a breadth-first search for connected branches."""
+"""`diagram`: a breadth-first search."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.D
 """Final states of complete branches."""
 
 LEAVES = 0.1
-"""Distance of deflation guesses from known solutions, relative to the solutions' spread."""
+"""Distance of guesses from known solutions, relative to their spread."""
 
 PATHS_AHEAD = 64
-"""Paths submitted in advance: enough for as many processes, with bounded memory."""
+"""Paths submitted in advance, which bounds memory."""
 
 
 @frozen(eq=False)
@@ -126,7 +126,7 @@ class BranchSearch:
         self._add(kept, junction.label, junction.generation + 1, held=True)
 
     def _begin(self, start: Any) -> None:
-        """Trace a start both ways, then everything connected, unless a known branch contains it."""
+        """Trace a start both ways and everything connected, unless known."""
         u = np.append(*self.homotopy.start()) if start is None else guessed(start)
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
@@ -146,7 +146,7 @@ class BranchSearch:
         return is_inside(self.options.get("box"), Labels.of(self.homotopy), u)
 
     def _known(self, u: Array) -> bool:
-        """Whether a branch contains the point: Newton's method reaches it from an interpolated one."""
+        """Whether Newton's method from a branch reaches the point."""
         known = self._solutions(float(u[-1]))
         (y,) = self._polished(float(u[-1]), [u[:-1]])
         return any(same_solution(y, other) for other in known)
@@ -155,7 +155,7 @@ class BranchSearch:
         return self._polished(lam, list(Diagram(self.branches).at(lam)))
 
     def _polished(self, lam: float, guesses: list[Array]) -> list[Array]:
-        """Solve from each guess; keep a guess if Newton's method fails, as beside a fold."""
+        """Solve from each guess; keep it if Newton's method fails, as beside a fold."""
         found = []
         for guess in guesses:
             try:
@@ -165,7 +165,7 @@ class BranchSearch:
         return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
-        """Paths of tasks in order; None if another path has used the ray."""
+        """Paths of tasks in order; None if the ray is used."""
         ready: deque[Future[Path] | None] = deque()
         following = iter(tasks if self.executor is not None else ())
         try:
@@ -191,7 +191,7 @@ class BranchSearch:
         return self.homotopy, task.start, task.direction, self.options, task.weights
 
     def _meet(self, path: Path) -> None:
-        """Register a path's junctions, and mark its rays as used."""
+        """Mark junctions and rays of a path."""
         if not len(path):
             self.missing.append(path.message)
         for event in meetings(path):
@@ -209,7 +209,7 @@ class BranchSearch:
         return junction
 
     def _add(self, path: Path, origin: str, generation: int, held: bool = False) -> None:
-        """Add a finished branch, label its junctions, and write it unless `held` in the archive."""
+        """Label the junctions of a finished branch, and write it unless `held`."""
         if path.status not in WHOLE:
             self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
         for event in meetings(path):
@@ -227,7 +227,6 @@ class BranchSearch:
         self.branches.append(Branch(path, origin, generation))
 
     def _spread(self) -> None:
-        """Follow one generation after another until no ray is open."""
         while True:
             labelled = sorted((j for j in self.junctions if j.label), key=lambda j: j.number)
             rays = [(j, ray) for j in labelled for ray in j.open() if self._inside(j.starts[ray - 2][0])]
@@ -243,7 +242,7 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """Trace one generation and combine its paths into branches."""
+        """Trace one generation."""
         paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
         waiting = {(j.number, ray) for j, ray in rays}
         tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]
@@ -265,7 +264,7 @@ class BranchSearch:
     def _put_together(
         self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
     ) -> None:
-        """Make branches from paths along both rays, in ray order."""
+        """Make branches from paths along both rays."""
         while paths:
             number, ray = next(iter(paths))
             junction = paths[number, ray][0]
@@ -280,6 +279,6 @@ class BranchSearch:
 
 
 def _through(behind: Path, ahead: Path) -> Path:
-    """Join two paths from one point; the status is that of an incomplete end, if any."""
+    """Join two paths; keep the status of an incomplete end."""
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)

@@ -1,6 +1,6 @@
 """Block elimination for [[A, P], [R, S]], with k border columns and rows, by factors of A.
 
-With W = A^-1 P the Schur complement is S - R W and the determinant det A det(S - R W).
+W = A^-1 P gives the Schur complement S - R W and the determinant det A det(S - R W).
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from continuation.linear.system import BorderedSystem
 
 @frozen(eq=False)
 class Elimination:
-    """Factors of [[A, P], [R, S]]: `first` solves with A, `small` with `schur`, (k, k), of determinant sign `sign`.
+    """Factors of [[A, P], [R, S]]; `first` solves with A, `small` with the Schur complement.
 
-    W = A^-1 P, shape (n, k); R, shape (k, n).
+    W = A^-1 P, (n, k); R, (k, n); `sign`: of det `schur`.
     """
 
     first: Callable[[Array], Array]
@@ -45,7 +45,10 @@ class Elimination:
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
-    """Border A by columns, given as W = A^-1 P, and rows [R, S], (k, n + k); `SingularError` if k > 1 and singular."""
+    """Border A by columns, given as W = A^-1 P, and rows [R, S], (k, n + k).
+
+    Raises `SingularError` if k > 1 and the whole is singular.
+    """
     R, S = np.split(rows, [len(W)], axis=1)
     schur = S - R @ W
     if len(schur) == 1:
@@ -69,7 +72,7 @@ class BlockElimination:
         return self.factor.sign * self.elimination.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,); inaccurate ones are replaced by factoring the whole."""
+        """The solution z, shape (N + 1,); if inaccurate, by factoring the whole."""
         z, accurate = refined(self.bordered, self.elimination.solve, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 

@@ -15,12 +15,12 @@ METHODS = ("auto", SuperLUMethod.name, "cholmod")
 """Names."""
 
 CHOLMOD_FROM = 1000
-"""Least order for CHOLMOD: on five-point Laplacians it takes half of SuperLU's time from n = 2,000 on, a third at 1e5;
-below 400 SuperLU is quicker."""
+"""Least order for CHOLMOD: on five-point Laplacians it halves SuperLU's time from n = 2,000 on; below 400 SuperLU is
+quicker."""
 
 
 def check_method(argument: str, name: object) -> str:
-    """The name of a method, or "auto"; ValueError if unknown, ImportError if not installed, both with `argument`."""
+    """The method's name, checked; ValueError if unknown, ImportError if not installed."""
     if not isinstance(name, str) or name not in METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
         raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")

@@ -18,15 +18,14 @@ from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
-"""Ratio of null vectors to border above which they replace it: the angle is 84 degrees, and a digit is lost."""
+"""Ratio of null vectors to border above which they replace it; the angle is 84 degrees, and a digit is lost."""
 
 REFRESHED = 4
-"""Limit of attempts; reached if the angle is round-off, or two ranks are lost."""
+"""Limit of attempts: more fail if two ranks are lost."""
 
 BORDER_SIZE = 1e-8
-"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors
-(Laplacian of two species, 2000 unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost
-half of the digits."""
+"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors (2000
+unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost half of the digits."""
 
 
 @frozen(eq=False)
@@ -74,7 +73,7 @@ class Bordered:
         return np.asarray(x.reshape(rhs.shape))
 
     def _sparse(self, rhs: Array, adjoint: bool) -> Array:
-        """Solve with one correction, since small rows are weak pivots."""
+        """Correct once, since small rows are weak pivots."""
         how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
         rhs = rhs if adjoint else rhs * self.scale
         x: Array = self.lu.solve(rhs, how)
@@ -110,7 +109,7 @@ class NearlySingular:
 def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
     """Border a matrix, (n, n), by unit vectors b and c, or, if nearly orthogonal to its null vectors, by these.
 
-    No state passes between matrices, so resumed paths are the same. Raises `SingularError` if several ranks are lost.
+    Matrices share no state, so resumed paths are the same. Raises `SingularError` if several ranks are lost.
     """
     unit = np.zeros(len(b) + 1)
     unit[-1] = 1.0

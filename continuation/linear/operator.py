@@ -15,7 +15,7 @@ from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
 
 LARGEST_RESIDUAL = 1e-4
-"""Relative to the right-hand side; that of a condition number of 1e12."""
+"""Relative to the right-hand side; that of condition number 1e12."""
 
 RESTART = 100
 CYCLES = 20
@@ -103,7 +103,7 @@ class Krylov:
 
 
 def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
-    """Prepare GMRES, with scaled border; `SingularError` if a product is not finite or the border is zero."""
+    """Prepare GMRES; `SingularError` if a product is not finite or the border is zero."""
     n, length = len(column), float(np.linalg.norm(row))
     if length == 0:
         raise SingularError("The bordered operator is singular: the border is zero.")

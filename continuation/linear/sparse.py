@@ -23,10 +23,9 @@ def canonical(matrix: Matrix) -> Matrix:
 
 
 def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
-    """Factor the bordered matrix as one sparse matrix with scaled rows; `SingularError` if singular or not finite.
+    """Factor the bordered matrix as one sparse matrix; `SingularError` if singular or not finite.
 
-    The dense border row doubles fill and time (five-point Laplacian, m = 100), ten times in bad units: elimination
-    comes first.
+    The dense border row doubles fill and time (five-point Laplacian, m = 100), so elimination comes first.
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     n = len(column)

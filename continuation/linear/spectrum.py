@@ -27,29 +27,29 @@ OFF_AXIS = 1e-10
 """Least real part of an unstable eigenvalue, relative to the largest known modulus; events are located to that."""
 
 SHIFT = 0.517
-"""Fraction of the bound on real parts: amid unstable eigenvalues, and no round number."""
+"""Fraction of the bound on real parts, and no round number."""
 
 LEAST_SHIFT = 1e-6
 """Relative to the diagonal; a singular matrix needs a shift."""
 
 SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
-"""Relative errors of real parts: SURE tells the side, DIGITS holds for the rightmost and the one nearest to the axis.
-LAST_DIGITS, relative to the eigenvalue, suffices near the axis for events located to 1e-10."""
+"""Relative errors of real parts: SURE tells the side, DIGITS holds for the rightmost and the one nearest to the axis;
+LAST_DIGITS of the eigenvalue suffices, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
-"""Krylov dimensions per wanted eigenvalue and one more, at most (30 in all are usual for six), and steps between tests,
-each as costly as ten solves."""
+"""Krylov dimensions per wanted eigenvalue and one more, at most, and steps between tests, each as costly as ten
+solves."""
 
 LOST_DIRECTION = 1e-14
-"""A vector reduced to this by orthogonalisation has no direction of its own."""
+"""A vector reduced to this by orthogonalisation has no direction."""
 
 
 @frozen(eq=False)
 class Spectrum:
     """Known eigenvalues of a matrix.
 
-    `values`: the rightmost first; empty if only signs are known. `unstable`: number of positive real parts, complete if
-    `covered`. `solves`: in Arnoldi's method.
+    `values`: the rightmost first, empty if only signs are known. `unstable`: number of positive real parts, complete if
+    `covered`.
     """
 
     values: np.ndarray[Any, np.dtype[np.complex128]]
@@ -79,7 +79,7 @@ class Spectrum:
 
     @property
     def critical(self) -> bool:
-        """Whether an eigenvalue is on the axis, to half of the digits: round-off decides the count."""
+        """Whether an eigenvalue is on the axis to half of the digits."""
         return bool((np.abs(self.values.real) <= np.sqrt(OFF_AXIS) * self.size).any())
 
 
@@ -115,7 +115,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
 
 
 def nearest_zero(matrix: Matrix, k: int) -> Any:
-    """All eigenvalues of a small matrix, or the k nearest to zero to four digits, or `ArithmeticError`."""
+    """All eigenvalues of a small matrix, or the k nearest to zero to four digits."""
     n = matrix.shape[0]
     if n <= ALL_OF_DENSE:
         return _all(matrix)
@@ -157,7 +157,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     """The k eigenvalues nearest to a shift amid possible unstable ones."""
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
-    # If all are stable, the shift is comparable to oscillations, and no eigenvalue.
+    # If all are stable, the shift is comparable to oscillations.
     shift = SHIFT * max(real, 0.1 * imaginary, LEAST_SHIFT * float(np.abs(matrix.diagonal()).max()))
     inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
     wanted, solves = min(k, n), 0
@@ -187,7 +187,7 @@ def dominant(
 ) -> tuple[Any, int]:
     """The k eigenvalues of largest modulus, by Arnoldi's method, and the number of applications.
 
-    `known(theta, error)`: whether they are accurate. `start`: shape (N,). Raises `ArithmeticError` otherwise.
+    `known(theta, error)`: whether they are accurate. Raises `ArithmeticError` if not.
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))

@@ -1,8 +1,8 @@
 """BLAS on one thread while a path is traced or an LCP is solved.
 
-numpy and scipy each have an OpenBLAS pool, whose threads spin after a call on cores that the other needs. Two threads
-take 1.0 to 6 times as long as one on two idle cores (`lcp.solve`, positive definite, n = 50 to 4,000; dense paths, n =
-50 to 2,400), up to 400 times on busy ones. OPENBLAS_NUM_THREADS or OMP_NUM_THREADS override this.
+numpy and scipy each have an OpenBLAS pool, whose threads spin after a call on cores that the other needs: two threads
+take 1.0 to 6 times as long as one on two idle cores (n = 50 to 4,000), up to 400 times on busy ones.
+OPENBLAS_NUM_THREADS or OMP_NUM_THREADS override this.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SYMBOLS = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", 
 
 @cache
 def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
-    """Getter and setter of each OpenBLAS's thread count; none for another BLAS or a user's choice."""
+    """Getter and setter of each OpenBLAS's thread count; none if the user has chosen."""
     found = []
     if not any(name in os.environ for name in CHOSEN):
         for module in (_umath_linalg, _fblas):
@@ -37,7 +37,7 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
 
 
 class _OneThread(ContextDecorator):
-    """BLAS uses one thread within; the last to leave restores the process's counts. It costs 2 us."""
+    """BLAS uses one thread within; the last to leave restores the process's counts (2 us)."""
 
     def __init__(self) -> None:
         self._lock = Lock()

@@ -1,8 +1,7 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d.
 
-`TaylorAlgebra` keeps one direction to high order, `Gradient` many directions to first order; `Beside` adds one
-direction to either. Coefficients lie along the leading axis, so linear operations are shared. Products differ, and with
-them f(c_0 + d) = sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
+Coefficients lie along the leading axis, so algebras share linear operations. They differ in products, and in f(c_0 + d)
+= sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
 """
 
 from __future__ import annotations
@@ -25,15 +24,15 @@ class Algebra(Protocol):
     """Operations on coefficients."""
 
     def degrees(self, length: int) -> list[int]:
-        """The power of d of each of `length` coefficients."""
+        """Each coefficient's power of d."""
         ...
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-        """A bilinear product of two non-constants; `product` broadcasts over the leading axis."""
+        """A bilinear product of two non-constants."""
         ...
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The sum of f_k d^k, where a = c_0 + d is not constant; f may have more terms than needed."""
+        """The sum of f_k d^k, where a = c_0 + d is not constant."""
         ...
 
 
@@ -55,7 +54,7 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The sum; d**k begins at s**k."""
+        """The sum of f_k d^k; d**k begins at s**k."""
         power = d = a[1:]
         out = f[1] * d
         for k in range(2, len(a)):
@@ -70,7 +69,7 @@ class Gradient:
     """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions."""
 
     def degrees(self, length: int) -> list[int]:
-        """Zero for the first coefficient, one for the others."""
+        """0, 1, 1, ..."""
         return [0] + [1] * (length - 1)
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
@@ -86,10 +85,7 @@ class Gradient:
 
 @frozen
 class Beside:
-    """x + y s with s^2 = 0 and x, y of the inner algebra: its derivatives along one direction.
-
-    Coefficients: all of x, then all of y.
-    """
+    """x + y s with s^2 = 0 and x, y of the inner algebra. Coefficients: all of x, then all of y."""
 
     inner: Algebra
 
@@ -105,7 +101,7 @@ class Beside:
         return joined(product(self.inner, multiply, x, v), slope)
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The chain rule: f(x) and f'(x) y."""
+        """f(x) and f'(x) y."""
         x, y = _halves(a)
         slopes = [f[1], *(float(k) * f[k] for k in range(2, len(f)))]
         return joined(_at(self.inner, f, x), product(self.inner, operator.mul, _at(self.inner, slopes, x), y))
@@ -135,7 +131,7 @@ def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: 
 
 
 def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
-    """Quotient a / b, b = b_0 + d: iterate q = (a - d q) / b_0 until powers of d vanish."""
+    """The quotient, by q = (a - d q) / b_0 with b = b_0 + d, iterated until powers of d vanish."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
     if len(b) == 1:
@@ -150,7 +146,7 @@ def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
-    """Apply a function of one argument, given by its rule on Taylor series."""
+    """Apply a function of one argument, given by its rule."""
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
@@ -162,7 +158,7 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
 
 
 def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
-    """Taylor coefficients over a box; all are nan where the function is undefined."""
+    """Taylor coefficients over a box; nan where the function is undefined."""
     f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
     told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
     return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]

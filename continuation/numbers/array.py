@@ -15,7 +15,7 @@ from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
 class Entries:
-    """Array methods. Scalars are no sequences, so np.array([y[0], ...]) stores them as entries."""
+    """Array methods; scalars are no sequences, so np.array([y[0], ...]) stores them as entries."""
 
     __slots__ = ()
 
@@ -60,7 +60,6 @@ class Entries:
 
 
 def _own_last(x: Array, own: int) -> Array:
-    """Move the first `own` axes to the end."""
     return x.transpose(*range(own, x.ndim), *range(own))
 
 
@@ -69,7 +68,7 @@ def _own_first(x: Array, own: int) -> Array:
 
 
 def _behind(key: Any, own: int) -> tuple[Any, ...]:
-    """Extend an index so that it keeps the last `own` axes."""
+    """An index that keeps the last `own` axes."""
     key = key if isinstance(key, tuple) else (key,)
     if not any(part is Ellipsis for part in key):
         key = (*key, Ellipsis)
@@ -146,7 +145,7 @@ class Interval(Truncated):
 
     @property
     def lo(self) -> Array:
-        """Lower ends; with several boxes the first axis counts them."""
+        """Lower ends; the first axis counts boxes if there are several."""
         return self._values(self.c.lo)
 
     @property

@@ -1,4 +1,4 @@
-"""Ranges of functions and of their derivatives over boxes."""
+"""Ranges of functions and derivatives over boxes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def with_gradient(lo: Array, hi: Array) -> Any:
 
 
 def along_curve(value: Ends, first: Ends, half_second: Ends) -> Any:
-    """A curve over parameter intervals: value, derivative and half the second one, each (boxes, m)."""
+    """A curve over parameter intervals, from value, derivative and half the second one, each (boxes, m)."""
     parts = value, first, half_second
     return wrap(Ends(np.stack([x.lo for x in parts]), np.stack([x.hi for x in parts])), TAYLOR)
 

@@ -15,7 +15,7 @@ from continuation.numbers.array import Jet
 from continuation.numbers.truncated import Truncated, alike, common, wrap
 
 BLOCK = 128
-"""Jacobian columns per function call; more only cost memory."""
+"""Jacobian columns per call; more only cost memory."""
 
 
 def variable(x0: Any, direction: Any, order: int) -> Jet:
@@ -163,7 +163,7 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
 
 
 def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
-    """The last coefficients of f along the unit vectors, block by block."""
+    """The last coefficients of f along unit vectors."""
     columns = []
     for begin in range(0, m, BLOCK):
         directions = np.eye(min(BLOCK, m - begin), m, begin)

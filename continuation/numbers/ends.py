@@ -1,7 +1,7 @@
-"""Lower and upper ends of intervals, with arithmetic rounded outward.
+"""Intervals as lower and upper ends, with arithmetic rounded outward.
 
-An end is nan if the operation is undefined on part of the interval. nan survives every later operation and no
-comparison with nan holds, so it proves nothing.
+An end is nan if the operation is undefined on part of the interval. nan survives later operations, and no comparison
+with it holds.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ Mask = NDArray[np.bool_]
 EPS = 2.0**-52
 
 TINIEST = 2.0**-1074
-"""The smallest positive number bounds the underflow of one operation."""
+"""The smallest positive number bounds the underflow of an operation."""
 
 
 def down(x: Array) -> Array:
-    """The next lower number; it lies below every real number that rounds to x."""
+    """The next lower number."""
     return np.nextafter(x, -np.inf)
 
 
@@ -35,16 +35,15 @@ def up(x: Array) -> Array:
 
 
 def up_sum(x: Array) -> Array:
-    """A number above every real sum that rounds to x, by at most two ulps; x itself if zero.
+    """A number above every real sum that rounds to x, by at most two ulps; x if zero.
 
-    EPS |x| is at least the distance to the next number, even if it is subnormal. Sums that are zero or subnormal are
-    exact. `nextafter` takes several times as long.
+    EPS |x| is at least the distance to the next number. Sums that are zero or subnormal are exact. `nextafter` takes
+    several times as long.
     """
     return x + EPS * np.abs(x)
 
 
 def _outward(x: Array, out: Array) -> Array:
-    """The outward correction of a product."""
     np.multiply(np.abs(x, out=out), EPS, out=out)
     return np.add(out, TINIEST, out=out)
 
@@ -98,7 +97,7 @@ class Ends:
         return as_ends(other) - self
 
     def __mul__(self, other: Ends | float) -> Ends:
-        """The product; of an array with itself the square, which is not negative."""
+        """The product; the square, which is not negative, if other is self."""
         return whole_power(self, 2) if other is self else self._times(as_ends(other))
 
     __rmul__ = __mul__
@@ -142,7 +141,7 @@ class Ends:
         return 0.5 * self.lo + 0.5 * self.hi
 
     def radius(self, middle: Array) -> Array:
-        """A bound of the distance from `middle` to any number of the interval."""
+        """A bound of the distance of numbers inside from `middle`."""
         return np.maximum(up_sum(self.hi - middle), up_sum(middle - self.lo))
 
     def magnitude(self) -> Array:
@@ -165,7 +164,7 @@ Coefficients = TypeVar("Coefficients", Array, Ends)
 
 
 def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
-    """Apply `move` to numbers or to both ends; ends that share an array stay shared."""
+    """Apply `move` to numbers or to both ends; shared ends stay shared."""
     if not isinstance(arrays[0], Ends):
         return move(*arrays)
     lo = move(*(x.lo for x in arrays))
@@ -173,7 +172,7 @@ def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
 
 
 def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coefficients:
-    """Sums of up to `count` entries; for intervals, enclosures whatever order `add` uses."""
+    """Sums of up to `count` entries, enclosed whatever order `add` uses."""
     if not isinstance(x, Ends):
         return np.asarray(add(x))
     if count <= 1:
@@ -211,27 +210,18 @@ def _nonnegative_power(u: Ends, n: int) -> Ends:
 
 
 def accumulated(count: float) -> float:
-    """Relative error of a sum of `count` products in any order, against the sum of their sizes.
+    """Relative error of a sum of `count` products, against the sum of their sizes.
 
     gamma_n = n u / (1 - n u) of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged
-    for the rounding of the bound.
+    for rounding of the bound.
     """
     return float((2.0 * count + 8.0) * EPS)
 
 
 def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float | None = None) -> Ends:
-    """The range of sums of products (`matmul`, `einsum`), by middles and radii.
+    """The range of sums of products (`matmul`, `einsum`), by middles and radii (Rump, BIT 39 (1999) 534-554).
 
-    Rump, BIT 39 (1999) 534-554: four matrix products, no change of rounding mode.
-
-    Parameters
-    ----------
-    product : callable
-        Bilinear; its entries are sums of products with errors below `accumulated`.
-    a : Ends or sparse matrix
-    b : Ends
-    count : float, optional
-        Products per sum, if a is sparse.
+    `product` is bilinear, with errors below `accumulated`. `count`: products per sum, if a is sparse.
     """
     # Radii cost most for large matrices; thin intervals have none.
     (ma, ra), (mb, rb) = _middle_and_radius(a), _middle_and_radius(b)
@@ -254,7 +244,7 @@ def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float
 
 
 def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
-    """Middles and radii; numbers have the radius None."""
+    """Middles and radii; None for numbers."""
     if not isinstance(x, Ends) or x.lo is x.hi:
         return getattr(x, "lo", x), None
     middle = x.middle()

@@ -1,4 +1,4 @@
-"""Rules of numpy functions (not ufuncs) for arrays of series."""
+"""Rules of numpy functions for arrays of series."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
 
 
 def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
-    """Contract two operands at a time; sum over labels as soon as possible."""
+    """Contract two operands at a time; sum as soon as possible."""
     like = next(x for x in map(gather, operands) if isinstance(x, Truncated))
     if not isinstance(subscripts, str):
         raise like.unknown("numpy.einsum without subscripts")
@@ -174,7 +174,7 @@ def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
 
 
 def _moved(function: Any) -> Callable[..., Any]:
-    """The rule of a function that only selects entries or zeros: apply it to entry numbers."""
+    """A rule for functions that only select entries or zeros: apply them to entry numbers."""
 
     def rule(a: Any, *args: Any, **keywords: Any) -> Any:
         a = gather(a)

@@ -1,6 +1,6 @@
-"""Ranges of elementary functions over intervals; `continuation.numbers.series` derives those of their derivatives.
+"""Ranges of elementary functions over intervals.
 
-NumPy's functions are not correctly rounded: errors of at most 4 ulps are assumed, and ranges are widened by 8.
+Errors of NumPy's functions are assumed to be at most 4 ulps, and ranges are widened by 8.
 `tests/continuation/intervals` compares with 200 digits.
 """
 
@@ -16,13 +16,13 @@ from continuation.numbers.ends import EPS, Ends, Mask, absolute, down, up
 LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
-"""In radians; circular functions of larger arguments have the range [-1, 1]."""
+"""In radians; larger arguments have the range [-1, 1]."""
 
 Function = Callable[[Ends], Ends]
 
 
 def near(x: float) -> Ends:
-    """An interval around a real number that rounds to x or a neighbour of x."""
+    """An interval around a number that rounds to x or a neighbour."""
     return Ends(down(np.asarray(x)), up(np.asarray(x)))
 
 
@@ -36,7 +36,7 @@ def widened(lo: Array, hi: Array) -> Ends:
 
 
 def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
-    """The range of a monotone function with values in [least, most]."""
+    """The range of a monotone function, clipped to [least, most]."""
 
     def rule(u: Ends) -> Ends:
         one, other = f(u.lo), f(u.hi)
@@ -47,7 +47,7 @@ def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float =
 
 
 def sqrt(u: Ends) -> Ends:
-    """The square root is correctly rounded (IEEE 754)."""
+    """The range; IEEE 754 rounds correctly."""
     return Ends(np.maximum(down(np.sqrt(u.lo)), 0.0), up(np.sqrt(u.hi)))
 
 

@@ -1,9 +1,8 @@
 """Truncated power series of elementary functions, by recurrences from their differential equations.
 
-A series is an array of shape (L, *shape), s**0 first; a constant has L = 1. Over intervals it is a list: the argument
-is x + s, with coefficients (x, 1, 0, ...); exact zeros and ones stay numbers; the results are ranges of derivatives
-over k!. Recurrences: Griewank & Walther, "Evaluating Derivatives" (2nd ed., 2008), ch. 13; Neidinger, SIAM Review 52
-(2010) 545-563.
+A series is an array, (L, *shape), s**0 first; a constant has L = 1. Over intervals it is a list of intervals and exact
+zeros and ones: of x + s, whose results are ranges of derivatives over k!. Recurrences: Griewank & Walther, "Evaluating
+Derivatives" (2nd ed., 2008), ch. 13; Neidinger, SIAM Review 52 (2010) 545-563.
 """
 
 from __future__ import annotations
@@ -28,17 +27,17 @@ Rule: TypeAlias = Callable[[PowerSeries], PowerSeries]
 
 
 class JetDomainError(ArithmeticError):
-    """A function has no series at a point: sqrt(0), log(0), abs(0), 1/0."""
+    """A function has no series at a point, as sqrt(0), log(0), abs(0), 1/0."""
 
 
 def demand(fine: Any, operation: str, need: str) -> None:
-    """Raise JetDomainError, naming the operation, unless `fine` holds everywhere."""
+    """Raise JetDomainError unless `fine` holds everywhere."""
     if not np.all(fine):
         raise JetDomainError(f"{operation} has no Taylor series here: {need}")
 
 
 def _demand(u: PowerSeries, fine: Callable[[Array], Any], operation: str, need: str) -> None:
-    """`demand` for a leading coefficient; intervals become nan instead."""
+    """`demand` for a leading coefficient; intervals become nan."""
     if not isinstance(u, list):
         demand(fine(u[0]), operation, f"its argument's leading coefficient must {need}")
 
@@ -59,7 +58,7 @@ def of(function: np.ufunc, x: Any) -> Any:
 
 
 def multiply(a: PowerSeries, b: PowerSeries) -> PowerSeries:
-    """Cauchy product of series of one length: a contraction with a Toeplitz view of b."""
+    """Cauchy product: a contraction with a Toeplitz view of b."""
     if isinstance(a, list):
         return [_dot(a[: k + 1], b[k::-1]) for k in range(len(a))]
     length = len(b)
@@ -108,7 +107,7 @@ def _tail(p: PowerSeries, q: PowerSeries, k: int) -> Any:
 
 
 def _over(a: Any, b: Any) -> Any:
-    """Quotient a / b; 0 / b is 0, and a / 2 is the cheaper a * 0.5."""
+    """Quotient; 0 / b is 0, and a / 2 is the cheaper a * 0.5."""
     if type(a) is float and a == 0.0:
         return a
     return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
@@ -130,7 +129,7 @@ def _orders(u: Array) -> Array:
 
 
 def _weighted(u: PowerSeries) -> PowerSeries:
-    """The coefficients k u_k of s u'(s)."""
+    """The coefficients k u_k."""
     return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
 
 
@@ -141,7 +140,7 @@ def _scaled(u: PowerSeries, factor: Any) -> PowerSeries:
 
 
 def _known(u: PowerSeries, constant: Ends) -> Any:
-    """The constant: an interval for intervals, else a number."""
+    """The constant as an interval or a number."""
     return constant if isinstance(u, list) else float(constant.middle())
 
 
@@ -158,7 +157,7 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
 
 
 def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
-    """Solve v' = rate v u'; `first` computes the value if the function is shifted by a constant."""
+    """Solve v' = rate v u'; `first` gives the value, shifted by a constant."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = of(function, u[0])
     for k in range(1, len(u)):
@@ -194,7 +193,7 @@ def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) ->
 
 
 def _circle(u: PowerSeries, sign: int) -> PowerSeries:
-    """The factored sign (1 - u**2), so that nothing cancels near its zeros."""
+    """The factored sign (1 - u**2) avoids cancellation."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
@@ -212,7 +211,7 @@ BY_SLOPE: dict[np.ufunc, Inverse] = {
     np.arccosh: (lambda u: sqrt(_circle(u, -1)), lambda x: x <= 1, "be above 1"),
     np.arctanh: (lambda u: _circle(u, 1), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
 }
-"""Functions with derivative 1 / D(u): D, where they are undefined, and the requirement on the argument."""
+"""Functions with derivative 1 / D(u): D, where undefined, and what the argument must do."""
 
 
 def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
@@ -248,7 +247,7 @@ def cbrt(u: PowerSeries) -> PowerSeries:
 
 
 def absolute(u: PowerSeries) -> PowerSeries:
-    """|u|; an interval around zero has the slopes of both branches, and nan as higher derivatives."""
+    """|u|; an interval around zero has both slopes, and nan as higher derivatives."""
     _demand(u, lambda x: x != 0, "numpy.absolute", "not be 0")
     if not isinstance(u, list):
         return np.asarray(np.sign(u[0]) * u)
@@ -270,7 +269,7 @@ def reciprocal(u: PowerSeries) -> PowerSeries:
 
 
 def power(u: PowerSeries, r: float) -> PowerSeries:
-    """u**r; integer r allow a leading coefficient <= 0, negative integers not 0."""
+    """u**r; integers allow a leading coefficient <= 0, negative ones not 0."""
     if r != int(r):
         _demand(u, lambda x: ~(x <= 0), "numpy.power", "be positive for a fractional power")
         return _power(u, r, power_range(u[0], r) if isinstance(u, list) else u[0] ** r)

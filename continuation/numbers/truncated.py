@@ -1,6 +1,6 @@
-"""Arrays of truncated series of numbers (`Jet`) or intervals (`Interval`), accepted by numpy as arrays.
+"""Arrays of truncated series, accepted by numpy as arrays.
 
-Kinds differ in the coefficients `c`, an array or `Ends`, and in the algebra; everything else is shared.
+Kinds (`Jet`, `Interval`) differ in the coefficients `c`, an array or `Ends`, and in the algebra.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from continuation.numbers.ends import Ends, moved, sparse_product
 from continuation.numbers.series import ELEMENTARY
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}
-"""Rules by numpy function; the package fills it, since `functions` imports `Truncated`."""
+"""Rules by numpy function, filled by the package, since `functions` imports `Truncated`."""
 
 
 METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
@@ -29,7 +29,7 @@ METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
 
 
 class Truncated(NDArrayOperatorsMixin):
-    """An array of truncated series, which numpy treats as an array of its shape."""
+    """An array of truncated series."""
 
     __slots__ = ("algebra", "c")
 
@@ -126,13 +126,7 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap(self.c.copy(), self.algebra)
 
     def reshape(self, *shape: Any) -> Any:
-        """The entries in another shape; a view if possible.
-
-        Parameters
-        ----------
-        *shape : int
-            Or one tuple.
-        """
+        """The entries in another shape; a view if possible."""
         (shape,) = shape if len(shape) == 1 else (shape,)
         return self.moved(lambda x: x.reshape(*x.shape[: self.OWN], *np.atleast_1d(shape)))
 
@@ -145,13 +139,7 @@ class Truncated(NDArrayOperatorsMixin):
         return self.ravel().copy()
 
     def transpose(self, *axes: Any) -> Any:
-        """A view with the axes in another order, reversed by default.
-
-        Parameters
-        ----------
-        *axes : int
-            Or one tuple.
-        """
+        """A view with permuted axes, reversed by default."""
         if len(axes) == 1 and not isinstance(axes[0], int):
             (axes,) = axes
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
@@ -171,7 +159,7 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap(moved(move, self.c), self.algebra)
 
     def lifted(self, x: Any) -> Any:
-        """`x` itself, or numbers as constants of this kind; lists and object arrays are stacked."""
+        """`x` itself, or numbers as constants of this kind."""
         x = x if isinstance(x, Truncated) else gather(x, self.ONE)
         return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
 
@@ -216,7 +204,7 @@ def wrap(c: Store, algebra: Algebra) -> Any:
 
 
 def gather(x: Any, one: str = "an array of series") -> Any:
-    """`x` itself, or an array of numbers; lists and object arrays with truncated series are stacked."""
+    """`x` itself, an array of numbers, or stacked lists of truncated series."""
     if isinstance(x, Truncated):
         return x
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
@@ -245,7 +233,7 @@ def common(operands: Any) -> Algebra:
 
 
 def alike(parts: Any) -> list[Store]:
-    """Coefficients of arrays, extended to equal numbers of coefficients and boxes."""
+    """Coefficients, extended to equal numbers of coefficients and boxes."""
     length = max(len(x.c) for x in parts)
     stores = [lengthened(x.c, length) for x in parts]
     if not isinstance(stores[0], Ends):
@@ -259,7 +247,7 @@ def alike(parts: Any) -> list[Store]:
 
 
 def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
-    """Combine arrays by `join(arrays, own)`; `own` counts the axes in front of the shape."""
+    """Combine arrays by `join(arrays, own)`."""
     own = parts[0].OWN
     return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))
 

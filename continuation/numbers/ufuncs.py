@@ -20,16 +20,16 @@ Binary = Callable[[Algebra, Store, Store], Store]
 
 
 class UndecidedError(ArithmeticError):
-    """A comparison holds for some numbers of an interval but not for others, or for some boxes only."""
+    """A comparison holds for some numbers or boxes only."""
 
 
 def own_axes(c: Store) -> int:
-    """Number of axes in front of the shape: coefficients, and for intervals boxes."""
+    """Number of axes in front of the shape."""
     return 2 if isinstance(c, Ends) else 1
 
 
 def aligned(a: Store, b: Store) -> tuple[Store, Store]:
-    """Both with equally many axes behind their own, for broadcasting."""
+    """Both with equally many axes, for broadcasting."""
     if a.ndim == b.ndim:
         return a, b
     own, most = own_axes(a), max(a.ndim, b.ndim)
@@ -41,7 +41,7 @@ def aligned(a: Store, b: Store) -> tuple[Store, Store]:
 
 
 def spread(c: Store, shape: tuple[int, ...]) -> Store:
-    """A copy, broadcast to `shape` behind the leading axis."""
+    """A copy, broadcast to `shape`."""
     return (
         c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
     )
@@ -114,7 +114,7 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
         return _angle(algebra, a, b)
     size = np.hypot(a[:1], b[:1])
     series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
-    # Rotated by its leading angle, the point lies on the positive axis, where arctan is analytic.
+    # Rotation onto the positive axis, where arctan is analytic.
     sine, cosine = a[:1] / size, b[:1] / size
     along, across = _add(algebra, cosine * b, sine * a), _add(algebra, cosine * a, -sine * b)
     out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
@@ -143,7 +143,7 @@ def _extremum(name: str, sign: int) -> Binary:
 
 
 def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The maximum; undecided boxes have the slopes of both, and nan as higher derivatives."""
+    """The maximum; undecided boxes have both slopes, and nan as higher derivatives."""
     first, second = a.lo[:1] > b.hi[:1], b.lo[:1] > a.hi[:1]
     lo = np.where(first, a.lo, np.where(second, b.lo, np.minimum(a.lo, b.lo)))
     hi = np.where(first, a.hi, np.where(second, b.hi, np.maximum(a.hi, b.hi)))
@@ -171,7 +171,7 @@ def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def sums_of_products(function: Callable[[Array, Array], Array]) -> Callable[[Any, Any], Any]:
-    """A bilinear function of arrays, extended to coefficients."""
+    """Extend a bilinear function to coefficients."""
     return lambda a, b: bilinear(function, a, b) if isinstance(a, Ends) else function(a, b)
 
 
@@ -196,7 +196,7 @@ UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
     np.minimum: _extremum("numpy.minimum", -1),
     np.matmul: matmul,
 }
-"""Rules of an algebra and one or two coefficients with equally many axes (except `matmul`)."""
+"""Rules of an algebra and one or two coefficients; all but `matmul` get equally many axes."""
 
 
 # Comparisons
@@ -208,7 +208,7 @@ NEGATION |= {other: one for one, other in NEGATION.items()}
 
 
 def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
-    """Where a comparison holds for all numbers of two intervals: for all their ends."""
+    """Where a comparison holds for all ends."""
     if ufunc is np.not_equal:
         return _surely(np.less, a, b) | _surely(np.greater, a, b)
     holds: Mask = ufunc(a.lo, b.lo) & ufunc(a.lo, b.hi) & ufunc(a.hi, b.lo) & ufunc(a.hi, b.hi)
@@ -216,7 +216,7 @@ def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
 
 
 def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
-    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
+    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
     yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, NEGATION[ufunc]))
