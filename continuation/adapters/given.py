@@ -19,8 +19,7 @@ from continuation.evaluation.pattern import Pattern
 class Adapted:
     """A homotopy computed by another library; see `from_jax`, `from_casadi` and `from_sympy`.
 
-    `more`: further methods by name: jacobian, differential, taylor. `again`: a function and arguments that rebuild it,
-    for pickling.
+    `more`: further methods by name. `again`: a function and arguments that rebuild it, for pickling.
     """
 
     residual: Callable[[Any, Any], Any]

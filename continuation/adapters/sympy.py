@@ -95,8 +95,6 @@ def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
 
 
 def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
-    """A function of one number or jet, expanded by its derivatives."""
-
     @cache
     def derivative(k: int) -> Callable[[Any], Any]:
         found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k), modules=MODULES)

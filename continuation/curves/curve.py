@@ -55,17 +55,16 @@ class Curve:
     member cross or a closed one shrinks to a point. Hopf curves end at frequency zero, a Bogdanov-Takens point, and
     locate singular H_y, "zero-Hopf" points.
 
-    Elimination uses the family's own factorisation, or one of H_y with a border, and stays sparse. Second derivatives
-    come from jets (up to 128 unknowns) or two Jacobians.
+    Elimination uses the family's factorisation, or one of H_y with a border, and stays sparse. Second derivatives come
+    from jets (up to 128 unknowns) or two Jacobians.
 
     Parameters
     ----------
     family : callable
-        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Given a jet, it returns a
-        homotopy that runs on jets, or raises TypeError or ValueError.
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. For a jet its residual must
+        accept jets, or it raises TypeError or ValueError.
     event : LocatedEvent, Kind or Event
-        A point on a path of a member, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a
-        monitor.
+        A point on a member's path, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a monitor.
     at : LocatedEvent, Step or (y, lam), optional
         Approximate start; by default the event.
     mu : float, optional
@@ -78,7 +77,7 @@ class Curve:
     Raises
     ------
     TypeError, ValueError
-        If there is no start point or mu, or the event has no function.
+        If there is no start or mu, or the event has no function.
 
     References
     ----------
@@ -143,7 +142,6 @@ class Curve:
 
     @cached_property
     def _corrected(self) -> Array:
-        """The start after Newton's method."""
         beside = [self._frequency] if self.event == Kind.HOPF else []
         return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]))
 
@@ -162,13 +160,11 @@ class Curve:
 
     @cached_property
     def _signs(self) -> Array | None:
-        """Signs of the switches at the start."""
         member = self.family(self.mu)
         return np.where(member.switches(*self.at) >= 0.0, 1, -1) if isinstance(member, SupportsPieces) else None
 
     @cached_property
     def _switch(self) -> int | None:
-        """Number of the switch that vanishes."""
         return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at)))) if self.event == Kind.KINK else None
 
     def _member(self, mu: Any) -> Any:
@@ -237,7 +233,7 @@ class Curve:
         return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """The derivatives by the unknowns, dense or sparse as the family's, and by mu.
+        """Derivatives by the unknowns and by mu.
 
         Parameters
         ----------

@@ -23,11 +23,11 @@ from continuation.linear.system import Solver
 
 @frozen(eq=False, slots=False)
 class Here:
-    """Values and derivatives of a curve at a point, computed on demand.
+    """Values and derivatives of a curve at a point `u` = (y, lam), computed on demand.
 
-    `u`: (y, lam). `values`: k conditions; `gradients` makes their `rows`. `factored` makes `base`, factors of [[H_y,
-    b], [c', d]]. `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if it follows
-    from the others by the last row. `signs`: functions of the rows that change sign at degenerate points.
+    `gradients` makes the `rows` of the k conditions in `values`, `factored` the `base`, factors of [[H_y, b], [c', d]].
+    `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it by
+    the others. `signs`: functions of the rows that change sign at degenerate points.
     """
 
     calculus: Calculus
@@ -70,7 +70,6 @@ class Here:
 
     @cached_property
     def _rows(self) -> tuple[Array, Array | None]:
-        """Gradients of the conditions and of the hidden unknown."""
         rows, n = self.rows, self.u.size
         if self.hidden is None:
             return rows, None
@@ -89,7 +88,7 @@ class Here:
         return np.append(H, rows @ v)
 
     def matrices(self) -> tuple[Matrix, Array]:
-        """The derivatives by the unknowns and by mu; an operator if sparse with a hidden unknown."""
+        """Derivatives by the unknowns and by mu; an operator if sparse with a hidden unknown."""
         full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
         column = self.column
         last = np.append(self.by_parameter, rows[:, -1])

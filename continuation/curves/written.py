@@ -28,7 +28,7 @@ DECIMALS = 6
 class WrittenOut:
     """The system, a homotopy in mu; its unknowns are the vector, in the start's extents, then the curve's.
 
-    `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents, since unknowns may not change.
+    `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents.
     """
 
     condition: Any

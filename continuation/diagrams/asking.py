@@ -47,7 +47,7 @@ def diagram(
     """Trace all connected branches: from the start both ways, then from every point where others leave.
 
     A branch is a smooth curve, straight through crossings. Rays at branch points and kinks are followed breadth first,
-    each once. The result does not depend on the number of processes: of two paths that meet, the later is dropped.
+    each once. The result does not depend on the number of processes.
 
     Parameters
     ----------
@@ -60,19 +60,19 @@ def diagram(
     generations : int, optional
         Largest number of branch points between a branch and the start; 0 for the start's own branch.
     deflate : sequence of float, default ()
-        Parameter values at which deflation (`Deflated`) finally seeks disconnected solutions.
+        Parameter values at which deflation (`Deflated`) seeks disconnected solutions.
     step : float, default 1e-2
         Distance from branch points at which branches start, in the metric, as for `switch_branch`.
     stability : Stability, optional
-        Is stored with each point; its Hopf points are located.
+        Stored with each point; its Hopf points are located.
     executor : concurrent.futures.Executor, optional
-        Traces the paths of a generation in parallel.
+        Traces the paths of a generation.
     archive : path, optional
-        A new file for all branches, written as they finish.
+        A new file; branches are written as they finish.
     resume : bool, default False
         Continue the archive, if it exists, with the same arguments.
     keep : str, default "all"
-        "ends": points between ends of a branch are read from the archive on demand, to save memory.
+        "ends": points between ends of a branch are read from the archive on demand, which saves memory.
     {options}
 
     Returns

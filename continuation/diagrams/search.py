@@ -110,7 +110,7 @@ class BranchSearch:
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
     def _recall(self, path: Path, kept: Path) -> None:
-        """Add an archived branch and mark its rays as used."""
+        """Add an archived branch; mark its rays as used."""
         self.counts = self.counts + path.counts
         self._meet(path)
         points = enumerate(path.u)
@@ -242,7 +242,6 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """Trace one generation."""
         paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
         waiting = {(j.number, ray) for j, ray in rays}
         tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]

@@ -18,7 +18,7 @@ from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
-"""Smallest row (column) over largest; above it scaling changes nothing (LAPACK)."""
+"""Smallest row (column) size over the largest; above it scaling changes nothing (LAPACK)."""
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
@@ -34,13 +34,13 @@ def _rows(n: int) -> NDArray[np.int32]:
 
 
 HIDDEN = 1e-10
-"""A smaller scaled entry, relative to the largest, may be its row's only significant one; LU leaves six of its digits,
-so solutions are corrected."""
+"""A scaled entry below this, relative to the largest, may decide its row; LU leaves six of its digits, so solutions are
+corrected."""
 
 
 @frozen(eq=False)
 class Dense:
-    """LU factors of the bordered matrix; scaled rows and columns make pivots independent of units."""
+    """LU factors of the bordered matrix; row and column scaling makes pivots independent of units."""
 
     finite: ClassVar[bool] = True
     """Solutions are finite, or `solve` raises."""

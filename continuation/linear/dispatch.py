@@ -23,7 +23,7 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     Parameters
     ----------
     H_y : ndarray, Symmetric, Banded, scipy sparse array, LinearOperator or Operator
-        Shape (N, N), N >= 1; may be singular if M is not. It is not copied, unless dense: do not change it.
+        Shape (N, N), N >= 1; may be singular if M is not. Only dense ones are copied: do not change others.
     H_lam : Array
         Shape (N,).
     border : Array
@@ -34,7 +34,7 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     SingularError
         If M is singular or not finite.
     TypeError
-        If `H_y` has another type or an entry is not real.
+        If `H_y` has another type or is not real.
     ValueError
         If the shapes do not fit.
     """

@@ -21,7 +21,7 @@ FOLLOWING = Contraction(iterations=15)
 class FollowedEigenvalue:
     """An eigenvalue, its vector, and a bordered factorisation made nearby.
 
-    `turned`: derivative of the bordered solution by the eigenvalue, shape (N + 1,).
+    `turned`: derivative of the bordered solution by the eigenvalue.
     """
 
     value: complex

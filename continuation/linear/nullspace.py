@@ -21,11 +21,12 @@ LONG = 10.0
 """Ratio of null vectors to border above which they replace it; the angle is 84 degrees, and a digit is lost."""
 
 REFRESHED = 4
-"""Limit of attempts: more fail if two ranks are lost."""
+"""Limit of attempts; more do not help if two ranks are lost."""
 
 BORDER_SIZE = 1e-8
-"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors (2000
-unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost half of the digits."""
+"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors
+(Laplacian of two species, 2000 unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost
+half of the digits."""
 
 
 @frozen(eq=False)
@@ -48,7 +49,7 @@ class Bordered:
 
     @classmethod
     def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
-        """Factor A, (n, m), with columns, (n, l), and rows, (k, m + l); or raise `SingularError`."""
+        """Factor A, (n, m), with columns, (n, l), and rows, (k, m + l), or raise `SingularError`."""
         sparse, scale = sp.issparse(matrix), np.ones((matrix.shape[0] + len(rows), 1))
         if sparse:
             largest = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
@@ -73,7 +74,7 @@ class Bordered:
         return np.asarray(x.reshape(rhs.shape))
 
     def _sparse(self, rhs: Array, adjoint: bool) -> Array:
-        """Correct once, since small rows are weak pivots."""
+        """One correction makes up for weak pivots."""
         how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
         rhs = rhs if adjoint else rhs * self.scale
         x: Array = self.lu.solve(rhs, how)

@@ -36,7 +36,7 @@ class Silence:
 
 
 def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Found]], Callable[Given, Found]]:
-    """Decorator: no numpy warnings within; free of charge in a `Silence`. `ignored`: as for `numpy.errstate`."""
+    """Decorator: no numpy warnings within; free of charge in a `Silence`."""
 
     def decorate(function: Callable[Given, Found]) -> Callable[Given, Found]:
         guarded = np.errstate(**ignored)(function)

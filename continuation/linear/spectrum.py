@@ -24,10 +24,10 @@ WANTED = 6
 """Default number of eigenvalues beyond that."""
 
 OFF_AXIS = 1e-10
-"""Least real part of an unstable eigenvalue, relative to the largest known modulus; events are located to that."""
+"""Least real part of an unstable eigenvalue, relative to the largest modulus; events are located to that."""
 
 SHIFT = 0.517
-"""Fraction of the bound on real parts, and no round number."""
+"""Fraction of the bound on real parts; no round number."""
 
 LEAST_SHIFT = 1e-6
 """Relative to the diagonal; a singular matrix needs a shift."""
@@ -37,11 +37,11 @@ SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
 LAST_DIGITS of the eigenvalue suffices, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
-"""Krylov dimensions per wanted eigenvalue and one more, at most, and steps between tests, each as costly as ten
+"""Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
 solves."""
 
 LOST_DIRECTION = 1e-14
-"""A vector reduced to this by orthogonalisation has no direction."""
+"""Relative size of a vector after orthogonalisation at which it counts as zero."""
 
 
 @frozen(eq=False)
@@ -154,7 +154,6 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 
 
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
-    """The k eigenvalues nearest to a shift amid possible unstable ones."""
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     # If all are stable, the shift is comparable to oscillations.

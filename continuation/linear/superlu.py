@@ -79,7 +79,7 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
 class SuperLUMethod:
     """SuperLU, for any matrix.
 
-    `weak_pivots`: on symmetric patterns keep weak diagonal pivots, hence the ordering's fill, and rely on refinement.
+    `weak_pivots`: keep weak diagonal pivots of symmetric patterns, which saves fill; refinement corrects.
     """
 
     name: ClassVar[str] = "superlu"

@@ -26,10 +26,9 @@ class Symmetric:
     Parameters
     ----------
     matrix : Array
-        Shape (N, N). Both triangles are read; an unsymmetric matrix is solved correctly, but slowly.
+        Shape (N, N). An unsymmetric matrix is solved correctly, but slowly.
     definite : bool, optional
-        True: Cholesky first. None: Cholesky first if the diagonal is positive. False: LDL'. A wrong guess only costs
-        time.
+        True: Cholesky first. None: if the diagonal is positive. False: LDL'. A wrong guess only costs time.
     """
 
     matrix: Array = field(converter=_dense)
@@ -57,7 +56,7 @@ class Symmetric:
 
 @frozen(eq=False)
 class Cholesky:
-    """factor A = L L', where the factor, 1 or 2, gives A and 2 A one L: units of powers of two change no digit."""
+    """factor A = L L', where the factor, 1 or 2, gives A and 2 A one L, so powers of two change no digit."""
 
     lower: Array
     factor: float = 1.0
@@ -87,7 +86,7 @@ class LDL:
     """LAPACK's: from one, negative in 2x2 blocks."""
 
     def count(self, side: int) -> int:
-        """Number of eigenvalues with a sign, by the inertia of D: each 2x2 block has one of either."""
+        """Number of eigenvalues with a sign, by inertia: each 2x2 block has one of either."""
         single = self.ldu.diagonal()[self.pivots > 0]
         return (len(self.pivots) - single.size) // 2 + int(np.count_nonzero(side * single > 0.0))
 

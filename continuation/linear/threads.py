@@ -37,7 +37,7 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
 
 
 class _OneThread(ContextDecorator):
-    """BLAS uses one thread within; the last to leave restores the process's counts (2 us)."""
+    """BLAS uses one thread within; the last to leave restores the counts (2 us)."""
 
     def __init__(self) -> None:
         self._lock = Lock()

@@ -15,7 +15,7 @@ from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
 class Entries:
-    """Array methods; scalars are no sequences, so np.array([y[0], ...]) stores them as entries."""
+    """Array methods; scalars lack them, so np.array([y[0], ...]) stores scalars as entries."""
 
     __slots__ = ()
 
@@ -68,7 +68,6 @@ def _own_first(x: Array, own: int) -> Array:
 
 
 def _behind(key: Any, own: int) -> tuple[Any, ...]:
-    """An index that keeps the last `own` axes."""
     key = key if isinstance(key, tuple) else (key,)
     if not any(part is Ellipsis for part in key):
         key = (*key, Ellipsis)

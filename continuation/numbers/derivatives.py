@@ -24,11 +24,10 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     Parameters
     ----------
     x0 : array_like
-        The point at s = 0.
     direction : array_like
         Broadcast to the shape of `x0`.
     order : int
-        Highest power of s, 0 or more.
+        Highest power of s.
     """
     x0 = _numbers(x0, "x0")
     order = _order(order, 0)
@@ -64,7 +63,7 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
     f : callable
         A function of an array, written in numpy functions that jets support.
     x0, direction : array_like
-        `direction` is broadcast to the shape of `x0`.
+        `direction` is broadcast.
     order : int
         Highest power of s.
 
@@ -91,7 +90,7 @@ def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int)
     f : callable
         As in `taylor`.
     x, v : array_like
-        `v` is broadcast to the shape of `x`.
+        `v` is broadcast.
     order : int
 
     Returns
@@ -163,7 +162,6 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
 
 
 def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
-    """The last coefficients of f along unit vectors."""
     columns = []
     for begin in range(0, m, BLOCK):
         directions = np.eye(min(BLOCK, m - begin), m, begin)
@@ -182,7 +180,7 @@ def path_series(
     Parameters
     ----------
     residual : callable
-        ``residual(y, lam) -> (N,)`` in plain numpy; it may return a list. It is called order - 1 times.
+        ``residual(y, lam) -> (N,)`` in plain numpy, called order - 1 times.
     u0 : (N + 1,) array
         The point (y, lam).
     tangent : (N + 1,) array
@@ -190,7 +188,7 @@ def path_series(
     solve : callable
         ``solve(r, rho) -> (N + 1,)`` solves ``[H'; border'] z = (r, rho)``.
     order : int
-        Highest power of s, 1 or more.
+        1 or more.
 
     Returns
     -------

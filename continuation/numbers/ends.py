@@ -1,7 +1,7 @@
 """Intervals as lower and upper ends, with arithmetic rounded outward.
 
-An end is nan if the operation is undefined on part of the interval. nan survives later operations, and no comparison
-with it holds.
+An end is nan if the operation is undefined on part of the interval. Later operations keep nan, and no comparison with
+nan holds.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Mask = NDArray[np.bool_]
 EPS = 2.0**-52
 
 TINIEST = 2.0**-1074
-"""The smallest positive number bounds the underflow of an operation."""
+"""Smallest positive number: the largest underflow error of an operation."""
 
 
 def down(x: Array) -> Array:
@@ -199,7 +199,6 @@ def whole_power(u: Ends, n: int) -> Ends:
 
 
 def _nonnegative_power(u: Ends, n: int) -> Ends:
-    """Repeated squaring for x >= 0."""
     if n == 1:
         return u
     half = _nonnegative_power(u, n // 2)
@@ -212,8 +211,8 @@ def _nonnegative_power(u: Ends, n: int) -> Ends:
 def accumulated(count: float) -> float:
     """Relative error of a sum of `count` products, against the sum of their sizes.
 
-    gamma_n = n u / (1 - n u) of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged
-    for rounding of the bound.
+    gamma_n of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged for rounding of the
+    bound.
     """
     return float((2.0 * count + 8.0) * EPS)
 
@@ -244,7 +243,6 @@ def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float
 
 
 def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
-    """Middles and radii; None for numbers."""
     if not isinstance(x, Ends) or x.lo is x.hi:
         return getattr(x, "lo", x), None
     middle = x.middle()

@@ -37,7 +37,6 @@ def demand(fine: Any, operation: str, need: str) -> None:
 
 
 def _demand(u: PowerSeries, fine: Callable[[Array], Any], operation: str, need: str) -> None:
-    """`demand` for a leading coefficient; intervals become nan."""
     if not isinstance(u, list):
         demand(fine(u[0]), operation, f"its argument's leading coefficient must {need}")
 
@@ -107,7 +106,7 @@ def _tail(p: PowerSeries, q: PowerSeries, k: int) -> Any:
 
 
 def _over(a: Any, b: Any) -> Any:
-    """Quotient; 0 / b is 0, and a / 2 is the cheaper a * 0.5."""
+    """Quotient; intervals divide by two as a cheaper product."""
     if type(a) is float and a == 0.0:
         return a
     return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
@@ -129,7 +128,7 @@ def _orders(u: Array) -> Array:
 
 
 def _weighted(u: PowerSeries) -> PowerSeries:
-    """The coefficients k u_k."""
+    """The coefficients of s u'(s)."""
     return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
 
 
@@ -140,7 +139,6 @@ def _scaled(u: PowerSeries, factor: Any) -> PowerSeries:
 
 
 def _known(u: PowerSeries, constant: Ends) -> Any:
-    """The constant as an interval or a number."""
     return constant if isinstance(u, list) else float(constant.middle())
 
 
@@ -157,7 +155,7 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
 
 
 def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
-    """Solve v' = rate v u'; `first` gives the value, shifted by a constant."""
+    """Solve v' = rate v u'; `first` then replaces the value."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = of(function, u[0])
     for k in range(1, len(u)):
@@ -193,7 +191,7 @@ def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) ->
 
 
 def _circle(u: PowerSeries, sign: int) -> PowerSeries:
-    """The factored sign (1 - u**2) avoids cancellation."""
+    """Factors keep sign (1 - u**2) accurate near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 

@@ -1,6 +1,6 @@
 """Arrays of truncated series, accepted by numpy as arrays.
 
-Kinds (`Jet`, `Interval`) differ in the coefficients `c`, an array or `Ends`, and in the algebra.
+Kinds (`Jet`, `Interval`) differ in coefficients and algebra.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ def _power(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _exponents(b: Store) -> Array | None:
-    """The exponents if they are numbers, else None."""
+    """Exponents that are numbers, else None."""
     if len(b) > 1:
         return None
     if not isinstance(b, Ends):
@@ -208,7 +208,6 @@ NEGATION |= {other: one for one, other in NEGATION.items()}
 
 
 def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
-    """Where a comparison holds for all ends."""
     if ufunc is np.not_equal:
         return _surely(np.less, a, b) | _surely(np.greater, a, b)
     holds: Mask = ufunc(a.lo, b.lo) & ufunc(a.lo, b.hi) & ufunc(a.hi, b.lo) & ufunc(a.hi, b.hi)
