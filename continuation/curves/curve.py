@@ -61,8 +61,8 @@ class Curve:
     Parameters
     ----------
     family : callable
-        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. For a jet its residual must
-        accept jets, or it raises TypeError or ValueError.
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Given a jet, it returns
+        a homotopy whose residual accepts jets, or raises TypeError or ValueError.
     event : LocatedEvent, Kind or Event
         A point on a member's path, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a monitor.
     at : LocatedEvent, Step or (y, lam), optional

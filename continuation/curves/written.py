@@ -5,8 +5,8 @@
     H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
 
 These are plain arithmetic, and regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J.
-Numer. Anal. 3 (1983)). Dual numbers give derivatives along v. One curve in a tube has the traced curve as its
-projection.
+Numer. Anal. 3 (1983)). Dual numbers give derivatives along v. If a tube contains one curve of this system, its
+projection on (y, lam, omega, mu) is the traced curve.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
-"""Largest ratio of the Newton increments of H and M H: half of the digits cancel."""
+"""Largest ratio of the Newton increments of H and M H; at it half of the digits cancel."""
 
 SAME_SOLUTION_DISTANCE = 1e-6
 """Relative; double solutions are found to the square root of round-off."""

@@ -16,10 +16,10 @@ from continuation.status import Kind
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
 
 RAY_COSINE = 0.99
-"""Cosine between a ray and a branch along it; of rays within eight degrees the nearest is taken."""
+"""Least cosine between a ray and a branch along it; of rays within eight degrees the nearest is taken."""
 
 STRAIGHT_ON = -1.0 + 1e-3
-"""Cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
+"""Largest cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
 
 
 @define(eq=False)

@@ -13,7 +13,7 @@ from continuation.metric import norm
 from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
-"""Distance between locations of one point, in extents of the path; they are polished to 1e-10."""
+"""Largest distance between locations of one point, in extents of the path; they are polished to 1e-10."""
 
 Item = TypeVar("Item")
 

@@ -35,7 +35,7 @@ LEAVES = 0.1
 """Distance of guesses from known solutions, relative to their spread."""
 
 PATHS_AHEAD = 64
-"""Paths submitted in advance, which bounds memory."""
+"""Largest number of submitted paths, which bounds memory."""
 
 
 @frozen(eq=False)

@@ -14,7 +14,7 @@ from continuation.linear.nullspace import NearlySingular, null_vectors
 from continuation.linear.spectrum import OFF_AXIS
 
 FOLLOWING = Contraction(iterations=15)
-"""Increments that halve gain five digits in 15."""
+"""15 increments, each half of the last, gain five digits."""
 
 
 @frozen(eq=False)
