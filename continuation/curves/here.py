@@ -57,7 +57,7 @@ class Here:
 
     @cached_property
     def apply(self) -> Callable[[Array], Array]:
-        """The map v -> H' v; EvaluationError without a `differential`."""
+        """The map v -> H' v; EvaluationError if a member that factors itself has no `differential`."""
         apply = self.evaluator.differential(self.u)
         if apply is None:
             raise EvaluationError("the family has a factorisation of its own and no `differential`")

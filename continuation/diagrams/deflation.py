@@ -21,7 +21,7 @@ CANCELS = float(np.finfo(float).eps) ** -0.5
 """Largest ratio of the Newton increments of H and M H; at it half of the digits cancel."""
 
 SAME_SOLUTION_DISTANCE = 1e-6
-"""Relative; double solutions are found to the square root of round-off."""
+"""Relative distance of equal solutions; double ones are found to the square root of round-off."""
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
