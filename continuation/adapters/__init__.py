@@ -1,4 +1,4 @@
-"""Homotopies out of residuals that are written for JAX, CasADi or SymPy; each imports its library when it is called."""
+"""Homotopies from residuals in JAX, CasADi or SymPy; each library is imported on call."""
 
 from continuation.adapters.casadi import from_casadi
 from continuation.adapters.jax import from_jax

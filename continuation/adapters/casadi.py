@@ -1,4 +1,4 @@
-"""A residual in CasADi, with the sparse derivative that CasADi makes of it."""
+"""Residuals in CasADi, with its sparse derivatives."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from continuation.evaluation.pattern import Pattern
 
 
 def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None = 0.0) -> Adapted:
-    """Make a homotopy of a function of CasADi.
+    """Make a homotopy of a CasADi function.
 
     Parameters
     ----------
     function : casadi.Function
-        Of two inputs, y of shape (N, 1) and a number lam, with one output, (N, 1).
+        Maps y, shape (N, 1), and a number lam to shape (N, 1).
     start : tuple
     target : float or None
         As of `continuation.from_functions`.
@@ -29,7 +29,7 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
     ImportError
         If CasADi is not installed.
     TypeError, ValueError
-        If it is no such function.
+        If `function` does not fit.
     """
     ca = library("casadi")
     if not isinstance(function, ca.Function):

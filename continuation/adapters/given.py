@@ -1,4 +1,4 @@
-"""What the adapters share: a homotopy made of functions, its start, and entries that are known by their places."""
+"""Shared parts of the adapters."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ from continuation.evaluation.pattern import Pattern
 
 @frozen(eq=False, slots=False)
 class Adapted:
-    """A homotopy whose functions another library computes; see `from_jax`, `from_casadi` and `from_sympy`.
+    """A homotopy computed by another library; see `from_jax`, `from_casadi` and `from_sympy`.
 
-    `more`: What it can do besides, by name: jacobian, differential, taylor. `again`: A function and its arguments that
-    make it anew, in another process say.
+    `more`: further methods by name. `again`: a function and arguments that rebuild it, for pickling.
     """
 
     residual: Callable[[Any, Any], Any]
@@ -43,12 +42,12 @@ class Adapted:
 
 
 def library(name: str) -> Any:
-    """The library, or one of its modules.
+    """Import a library or one of its modules.
 
     Raises
     ------
     ImportError
-        If it is not installed, with what to install.
+        If it is not installed; names the package.
     """
     try:
         return import_module(name)
@@ -58,12 +57,12 @@ def library(name: str) -> Any:
 
 
 def started(start: Any) -> tuple[Array, float]:
-    """(y0, lam0) of numbers.
+    """(y0, lam0) as numbers.
 
     Raises
     ------
     TypeError, ValueError
-        If the start is none.
+        If `start` is no such pair.
     """
     if not isinstance(start, (tuple, list)) or len(start) != 2:
         raise complain(ValueError, "start", "a pair (y0, lam0)", start)
@@ -74,7 +73,7 @@ def started(start: Any) -> tuple[Array, float]:
 
 
 def filled(pattern: Pattern, entries: Array) -> Matrix:
-    """The matrix with these entries: dense where it is small or a quarter of it is there, else as its pattern is."""
+    """The matrix with these entries: dense if small or a quarter full, else sparse."""
     n = pattern.n
     if n >= SPARSE_FROM and 4 * entries.size <= n * n:
         return pattern.matrix(entries)

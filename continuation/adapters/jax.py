@@ -1,4 +1,4 @@
-"""A residual in JAX: compiled, with its derivatives, products and Taylor coefficients."""
+"""Residuals in JAX, compiled, with derivatives, products and Taylor coefficients."""
 
 from __future__ import annotations
 
@@ -25,21 +25,18 @@ def from_jax(
     target: float | None = 0.0,
     jacobian: str = "dense",
 ) -> Adapted:
-    """Make a homotopy of a residual in JAX.
-
-    It is compiled; the derivative, products with it, and the coefficients of SERIES are JAX's, and leave its device
-    only as numbers.
+    """Make a homotopy of a residual in JAX, with its derivatives and the coefficients of SERIES.
 
     Parameters
     ----------
     residual : callable
-        ``residual(y, lam) -> (N,)`` of `jax.numpy`, pure.
+        ``residual(y, lam) -> (N,)``, a pure function in `jax.numpy`.
     start : tuple
     target : float or None
         As of `continuation.from_functions`.
     jacobian : str
-        "dense" by forward derivatives (there is one column more than rows); "sparse" by products, in groups of columns
-        that share no equation; "operator" for GMRES.
+        "dense" by forward derivatives; "sparse" by products, in groups of columns that share no equation; "operator"
+        for GMRES.
 
     Raises
     ------
@@ -91,8 +88,7 @@ def from_jax(
         jax.eval_shape(series, u, np.zeros((2, u.size)))
         more["taylor"] = partial(_taylor, series)
     except (KeyError, NotImplementedError, TypeError, ValueError):
-        # A function without a rule in jet: points of the path serve then. Nested forward derivatives would, too,
-        # but of three unknowns order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
+        # Nested forward derivatives compile slowly: 0.5, 2.4, 18 s for three unknowns, order 4, 6, 8.
         pass
     again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
     return Adapted(
@@ -101,18 +97,17 @@ def from_jax(
 
 
 def _series(jax: Any, at: Callable[[Any], Any]) -> Any:
-    """Taylor coefficients of the residual along a curve, from those of the curve, times factorials."""
+    """Taylor coefficients of the residual, times factorials."""
     jet = library("jax.experimental.jet")
     return jax.jit(lambda u, terms: jax.numpy.stack(jet.jet(at, (u,), (list(terms),))[1]))
 
 
 def _taylor(series: Callable[[Any, Any], Any], point: TangentPoint, order: int) -> Array:
-    """Those of the path."""
     coefficients = np.zeros((order + 1, point.u.size))
     coefficients[:2] = point.u, point.tangent
     factorials = np.array([float(factorial(k)) for k in range(order + 1)])[:, None]
     for k in range(2, order + 1):
-        # All orders each time, zeros beyond k: a series of another length would be compiled anew.
+        # Zeros beyond k avoid another compilation.
         defect = series(point.u, (coefficients * factorials)[1:])[k - 1]
         coefficients[k] = point.solve(-np.asarray(defect) / factorials[k, 0])
     return coefficients

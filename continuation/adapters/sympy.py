@@ -1,4 +1,4 @@
-"""A residual in SymPy: its expressions and their derivatives, compiled to numpy and scipy with common parts once."""
+"""Residuals in SymPy, compiled to numpy and scipy with their derivatives."""
 
 from __future__ import annotations
 
@@ -22,10 +22,9 @@ def from_sympy(
     expressions: Sequence[Any], unknowns: Sequence[Any], parameter: Any, start: tuple[Any, float],
     *, target: float | None = 0.0,
 ) -> Adapted:  # fmt: skip
-    """Make a homotopy of expressions of SymPy.
+    """Make a homotopy of SymPy expressions, with a symbolic derivative; symbols are real.
 
-    Its derivative is symbolic; SERIES expands the compiled expressions by `continuation.jets`, special functions in
-    them by their symbolic derivatives. Symbols are real numbers.
+    SERIES uses `continuation.jets`, and symbolic derivatives of special functions.
 
     Parameters
     ----------
@@ -34,7 +33,6 @@ def from_sympy(
     unknowns : sequence of sympy.Symbol
         N of them.
     parameter : sympy.Symbol
-        The parameter.
     start : tuple
     target : float or None
         As of `continuation.from_functions`.
@@ -42,9 +40,9 @@ def from_sympy(
     Raises
     ------
     TypeError, ValueError
-        If the numbers of unknowns, expressions and y0 differ, or an expression has other symbols.
+        If numbers of unknowns, expressions and y0 differ, or an expression has other symbols.
     ImportError
-        Without SymPy.
+        If SymPy is not installed.
     """
     sp = library("sympy")
     y0, lam0 = started(start)
@@ -57,7 +55,7 @@ def from_sympy(
         wanted = "no symbols but the unknowns and the parameter"
         raise complain(ValueError, "expressions", wanted, sorted(map(str, others)))
     again = partial(from_sympy, start=start, target=target), (rows, symbols, parameter)
-    # Of a symbol that may be complex |x| has no derivative.
+    # |x| of a complex symbol has no derivative.
     real = [sp.Dummy(str(symbol), real=True) for symbol in (*symbols, parameter)]
     rows = [one.xreplace(dict(zip((*symbols, parameter), real))) for one in rows]
     place = {symbol: j for j, symbol in enumerate(real[:-1])}
@@ -81,7 +79,7 @@ def from_sympy(
     value, slope = compiled(values), compiled([*entries, *(_slope(sp, one, real[-1]) for one in rows)])
 
     def residual(y: Any, lam: Any) -> Any:
-        # What is added makes arrays, or jets, of equations that are constant.
+        # 0 * lam makes constant equations arrays or jets.
         return np.stack([part + 0.0 * lam for part in value(*y, lam)])
 
     def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
@@ -92,13 +90,11 @@ def from_sympy(
 
 
 def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
-    """The derivative, at a jump that of either side."""
+    """The derivative; at a jump, that of either side."""
     return sp.diff(one, x, order).replace(sp.DiracDelta, lambda *_: sp.Integer(0))
 
 
 def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
-    """A function of one number or jet, whose series comes from its derivatives."""
-
     @cache
     def derivative(k: int) -> Callable[[Any], Any]:
         found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k), modules=MODULES)

@@ -1,4 +1,4 @@
-"""Curves of events in a second parameter: homotopies made from families of homotopies."""
+"""Curves of events in a second parameter: homotopies made from families."""
 
 from continuation.curves.curve import Curve
 from continuation.curves.family import Family

@@ -1,4 +1,4 @@
-"""Where a curve begins: at what event, near which point, and that point brought onto the curve."""
+"""The start of a curve."""
 
 from __future__ import annotations
 
@@ -19,18 +19,17 @@ from continuation.step.start import at_parameter
 from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
-"""What an event can be by its kind alone; of others the function is needed."""
+"""Kinds that define a condition."""
 
 NEAREST = 40
-"""Eigenvalues of a large matrix that are looked at, the nearest to zero: the frequencies of a Hopf point are low among
-those of a discretised problem, whose other eigenvalues are far on the stable side."""
+"""Eigenvalues searched for a Hopf pair, nearest to zero: others are far on the stable side."""
 
 NEAR_AXIS = 0.1
-"""The largest real part of a pair, relative to its size, that Newton's method is to bring to the imaginary axis."""
+"""Largest real part of a pair, relative to its modulus, for Newton's method."""
 
 
 def as_event(value: Any) -> Any:
-    """The kind of an event where that says what holds, else the event itself."""
+    """The kind of an event if that defines the condition, else the event."""
     kind = getattr(value, "kind", value)
     if isinstance(value, LocatedEvent):
         if kind == Kind.TURNING_POINT and value.name != "turning point":
@@ -44,7 +43,7 @@ def as_event(value: Any) -> Any:
 
 
 def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
-    """The pair (y, lam), of numbers; `name` is that of the argument."""
+    """The pair (y, lam) as numbers."""
     if hasattr(at, "u"):
         at = (at.u[:-1], float(at.u[-1]))
     if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
@@ -56,7 +55,7 @@ def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
 
 
 def as_size(size: Any, at: Any, u: Array) -> Array:
-    """How far each component goes: what was given, else the metric of the located event, else the point's size."""
+    """Scales of components: given, else from the event's metric, else the point's size."""
     if size is None:
         weights = getattr(at, "weights", None)
         return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))
@@ -67,7 +66,7 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
 
 
 def corrected(homotopy: Any, u: Array) -> Array:
-    """The unknowns at the parameter of a guess u, shape (N + 1,), by Newton's method; the guess where that fails."""
+    """The unknowns after Newton's method at fixed parameter; the guess if that fails."""
     try:
         with np.errstate(all="ignore"):
             return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance()), u)[:-1]
@@ -76,10 +75,7 @@ def corrected(homotopy: Any, u: Array) -> Array:
 
 
 def frequency_at(H_y: Matrix) -> float:
-    """The imaginary part of the pair.
-
-    `H_y` of shape (N, N). Raises `ValueError` if no pair is near the axis.
-    """
+    """Imaginary part of the pair nearest to the axis; ValueError if none is near."""
     values = nearest_zero(H_y, NEAREST)
     pairs = values[values.imag > 0.0]
     off = np.abs(pairs.real) / np.abs(pairs)

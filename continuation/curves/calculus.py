@@ -1,4 +1,4 @@
-"""Derivatives of a family H(y, lam; mu): first ones by both parameters, and second ones along a vector."""
+"""Derivatives of a family H(y, lam; mu)."""
 
 from __future__ import annotations
 
@@ -29,12 +29,10 @@ Member = Callable[[Any], Any]
 
 @frozen(eq=False, slots=False)
 class Calculus:
-    """How a family is differentiated: decided once, at a point.
+    """How a family is differentiated, decided at a point.
 
-    `derivative`: Of a member, where members have none of their own. `jets`: Whether second
-    derivatives, and those by mu, come from jets. `u0`, of shape (N + 2,): (y, lam, mu), where that was decided.
-    `extent`, of shape (N + 1,): How far y and lam go, about: what steps of differences are measured by. `reach`,
-    `bend`: Steps of differences in mu, of H and of H' v, relative to its size.
+    `derivative`: of members without their own. `jets`: whether jets give second derivatives and those by mu. `u0`: (y,
+    lam, mu). `extent`: scales of (y, lam). `reach`, `bend`: relative difference steps in mu for H and H' v.
     """
 
     family: Member
@@ -53,23 +51,23 @@ class Calculus:
         return DifferentiableHomotopy(homotopy, evolve(self.derivative, residual=homotopy.residual))
 
     def evaluator(self, mu: float) -> Evaluator:
-        """The same as the engine sees it."""
+        """Its evaluator."""
         return Evaluator(self.member(mu), Counts())
 
     @cached_property
     def rows(self) -> Array:
-        """The sizes of the rows of H' at the start, by which equations are divided, shape (N,)."""
+        """Row sizes of H' at the start, shape (N,)."""
         return row_sizes(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))
 
     def scaled(self, matrix: Matrix) -> Matrix:
-        """H_y, say, in units of the start: columns multiplied by extents, rows divided by their sizes."""
+        """The matrix times extents, divided by row sizes."""
         extent = self.extent[:-1]
         if sp.issparse(matrix):
             return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(extent))
         return matrix * extent / self.rows[:, None]
 
     def borders(self, matrix: Matrix) -> tuple[Array, Array]:
-        """For a scaled matrix its null vectors, about, by inverse iteration from vectors in general position."""
+        """Approximate null vectors of a scaled matrix, by inverse iteration."""
         n = self.rows.size
         b, c = generic_vector(n), generic_vector(2 * n)[n:]
         for _ in range(2):
@@ -78,7 +76,7 @@ class Calculus:
         return b / np.linalg.norm(b), c / np.linalg.norm(c)
 
     def unscaled(self, factors: Bordered) -> BorderedSystem:
-        """The factors of a scaled matrix with a border, as those of the matrix: scaling is by positive numbers."""
+        """Factors of a scaled bordered matrix, for the unscaled one."""
 
         def solve(r: Array, rho: float) -> Array:
             x = factors.solve(np.append(r / self.rows, rho))
@@ -88,7 +86,7 @@ class Calculus:
         return Solver(solve, lambda: factors.sign)
 
     def residual(self, U: Any) -> Any:
-        """H(y, lam; mu) of one vector, or jet."""
+        """H(y, lam; mu) of one vector or jet."""
         return self.family(U[-1]).residual(U[:-2], U[-2])
 
     def by_parameter(self, u: Array, mu: float) -> Array:
@@ -103,10 +101,7 @@ class Calculus:
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
 
     def second(self, u: Array, mu: float, v: Array, left: Array) -> Array:
-        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,).
-
-        `u` of shape (N + 1,). `v`, of shape (N + 1,): Real. `left`, of shape (N,): May be complex.
-        """
+        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,); v is real."""
         if not v.any():
             return np.zeros(u.size + 1)
         if self.jets:
@@ -116,7 +111,6 @@ class Calculus:
         return self._by_two_jacobians(u, mu, v, left)
 
     def _by_two_jacobians(self, u: Array, mu: float, v: Array, left: Array) -> Array:
-        """By central differences of H' along v, and of H' v along mu."""
         extent = np.maximum(self.extent, np.abs(u - self.u0[:-1]))
         eps, h = SECOND / float(np.abs(v / extent).max()), self.bend * self._size(mu)
         evaluator = self.evaluator(mu)
@@ -149,7 +143,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     first = Calculus(family, derivative, False, U, extent, reach, reach)
     plain = evolve(first, bend=difference_along(bent, U, along)[1])
     with_jets = evolve(plain, jets=True)
-    if U.size > BLOCK:  # Jets make all columns of second derivatives: of more than one block two Jacobians are cheaper.
+    if U.size > BLOCK:  # Jets compute all columns: beyond one block two Jacobians are cheaper.
         return plain
     with suppress(TypeError, ArithmeticError, ValueError, AttributeError), np.errstate(all="ignore"):
         if np.isfinite(with_jets.by_parameter(u, mu)).all():

@@ -1,4 +1,4 @@
-"""Conditions that an eigenvalue of H_y is 0 or i omega; by that, H' may lose a rank."""
+"""Conditions of folds, Hopf and branch points."""
 
 from __future__ import annotations
 
@@ -19,16 +19,15 @@ from continuation.status import Kind
 
 @frozen(eq=False)
 class Eigenvalue:
-    """H_y is singular, a fold, or has the eigenvalue i omega, a Hopf point; or H' = [H_y, H_lam] loses a rank.
+    """H_y is singular (fold), has an eigenvalue i omega (Hopf point), or H' loses a rank (branch point).
 
-    s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1), with omega = 0 for folds (Griewank and Reddien, SIAM J.
-    Numer. Anal. 21, 1984), and an unknown for Hopf points, where the real and the imaginary part are two equations
-    (Griewank and Reddien, IMA J. Numer. Anal. 3, 1983). No square of H_y is formed, so it stays sparse.
+    The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1), with omega = 0 for folds (Griewank and
+    Reddien, SIAM J. Numer. Anal. 21, 1984), and an unknown omega for Hopf points (Griewank and Reddien, IMA J. Numer.
+    Anal. 3, 1983).
 
-    Branch points: w'H_lam = 0 besides, one equation too many, since H = 0 loses a rank. It is added to H, along b:
-    H + (w'H_lam) b = 0 and s = 0 are regular at every simple branch point whose branches cross at an angle,
-    pitchforks among them, and no symmetry has to be named. Where the family keeps its branch points, as symmetric ones
-    do, w'H_lam is zero all along. (Moore, SIAM J. Numer. Anal. 17, 1980, has an unknown of its own for that number.)
+    Branch points also satisfy w'H_lam = 0, with the left null vector w. H + (w'H_lam) b = 0 and s = 0 are regular at
+    simple branch points with transversal branches, including pitchforks; w'H_lam stays zero if the family keeps its
+    branch points. (Moore, SIAM J. Numer. Anal. 17, 1980, makes it an unknown.)
     """
 
     calculus: Calculus
@@ -39,7 +38,7 @@ class Eigenvalue:
 
     @classmethod
     def at_start(cls, calculus: Calculus, kind: Kind, frequency: float) -> Eigenvalue:
-        """With borders made for the start."""
+        """With borders made at the start."""
         tangential = Tangential.at_start(calculus) if kind == Kind.HOPF else None
         found = cls(calculus, kind, tangential, np.empty(0), np.empty(0))
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
@@ -48,11 +47,11 @@ class Eigenvalue:
 
     @property
     def beside(self) -> tuple[str, ...]:
-        """The name of the unknown beside (y, lam), if there is one."""
+        """Name of the additional unknown, if any."""
         return () if self.tangential is None else ("frequency",)
 
     def matrix(self, full: Matrix, omega: float) -> Matrix:
-        """H_y - i omega, scaled, of [H_y, H_lam]."""
+        """H_y - i omega, scaled, from [H_y, H_lam]."""
         matrix = full[:, :-1]
         if self.kind == Kind.HOPF:
             matrix = matrix - 1j * omega * (
@@ -65,7 +64,7 @@ class Eigenvalue:
         return null_vectors(self.matrix(full, omega), self.b, self.c)
 
     def null_vector(self, u: Array) -> Array:
-        """At a point of the curve, behind which is mu; of length one in the extents of the start."""
+        """The null vector, of length one in the start's extents."""
         member, beside = np.split(u[:-1], [self.calculus.extent.size])
         full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
         right = self.near(full, float(beside.sum())).right
@@ -94,14 +93,14 @@ class Eigenvalue:
         sign = base.sign
         values = np.array([sign * near.s.real])
         if self.kind == Kind.TURNING_POINT:
-            # The sign of the determinant changes with either border's side, as the product of the vectors does.
+            # det and the product of null vectors change sign with a border.
             signs = {
                 "cusp": lambda rows: float(-sign * rows[0, :-1] @ v),
                 "Bogdanov-Takens": lambda _: float(sign * (w @ v[:-1])),
             }
             one = np.empty((w.size, 0))
             return Here(calculus, u, mu, values, lambda: sign * gradient(v)[None, :], lambda: base, one, signs=signs)
-        # By the extent of lam: what is added to H is then of its size, in any unit.
+        # The extent of lam makes the term comparable to H in any unit.
         reach = calculus.extent[-1]
         z = base.solve(reach * last_column(full), 0.0)
 

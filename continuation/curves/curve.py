@@ -1,4 +1,4 @@
-"""The curve that an event draws when a second parameter moves, as a homotopy."""
+"""The curve of an event in a second parameter, as a homotopy."""
 
 from __future__ import annotations
 
@@ -26,61 +26,58 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Points, and members, that are kept: correctors ask for several things at one, events look at ends of an arc again."""
+"""Cached points and members, which correctors and events ask for repeatedly."""
 
 PERSISTS = 1e-6
-"""What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
-more, and branch points do not persist. The root of round-off and of the differences behind it."""
+"""Largest relative effect of mu on H along the left null vector at persistent branch points: about the square root of
+round-off."""
 
 
 @frozen(eq=False, slots=False, init=False)
 class Curve:
     """The curve of an event in a second parameter: H(y, lam; mu) = 0 and g(y, lam; mu) = 0, a homotopy in mu.
 
-    Its unknowns are (y, lam), and beside them the frequency of Hopf points. It is traced, stored, plotted and watched
-    like any other; mu is what a trace calls the parameter.
+    The unknowns are (y, lam), and the frequency for Hopf points; mu is the parameter of a trace.
 
     ===========================  =======================================================================
     event                        what holds along the curve
     ===========================  =======================================================================
     a turning point (fold)       H_y is singular
-    a branch point               H' = [H_y, H_lam] loses a rank, as it does in symmetric problems for every mu
+    a branch point               H' = [H_y, H_lam] loses a rank, in symmetric problems for every mu
     a Hopf point                 H_y has a pair of eigenvalues +- i omega
-    a kink                       the switch that vanished there vanishes
+    a kink                       the same switch vanishes
     ``TargetValue(value, k)``    the unknown k, or lam, keeps its value
     ``TurningPoint(k)``          the unknown k turns
     ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
-    Along fold curves cusps and Bogdanov-Takens points are located. A cusp is a turning point of both parameters; where
-    mu alone turns, two branches of the family's member cross there, or a closed curve of it shrinks to a point. A Hopf
-    curve ends where its frequency is zero, a Bogdanov-Takens point; where H_y is singular on it is a "zero-Hopf" point.
+    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; if only mu turns, two branches of the
+    member cross or a closed one shrinks to a point. Hopf curves end at frequency zero, a Bogdanov-Takens point, and
+    locate singular H_y, "zero-Hopf" points.
 
-    Nothing is densified: the system is solved by elimination with the family's own factorisation, or, where H_y is
-    singular, one of H_y with a border, which is replaced where it no longer sees the null vector, at every point anew;
-    second derivatives come from jets (up to 128 unknowns), or from two Jacobians.
+    Elimination uses the family's factorisation, or one of H_y with a border, and stays sparse. Second derivatives come
+    from jets (up to 128 unknowns) or two Jacobians.
 
     Parameters
     ----------
     family : callable
-        From mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Called with a jet, it gives a
-        homotopy whose residual runs on jets, or raises TypeError or ValueError.
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Given a jet, it returns
+        a homotopy whose residual accepts jets, or raises TypeError or ValueError.
     event : LocatedEvent, Kind or Event
-        A point located on a path of a member of the family, or what kind of point it is (`Kind.TURNING_POINT`,
-        BRANCH_POINT, HOPF, KINK), or an event with a monitor.
+        A point on a member's path, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a monitor.
     at : LocatedEvent, Step or (y, lam), optional
-        Where the curve begins, about; by default the located event.
+        Approximate start; by default the event.
     mu : float, optional
-        The second parameter there; by default the value that a `Family` has.
+        By default the `Family`'s value.
     frequency : float, optional
-        Of a Hopf point, about; by default that of the eigenvalues of H_y which are nearest to the imaginary axis.
+        Approximate Hopf frequency; by default from eigenvalues of H_y.
     size : array_like, shape (N + 1,), optional
-        How far y and lam go, about; by default the metric of the located event, or the size of y and lam.
+        Scales of y and lam; by default from the event's metric, or their sizes.
 
     Raises
     ------
     TypeError, ValueError
-        If there is no point or no mu to begin with, or the event has no function that could vanish elsewhere.
+        If there is no start or mu, or the event has no function.
 
     References
     ----------
@@ -128,12 +125,12 @@ class Curve:
         return Curve, (self.family, self.event, self.at, self.mu, self.frequency, self.size)
 
     def start(self) -> tuple[Array, float]:
-        """The point (y, lam), with the frequency, and mu, brought onto the curve.
+        """The start, brought onto the curve: unknowns and mu.
 
         Raises
         ------
         ValueError
-            If branch points of the family do not persist when mu moves.
+            If the family's branch points do not persist.
         """
         y = self._corrected.copy()
         if self.event == Kind.BRANCH_POINT:
@@ -145,13 +142,12 @@ class Curve:
 
     @cached_property
     def _corrected(self) -> Array:
-        """The point brought onto the curve at its mu, if Newton's method does that."""
         beside = [self._frequency] if self.event == Kind.HOPF else []
         return corrected(self, np.array([*self.at[0], self.at[1], *beside, self.mu]))
 
     @property
     def extents(self) -> Array:
-        """How large unknowns and mu are, about."""
+        """Scales of unknowns and mu."""
         beside = [abs(self._frequency) or 1.0] if self.event == Kind.HOPF else []
         return np.array([*self.size, *beside, abs(self.mu) or 1.0])
 
@@ -164,13 +160,11 @@ class Curve:
 
     @cached_property
     def _signs(self) -> Array | None:
-        """Of the switches, at the start: the piece that the curve lies on."""
         member = self.family(self.mu)
         return np.where(member.switches(*self.at) >= 0.0, 1, -1) if isinstance(member, SupportsPieces) else None
 
     @cached_property
     def _switch(self) -> int | None:
-        """Which of the switches vanishes along a curve of kinks."""
         return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at)))) if self.event == Kind.KINK else None
 
     def _member(self, mu: Any) -> Any:
@@ -198,26 +192,26 @@ class Curve:
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
-        """The function that vanishes, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too."""
+        """The condition, of one vector or jet (y, lam, mu); None if it needs the tangent."""
         k = self._switch
         if k is not None:
             return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
         return None if isinstance(self.event, Kind) else without_tangent(self.event, np.append(*self.at))
 
     def residual(self, y: Array, lam: float) -> Array:
-        """H and what is to vanish; shape (N + 1,), or (N + 2,) for Hopf points.
+        """H and the conditions; shape (N + 1,), or (N + 2,) for Hopf points.
 
         Parameters
         ----------
         y : ndarray
-            The unknowns: y and lam of the family, and what is beside them.
+            Unknowns: y and lam of the family, and the frequency.
         lam : float
             The second parameter, mu.
 
         Raises
         ------
         TypeError
-            For jets and intervals, where what is to vanish comes out of a factorisation.
+            For jets and intervals, if the condition needs a factorisation.
         """
         if not isinstance(y, np.ndarray) or y.dtype == object:
             if self._plain is None:
@@ -228,18 +222,18 @@ class Curve:
         return self._at(y, lam).residual()
 
     def written_out(self, points: Array) -> WrittenOut | None:
-        """The equations that `certify` proves a path by, where a factorisation is in those that are traced.
+        """Equations without factorisations, for `certify`; None if not needed.
 
         Parameters
         ----------
         points : ndarray, shape (m, N + 2) or (m, N + 3)
-            Those of the path.
+            The path's.
         """
         eliminates = self._plain is None and self.event != Kind.BRANCH_POINT
         return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """The derivative by the unknowns, dense or sparse as the family's, and by mu.
+        """Derivatives by the unknowns and by mu.
 
         Parameters
         ----------
@@ -249,7 +243,7 @@ class Curve:
         return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative applied to a direction.
+        """The derivative times a direction.
 
         Parameters
         ----------
@@ -261,7 +255,7 @@ class Curve:
         return self._at(y, lam).times(v)
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The derivative with a border, factored by elimination.
+        """The bordered derivative, factored by elimination.
 
         Parameters
         ----------
@@ -273,7 +267,6 @@ class Curve:
         return self._at(y, lam).bordered(border)
 
     def _at(self, y: Array, lam: float) -> Here:
-        """What is known at a point, kept for a while."""
         return self._points(np.append(y, lam).tobytes())
 
     @cached_property
@@ -287,7 +280,7 @@ class Curve:
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Degenerate points: cusps and Bogdanov-Takens points; where another switch of a piecewise map vanishes."""
+        """Degenerate points: cusps, Bogdanov-Takens and zero-Hopf points, and zeros of other switches."""
         names = {Kind.HOPF: ("zero-Hopf",), Kind.TURNING_POINT: ("cusp", "Bogdanov-Takens")}.get(self.event, ())
         found: list[Event] = [Monitor(_frequency, "Bogdanov-Takens", 1)] if self.event == Kind.HOPF else []
         found += [Monitor(partial(self._sign, name), name) for name in names]
@@ -295,47 +288,42 @@ class Curve:
         return (*found, *(Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others))
 
     def _sign(self, name: str, u: Array, v: Array) -> float:
-        """A number of the condition's."""
         here = self._at(u[:-1], float(u[-1]))
         return here.signs[name](here.rows)
 
     def _other(self, i: int, u: Array, v: Array) -> float:
-        """A switch of the family's member."""
         n = self.size.size - 1
         return float(self.family(float(u[-1])).switches(u[:n], float(u[n]))[i])
 
     @property
     def parameter_name(self) -> str:
-        """What the family calls its parameter."""
+        """The family's parameter name."""
         return getattr(self.family, "parameter_name", None) or "mu"
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Those of the member's unknowns, if it names them, of its parameter, and of what is beside."""
+        """Names of unknowns, if the member has any."""
         labels = Labels.of(self.family(self.mu))
         beside = (labels.parameter_name or "lambda", *self._condition.beside)
         return (*labels.names, *beside) if labels.names else ()
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Those of the member."""
+        """The member's."""
         return Labels.of(self.family(self.mu)).units
 
     @property
     def references(self) -> tuple[str, ...]:
-        """Those of the member, and of the method."""
+        """The member's, and the method's."""
         return (*getattr(self.family(self.mu), "references", ()), GOVAERTS)
 
     def _observed(self, y: Array, lam: float) -> dict[str, float]:
-        """What the member observes."""
         n = self.size.size - 1
         return dict(self.family(lam).observe(y[:n], float(y[n])))
 
     def _room(self, u: Array, v: Array) -> float:
-        """How far the member's path may go: mu stands still for it."""
         return float(self._member(u[-1]).max_step(u[: self.size.size], v[: self.size.size]))
 
 
 def _frequency(u: Array, v: Array) -> float:
-    """That of a Hopf point on its curve."""
     return float(u[-2])

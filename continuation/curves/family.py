@@ -1,4 +1,4 @@
-"""A homotopy with a second parameter: one of its own attributes."""
+"""A homotopy with one attribute as a second parameter."""
 
 from __future__ import annotations
 
@@ -13,17 +13,13 @@ from continuation.arguments.checks import complain
 
 @frozen(eq=False)
 class Family:
-    """The homotopies that differ from a given one in an attribute: a map from the value of that attribute.
+    """The homotopies that differ from a given one in one attribute.
 
-    A family is anything that maps a number mu to a homotopy: a class with one argument, a function. What most people
-    have is a homotopy written as a class with its constants for attributes, and then nothing at all is to be written:
-    ``Family(homotopy, "eps")``. This form has a name for the axis, a value to begin with, and can be pickled and
-    kept in an archive, which a lambda cannot.
+    ``Family(homotopy, "eps")`` maps a number mu to a homotopy, as functions do, but has a name and a start value, and
+    can be archived.
 
-    An attrs class is made anew (`attrs.evolve`), so what it derives from the attribute follows; of any other object a
-    shallow copy gets the new value. If the residual is written in plain numpy, and the class takes what it is given as
-    it is, derivatives by mu come from jets: mu may be one. A converter or validator that wants a float is no harm:
-    differences serve then.
+    attrs objects are rebuilt, so derived values follow; others are copied shallowly. If the residual is plain numpy and
+    the class accepts jets, these give derivatives by mu; else differences do.
 
     Parameters
     ----------
@@ -34,7 +30,7 @@ class Family:
     Raises
     ------
     TypeError, ValueError
-        If the homotopy has no such attribute, or it is no number.
+        If the homotopy has no such number.
     """
 
     homotopy: Any
@@ -53,7 +49,7 @@ class Family:
 
     @property
     def value(self) -> float:
-        """The attribute of the given homotopy."""
+        """The attribute's value."""
         return float(getattr(self.homotopy, self.name))
 
     @property
@@ -62,7 +58,7 @@ class Family:
         return self.name
 
     def __call__(self, mu: Any) -> Any:
-        """The homotopy whose attribute is mu.
+        """The homotopy with the attribute mu.
 
         Parameters
         ----------

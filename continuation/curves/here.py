@@ -1,4 +1,4 @@
-"""A curve's equations at one point: the residual, its derivative applied, as a matrix, and factored with a border."""
+"""A curve's equations at one point."""
 
 from __future__ import annotations
 
@@ -23,13 +23,11 @@ from continuation.linear.system import Solver
 
 @frozen(eq=False, slots=False)
 class Here:
-    """All that is known of a curve at a point; what a residual does not need is worked out when it is asked for.
+    """Values and derivatives of a curve at a point `u` = (y, lam), computed on demand.
 
-    `u`, of shape (N + 1,): (y, lam). `values`, of shape (k,): What is to vanish. `gradients`: Makes `rows`. `factored`:
-    Makes `base`: [[H_y, b], [c', d]] for some border, factored. `column`, of shape (N, k - 1): Derivative of the
-    equations H = 0 by the unknown beside. `hidden`: The unknown beside where it is none, but a number that is added to
-    H along the column: the last of the rows is how it follows from the others. `signs`: Numbers whose signs tell
-    degenerate points, from the rows.
+    `gradients` makes the `rows` of the k conditions in `values`, `factored` the `base`, factors of [[H_y, b], [c', d]].
+    `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it by
+    the others. `signs`: functions of the rows that change sign at degenerate points.
     """
 
     calculus: Calculus
@@ -44,7 +42,7 @@ class Here:
 
     @cached_property
     def rows(self) -> Array:
-        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
+        """Gradients over (y, lam), the additional unknown, and mu, shape (k, N + 1 + k)."""
         return self.gradients()
 
     @cached_property
@@ -54,12 +52,12 @@ class Here:
 
     @cached_property
     def evaluator(self) -> Evaluator:
-        """Of the family's member."""
+        """The member's evaluator."""
         return self.calculus.evaluator(self.mu)
 
     @cached_property
     def apply(self) -> Callable[[Array], Array]:
-        """The map v -> H' v of the member; EvaluationError where that has a factorisation and no `differential`."""
+        """The map v -> H' v; EvaluationError if a member that factors itself has no `differential`."""
         apply = self.evaluator.differential(self.u)
         if apply is None:
             raise EvaluationError("the family has a factorisation of its own and no `differential`")
@@ -72,7 +70,6 @@ class Here:
 
     @cached_property
     def _rows(self) -> tuple[Array, Array | None]:
-        """Gradients of what vanishes, and of the unknown that is hidden, over those that are not."""
         rows, n = self.rows, self.u.size
         if self.hidden is None:
             return rows, None
@@ -84,17 +81,14 @@ class Here:
         return np.append(H if self.hidden is None else H + self.column[:, 0] * self.hidden, self.values)
 
     def times(self, v: Array) -> Array:
-        """The derivative applied to a direction."""
+        """The derivative times a direction."""
         n, (rows, follows) = self.u.size, self._rows
         beside = v[n:-1] if follows is None else np.array([follows @ v])
         H = self.apply(v[:n]) + self.column @ beside + v[-1] * self.by_parameter
         return np.append(H, rows @ v)
 
     def matrices(self) -> tuple[Matrix, Array]:
-        """The derivative by the unknowns, dense or sparse as the family's, and by mu.
-
-        Where a number is hidden it is H' and a matrix of rank one: an operator, if H' is sparse.
-        """
+        """Derivatives by the unknowns and by mu; an operator if sparse with a hidden unknown."""
         full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
         column = self.column
         last = np.append(self.by_parameter, rows[:, -1])
@@ -107,10 +101,10 @@ class Here:
         return extended(full, column, rows[:, :-1]), last
 
     def bordered(self, border: Array) -> BorderedSystem:
-        """The derivative with a border, by elimination of y.
+        """The bordered derivative, by elimination of y.
 
-        The member's own factors are of F = [[H_y, b], [c', d]]. With a further unknown sigma the equations are those of
-        F (y, s) = (r, sigma), s = 0, the conditions and the border: four blocks, of which F is the first.
+        The member's factors are of F = [[H_y, b], [c', d]]. With a new unknown sigma the equations are F (y, s) = (r,
+        sigma), s = 0, conditions and border.
         """
         base, n, hidden = self.base, self.u.size, self.hidden is not None
         columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), self.column, self.by_parameter])
@@ -120,14 +114,14 @@ class Here:
             return base.solve(rhs[:-1], float(rhs[-1]))
 
         W = np.column_stack([-first(np.append(np.zeros(n - 1), 1.0)), *(first(np.append(p, 0.0)) for p in columns.T)])
-        # Behind the unknowns y, the columns of s and sigma; above the conditions, the row s = 0.
+        # Insert the columns of s and sigma, and the row s = 0.
         rows = np.insert(np.insert(below, n - 1, np.zeros((2, 1)), axis=1), 0, np.arange(len(below[0]) + 2) == n - 1, 0)
         whole = eliminated(first, W, rows)
 
         def solve(r: Array, rho: float) -> Array:
             z = whole.solve(np.concatenate([r[: n - 1], [0.0, 0.0], r[n - 1 :], np.zeros(int(hidden)), [rho]]))
             z = np.concatenate([z[: n - 1], z[n + 1 :]])
-            # What is hidden follows from the others.
+            # The hidden unknown follows from the others.
             return np.delete(z, -2) if hidden else z
 
         return Solver(solve, lambda: base.sign * whole.sign)

@@ -1,4 +1,4 @@
-"""Factorisations with H_y in them along a curve; vectors that have units are scaled by those of the start."""
+"""Factorisations along a curve, scaled by the start's extents."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from continuation.linear.nullspace import LONG, REFRESHED
 
 @frozen(eq=False)
 class Tangential:
-    """[H_y, H_lam] bordered by a row that its kernel is not orthogonal to: one of the start's, or the kernel itself."""
+    """[H_y, H_lam] with a border not orthogonal to the kernel."""
 
     calculus: Calculus
     row: Array
 
     @classmethod
     def at_start(cls, calculus: Calculus) -> Tangential:
-        """With the kernel of the start for a row."""
+        """With the kernel at the start as border."""
         first = cls(calculus, generic_vector(calculus.u0.size - 1) / calculus.extent)
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
         t = first.factored(u, mu)[1] / calculus.extent
         return cls(calculus, t / float(np.linalg.norm(t)) / calculus.extent)
 
     def factored(self, u: Array, mu: float) -> tuple[Any, Array]:
-        """The family's own factorisation, and the kernel, of length one in the extents of the start, oriented."""
+        """The family's factorisation, and the oriented unit kernel."""
         extent, row = self.calculus.extent, self.row
         evaluator = self.calculus.evaluator(mu)
         for _ in range(REFRESHED):

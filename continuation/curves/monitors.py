@@ -1,4 +1,4 @@
-"""Conditions that are functions of the caller's: of a point, or of a point and the tangent there."""
+"""Conditions given as functions."""
 
 from __future__ import annotations
 
@@ -22,13 +22,10 @@ from continuation.linear.nullspace import Bordered
 
 @frozen(eq=False)
 class Vanishing:
-    """A function vanishes: a target value, a switch, a monitor of the caller's.
+    """A function vanishes: a target value, a switch, or a monitor.
 
-    Where it looks at the tangent t, as where an unknown turns, the tangent's derivative comes from M dt = -H''[t, .],
-    M = [H_y, H_lam] with a border, by one solve with M'.
-
-    `function`: Of (y, lam, mu) as one vector, or jet; or of (y, lam) and the tangent, if it is `along` that.
-    `gradient`: Of the vector.
+    It takes (y, lam, mu), or (y, lam, tangent) if `along`. The tangent t has M dt = -H''[t, .], with M = [H_y, H_lam]
+    bordered: one solve with M' gives the derivative.
     """
 
     calculus: Calculus
@@ -40,14 +37,14 @@ class Vanishing:
 
     @classmethod
     def at_start(cls, calculus: Calculus, function: Callable[[Any], Any], along: bool) -> Vanishing:
-        """With a gradient that is right at the start."""
+        """With a gradient tried at the start."""
         tangential, x = Tangential.at_start(calculus), calculus.u0
         if along:
             x = np.append(x[:-1], tangential.factored(x[:-1], float(x[-1]))[1])
         return cls(calculus, tangential, function, gradient_of(function, x), along)
 
     def null_vector(self, u: Array) -> Array:
-        """The tangent of the member's path at a point of the curve, behind which is mu; in the extents of the start."""
+        """The member's tangent, in the start's extents."""
         return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.calculus.extent
 
     def at(self, u: Array, beside: float, mu: float) -> Here:
@@ -71,10 +68,7 @@ class Vanishing:
 
 
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
-    """What vanishes at an event, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too.
-
-    `u`, of shape (N + 1,): A point to try it at.
-    """
+    """The event's function of (y, lam, mu); None if it needs the tangent."""
     if isinstance(event, TargetValue):
         place = event.component % u.size
         return lambda U: U[place] - event.value
@@ -85,14 +79,14 @@ def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
 
 
 def plainly(event: Any) -> Callable[[Any, Any], Any]:
-    """The function of u and v that an event's monitor makes a float of: of jets and intervals, too."""
+    """The function behind a monitor, which also takes jets and intervals."""
     if isinstance(event, TurningPoint):
         return lambda u, v: v[event.component]
     return event.function if isinstance(event, Monitor) else event.monitor
 
 
 def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:
-    """The gradient of a function of a vector, by jets, or by differences where it does not run on jets at x0."""
+    """The gradient of a function, by jets or by differences."""
     from continuation import jets
 
     def at(x: Array, last: float) -> Array:

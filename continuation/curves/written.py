@@ -1,14 +1,12 @@
-"""The equations of curves written out, with the vector among the unknowns that is eliminated when they are traced.
-
-Where [[H_y, b], [c', 0]] (v, s) = (0, 1) is solved, what vanishes takes a factorisation. With v for an unknown
+"""Equations of curves without factorisations, with the null vector among the unknowns.
 
     H(y, lam; mu) = 0,   H_y v = 0,             |v| = 1                     (folds)
     H(y, lam; mu) = 0,   H_y v = i omega v,     c* v = 1,   v complex       (Hopf points)
     H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
 
-are plain arithmetic, if H is, and regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA
-J. Numer. Anal. 3 (1983)). The derivative along a vector comes from dual numbers, so that none of the family is asked
-for. Where this system has one curve in a tube, its shadow on (y, lam, omega, mu) is the curve that is meant.
+These are plain arithmetic, and regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J.
+Numer. Anal. 3 (1983)). Dual numbers give derivatives along v. If a tube contains one curve of this system, its
+projection on (y, lam, omega, mu) is the traced curve.
 """
 
 from __future__ import annotations
@@ -23,15 +21,14 @@ from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
 DECIMALS = 6
-"""Decimals of c: what a machine makes of the last digits of an eigenvector is not to be seen in the equations."""
+"""Decimals of c: machines differ in later digits of an eigenvector."""
 
 
 @frozen(eq=False)
 class WrittenOut:
-    """The system, a homotopy in mu whose unknowns are the vector, in extents of the start, and then the curve's.
+    """The system, a homotopy in mu; its unknowns are the vector, in the start's extents, then the curve's.
 
-    `first`: A point of the curve, and behind it mu. `c`, of shape (N,): Complex, of Hopf points. `metric`: By the
-    extents of the start, since unknowns of the curve may stand still.
+    `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents.
     """
 
     condition: Any
@@ -42,14 +39,11 @@ class WrittenOut:
 
     @classmethod
     def of(cls, condition: Any, points: Array) -> WrittenOut:
-        """For a path of the curve, whose points are the rows.
-
-        Of all c of length one, that of a Hopf curve is the one which is nearest to the null vectors of all points.
-        """
+        """The system for a path with rows `points`; c is nearest to all null vectors."""
         vectors, c = np.array([condition.null_vector(u) for u in points]), None
         if condition.beside:
             c = np.linalg.svd(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))[2][0]
-            # Known up to a phase, by which its largest entry becomes real.
+            # c is unique up to a phase: make its largest entry real.
             largest = c[np.argmax(np.abs(c))]
             c = np.round(c * (largest.conj() / abs(largest)), DECIMALS)
         extent = condition.calculus.extent
@@ -64,10 +58,7 @@ class WrittenOut:
         return u[:-1], float(u[-1])
 
     def lifted(self, u: Array, before: Array | None) -> Array:
-        """A point of the curve with its vector in front.
-
-        `before`: A lifted point nearby: the vector may have either sign.
-        """
+        """A curve point with its vector in front; `before` decides the sign."""
         v = self.condition.null_vector(u)
         if self.c is not None:
             v = v / np.vdot(self.c, v)
@@ -77,10 +68,7 @@ class WrittenOut:
         return np.concatenate([v, u])
 
     def residual(self, y: Any, lam: Any) -> Any:
-        """The equations, of arrays of any kind.
-
-        `y`: The vector, and the unknowns of the curve. `lam`: The second parameter, mu.
-        """
+        """The equations, for arrays of any kind."""
         calculus = self.condition.calculus
         extent, mu = calculus.extent, np.stack([lam])
 

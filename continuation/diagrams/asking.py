@@ -1,4 +1,4 @@
-"""`diagram`: what is asked for, checked, and the search under its archive."""
+"""`diagram`: checks its arguments and searches under an archive."""
 
 from __future__ import annotations
 
@@ -44,53 +44,49 @@ def diagram(
     keep: str = "all",
     **options: Unpack[Options],
 ) -> Diagram:
-    """Trace all branches that hang together: from the start both ways, then from every point at which others leave.
+    """Trace all connected branches: from the start both ways, then from every point where others leave.
 
-    A branch is a smooth curve; it goes straight on where others cross. At simple and multiple branch points, and at
-    kinks, those that leave are followed, breadth first; which rays of a point have been followed is kept, so that a
-    branch that comes back to a known point is not traced again. With several processes the result is the same: of two
-    that meet from both ends, the later one is dropped.
+    A branch is a smooth curve, straight through crossings. Rays at branch points and kinks are followed breadth first,
+    each once. The result does not depend on the number of processes.
 
     Parameters
     ----------
     homotopy : Homotopy
-        To be picklable where the executor needs it.
+        Picklable if the executor needs it.
     starts : sequence of (y, lam), default ()
-        More points to begin at, besides the homotopy's own start.
+        Starts besides the homotopy's own.
     branches : int, default 100
-        At most so many.
+        Largest number of branches.
     generations : int, optional
-        At most so many branch points between a branch and the start; 0 for the start's own branch.
+        Largest number of branch points between a branch and the start; 0 for the start's own branch.
     deflate : sequence of float, default ()
-        Values of the parameter at which more solutions are sought, when nothing is left that hangs together: by
-        Newton's method with the known ones divided out (`Deflated`).
+        Parameter values at which deflation (`Deflated`) seeks disconnected solutions.
     step : float, default 1e-2
-        How far beside a branch point branches begin, in the metric, as for `switch_branch`.
+        Distance from branch points at which branches start, in the metric, as for `switch_branch`.
     stability : Stability, optional
-        Stored with each point, and drawn; its Hopf points are found.
+        Stored with each point; its Hopf points are located.
     executor : concurrent.futures.Executor, optional
-        Traces the paths of one generation; without one this process does.
+        Traces the paths of a generation.
     archive : path, optional
-        A new file that all branches are written to, each when it is finished.
+        A new file; branches are written as they finish.
     resume : bool, default False
-        Go on with the archive, if there is one: its branches are not traced again. The same call as before is meant.
+        Continue the archive, if it exists, with the same arguments.
     keep : str, default "all"
-        With an archive "ends": points between the ends of a branch are read from the file when they are asked for, so
-        that a diagram of thousands of branches needs little memory.
+        "ends": points between ends of a branch are read from the archive on demand, which saves memory.
     {options}
 
     Returns
     -------
     Diagram
-        What was found, also where a limit was reached: `complete` and `message` say so.
+        Also if a limit is reached; see `complete` and `message`.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input; if there is no box, and so no end; if the start is not inside of it.
+        For bad input, no box, or a start outside of it.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with the branches that were finished, ``interrupt.diagram``, and the path that
-        was under way, ``interrupt.path``.
+        After Ctrl-C: a KeyboardInterrupt with the finished branches, ``interrupt.diagram``, and the unfinished path,
+        ``interrupt.path``.
     """
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
     Evaluator(homotopy, Counts())

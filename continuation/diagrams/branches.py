@@ -1,4 +1,4 @@
-"""What a search for branches gives: the branches, the points where they meet or turn, and a picture of them."""
+"""The result of a search: branches, their special points, and plots."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ LABELS = {
     Kind.HOPF: "HB",
     Kind.KINK: "KP",
 }
-"""What points are called, with a number: as in AUTO (limit point, branch point, Hopf bifurcation); KP is a kink."""
+"""As in AUTO (limit point, branch point, Hopf bifurcation); KP is a kink."""
 
 
 @frozen(eq=False)
 class Branch:
-    """A branch: one smooth curve through the point from which it was found, as far as it was followed to both sides.
+    """A smooth curve, followed both ways.
 
     Attributes
     ----------
     path : Path
     origin : str
-        Label of the point from which it was found; empty for one that was given, or found by deflation.
+        Label of the point where it leaves; empty for starts and deflation.
     generation : int
-        How many such points lie between it and the start.
+        Number of such points between it and the start.
     """
 
     path: Path
@@ -55,9 +55,9 @@ class Special:
     label : str
         LP, BP, HB or KP with a number.
     event : LocatedEvent
-        As it was found first.
+        As first found.
     branches : tuple of int
-        The numbers of the branches through it.
+        Numbers of the branches through it.
     """
 
     label: str
@@ -67,20 +67,20 @@ class Special:
 
 @frozen(eq=False)
 class Diagram:
-    """Branches that hang together.
+    """Connected branches.
 
     Attributes
     ----------
     branches : list of Branch
-        In the order in which they were found, breadth first.
+        In order of discovery, breadth first.
     points : list of Special
         Turning points, branch points, Hopf points and kinks, each once.
     complete : bool
-        Whether every branch was followed to the box, to infinity or back to itself, from every point where one leaves.
+        Whether all branches were followed to the box, to infinity or back to themselves.
     message : str
-        That, or what is missing.
+        That, or the reason.
     counts : Counts
-        Of all traces, those of branches that turned out to be known among them.
+        Of all traces, discarded ones included.
     """
 
     branches: list[Branch] = field(factory=list)
@@ -97,7 +97,7 @@ class Diagram:
 
     @property
     def paths(self) -> list[Path]:
-        """The paths of the branches."""
+        """The branches' paths."""
         return [branch.path for branch in self.branches]
 
     def of_kind(self, kind: Kind) -> list[Special]:
@@ -110,7 +110,7 @@ class Diagram:
         return [point for point in self.points if point.event.kind == kind]
 
     def at(self, lam: float) -> Array:
-        """The solutions at a value of the parameter, between points interpolated, shape (k, N).
+        """Solutions at a parameter value, interpolated, shape (k, N).
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Diagram:
         return np.vstack([y for y in found if len(y)]) if any(map(len, found)) else np.empty((0, 0))
 
     def plot(self, axes: Axes | None = None, *, value: Value = None, labels: bool = True, **options: Any) -> Axes:
-        """Draw one number of all branches against the parameter, solid where stable if that is known.
+        """Draw one number of all branches against the parameter, solid where stable.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class Diagram:
         return axes
 
     def save(self, file: str | PathLike[str], title: str = "") -> None:
-        """Write all branches to one new archive, a path each.
+        """Write the branches to a new archive, a path each.
 
         Parameters
         ----------
@@ -159,11 +159,7 @@ class Diagram:
 
 
 def from_point(event: LocatedEvent, ray: Array, path: Path, weights: Array) -> Path:
-    """A path that began beside a branch point, from the branch point on.
-
-    `ray`, of shape (N + 1,): The direction in which it leaves. `weights`, of shape (N + 1,): The metric at the branch
-    point.
-    """
+    """Extend a path to the branch point beside which it starts, along `ray`."""
     first = path.steps[0]
     chord = first.u - event.u
     length = norm(weights, chord)

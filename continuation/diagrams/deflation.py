@@ -1,4 +1,4 @@
-"""Deflation: known solutions divided out of a residual, so that Newton's method finds others."""
+"""Deflation: known solutions are divided out."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
-"""By so much an increment of Newton's method for H alone may be longer than that for M H."""
+"""Largest ratio of the Newton increments of H and M H; at it half of the digits cancel."""
 
 SAME_SOLUTION_DISTANCE = 1e-6
-"""Solutions that are nearer to each other are one: the root of round-off and more, as a double one is found."""
+"""Relative distance of equal solutions; double ones are found to the square root of round-off."""
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
@@ -37,19 +37,18 @@ def _vectors(known: Any) -> tuple[Array, ...]:
 class Deflated:
     """A homotopy with known solutions divided out: M(y) H(y, lam), M the product of 1 / |y - y_i|^power + shift.
 
-    Where H has another zero this has it too; at the known ones it has none. For solutions at one value of the
-    parameter: ``solve_at(Deflated(homotopy, known), lam, guess)``.
+    It keeps the other zeros of H. Use at one parameter value: ``solve_at(Deflated(homotopy, known), lam, guess)``.
 
     Parameters
     ----------
     homotopy : Homotopy
     known : sequence of array_like, shape (N,)
-        Solutions at the value of the parameter that is to be solved for.
+        Solutions at that value.
     power : float, default 2
     shift : float, default 1
         Keeps M from vanishing far away.
     scale : array_like, shape (N,), optional
-        By which differences are divided: 1 by default.
+        Divides differences; 1 by default.
 
     References
     ----------
@@ -75,12 +74,12 @@ class Deflated:
                 raise ValueError(f"known: expected solutions of {size} unknowns, found shape {y.shape}")
 
     def start(self) -> tuple[Array, float]:
-        """That of the homotopy."""
+        """The homotopy's start."""
         u = self._evaluator.start()
         return u[:-1], float(u[-1])
 
     def factor(self, y: Array) -> tuple[float, Array]:
-        """M, and the gradient of log M, at a point.
+        """M, and the gradient of log M.
 
         Parameters
         ----------
@@ -90,7 +89,7 @@ class Deflated:
         ways = (y - np.reshape(self.known, (-1, y.size))) / scale
         distances = np.linalg.norm(ways, axis=1)
         if not distances.all():
-            # There is no value at a known solution: as at the edge of a domain.
+            # M has a pole at a known solution.
             return float("inf"), np.zeros_like(y)
         ones = distances**-self.power
         shares = ones / (ones + self.shift) / distances**2
@@ -99,11 +98,11 @@ class Deflated:
     def residual(self, y: Array, lam: float) -> Array:
         """M(y) H(y, lam); infinite at a known solution."""
         value, H = self.factor(y)[0], np.asarray(self.homotopy.residual(y, lam), dtype=float)
-        # There H is zero up to round-off: the product would be no number.
+        # inf * 0 would be nan.
         return value * H if np.isfinite(value) else np.full_like(H, np.inf)
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """M (H_y + H (log M)'), a dense matrix, and M H_lam: for checks; steps use `bordered`."""
+        """M (H_y + H (log M)'), dense, and M H_lam: for checks."""
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         whole = H_y if isinstance(H_y, np.ndarray) else H_y.toarray()
@@ -111,22 +110,22 @@ class Deflated:
         return value * (whole + np.outer(H, slope)), value * np.asarray(H_lam, dtype=float)
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative applied to a direction (v_y, v_lam)."""
+        """The derivative times a direction (v_y, v_lam)."""
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
         return np.asarray(value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1])))
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison).
+        """The homotopy's bordered matrix, factored, with a rank-one change (Sherman and Morrison).
 
-        Where the change would cancel more than half of the digits the whole matrix is factored instead.
+        If more than half of the digits cancel, the whole matrix is factored.
         """
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
         turned = system.solve(np.asarray(self.homotopy.residual(y, lam), dtype=float), 0.0)
-        # With q = g'v the change H q is a column more.
+        # q = g'v makes the change H q one column.
         changed = eliminated(
             lambda rhs: system.solve(rhs[:-1], rhs[-1]), turned[:, None], np.append(slope, [0.0, -1.0])[None]
         )
@@ -140,17 +139,14 @@ class Deflated:
 
 
 def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:
-    """Solutions at a value of the parameter beside known ones: Newton's method on the deflated residual.
-
-    What is found is divided out too, until no guess leads to anything new.
-    """
+    """Further solutions at a parameter value, by Newton's method on the deflated residual."""
     every = list(known)
     spread = np.ptp(np.array([*every, *guesses]), axis=0)
     scale = np.where(spread > 0.0, spread, max(float(spread.max()), np.finfo(float).tiny)) if spread.any() else None
     for guess in guesses:
         while True:
             try:
-                # What is left is found to the last digit without the factor, which changes none of it.
+                # Newton's method without the factor gives full accuracy.
                 y = solve_at(homotopy, lam, solve_at(Deflated(homotopy, every, scale=scale), lam, guess))
             except ArithmeticError:
                 break
@@ -161,6 +157,6 @@ def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[
 
 
 def same_solution(y: Array, other: Array, scale: Any = None) -> bool:
-    """Whether two solutions are one, in units of a scale."""
+    """Whether two solutions agree, in units of a scale."""
     size = 1.0 + np.abs(y) if scale is None else scale
     return bool((np.abs(y - other) <= SAME_SOLUTION_DISTANCE * size).all())

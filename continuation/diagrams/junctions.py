@@ -1,4 +1,4 @@
-"""Points where branches meet, and which of the rays that leave them have been followed."""
+"""Junctions of branches."""
 
 from __future__ import annotations
 
@@ -16,22 +16,19 @@ from continuation.status import Kind
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
 
 RAY_COSINE = 0.99
-"""The cosine between a ray and the tangent of a branch that came along it; rays that are nearer to each other than
-eight degrees are told by the nearest."""
+"""Least cosine between a ray and a branch along it; of rays within eight degrees the nearest is taken."""
 
 STRAIGHT_ON = -1.0 + 1e-3
-"""The cosine between two rays that make one smooth branch: those of a multiple branch point are extrapolated."""
+"""Largest cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
 
 
 @define(eq=False)
 class Junction:
     """A point where branches meet.
 
-    `event`: As it was found first. `weights`, of shape (N + 1,): The metric there. `rays`, of shape (k, N + 1):
-    Directions away from it; the first two are those of the branch on which it was found. `starts`: For each ray but
-    those two. `used`: The rays that are known to be followed. `label`: Empty until it lies on a branch that is
-    finished. `number`, `generation`: In the order of the labels, and of the branch that it was found on. `failed`: Why
-    its rays are not known.
+    `rays`, (k, N + 1): directions away from it, two of them of the path that found it; `starts`: for the others;
+    `used`: those followed. `label`: empty until a finished branch contains it; `number`, `generation`: of the label and
+    branch. `failed`: why rays are unknown.
     """
 
     event: LocatedEvent
@@ -46,7 +43,7 @@ class Junction:
 
     @classmethod
     def at(cls, homotopy: Any, event: LocatedEvent, step: float) -> Junction:
-        """The junction of an event, with starts along the rays that its own path does not take."""
+        """The junction of an event, with starts on the other rays."""
         weights = metric_at(event)
         try:
             if event.kind == Kind.SINGULAR_POINT:
@@ -59,22 +56,22 @@ class Junction:
             return cls(event, weights, np.array([-event.tangent, event.tangent]), [], failed=str(error))
 
     def take(self, direction: Array) -> None:
-        """A branch follows the ray of a direction."""
+        """Mark the ray along `direction` as used."""
         along = self._cosines(direction)
         if max(along) >= RAY_COSINE:
             self.used.add(int(np.argmax(along)))
 
     def _cosines(self, direction: Array) -> list[float]:
-        """Of its angles with the rays."""
+        """Cosines of the angles with the rays."""
         size = norm(self.weights, direction)
         return [inner(self.weights, ray, direction) / (norm(self.weights, ray) * size) for ray in self.rays]
 
     def open(self) -> list[int]:
-        """The rays that nobody has followed, of those with a start."""
+        """Unused rays with a start."""
         return [k for k in range(2, 2 + len(self.starts)) if k not in self.used]
 
     def opposite(self, ray: int) -> int | None:
-        """The ray on which a branch that leaves along another one has come; None at a kink, or where there is none."""
+        """The ray that makes one smooth branch with `ray`, or None."""
         if self.event.kind == Kind.KINK:
             return None
         along = self._cosines(self.rays[ray])
@@ -83,13 +80,13 @@ class Junction:
 
 
 def meetings(path: Path) -> list[LocatedEvent]:
-    """The events of a path at which other branches may leave."""
+    """The path's events where branches may leave."""
     several = (event for event in path.events if event.kind in MEETING)
     return [e for e in several if e.kind != Kind.KINK or (e.rays is not None and len(e.rays) > 2)]
 
 
 def directions_of(event: LocatedEvent, path: Path) -> list[Array]:
-    """Where a path came from at an event, and where it went on, as directions away from it."""
+    """Directions, away from an event, in which a path leaves it."""
     ends = event.ends_step and event.step == path.steps[-1].index
     begins = np.array_equal(event.u, path.steps[0].u)
     at_kink = event.kind == Kind.KINK and event.rays is not None

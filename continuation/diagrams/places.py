@@ -1,4 +1,4 @@
-"""Points that are looked for again, among many: by one number first, then in the metric of each."""
+"""An index of points."""
 
 from __future__ import annotations
 
@@ -13,18 +13,17 @@ from continuation.metric import norm
 from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
-"""How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
+"""Largest distance between locations of one point, in extents of the path; they are polished to 1e-10."""
 
 Item = TypeVar("Item")
 
 
 @define(eq=False)
 class PointIndex(Generic[Item]):
-    """Items at points, each with the metric there.
+    """Items at points, each with its metric.
 
-    All are sorted by the number a . u, with a in general position. By the inequality of Cauchy and Schwarz, numbers of
-    points differ by at most |a / w^(1/2)| times their distance in the metric w: an item among thousands is found by
-    bisection and a look at one or two.
+    Items are sorted by a . u with a generic vector a; Cauchy-Schwarz bounds it by the distance, so bisection finds
+    candidates.
     """
 
     _axis: Array = field(factory=lambda: np.empty(0))
@@ -32,14 +31,14 @@ class PointIndex(Generic[Item]):
     _sorted: list[tuple[float, int, Array, Array, Item]] = field(factory=list)
 
     def add(self, u: Array, weights: Array, item: Item) -> None:
-        """Put an item at a point."""
+        """Add an item."""
         if not self._sorted:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
         self._reach = max(self._reach, SAME_PLACE * float(np.linalg.norm(self._axis / np.sqrt(weights))))
         insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
 
     def near(self, u: Array) -> list[Item]:
-        """The items within `SAME_PLACE` of a point, each in its metric, in the order in which they were added."""
+        """The items within `SAME_PLACE` of a point, in order of addition."""
         if not self._sorted:
             return []
         number = float(self._axis @ u)

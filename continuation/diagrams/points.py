@@ -1,4 +1,4 @@
-"""The points of a diagram: those where branches meet, and the others that are located on them, each once."""
+"""The special points of a diagram."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.path import LocatedEvent
 
 
 def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
-    """Junctions, turning points, Hopf points and kinks, each once, in the order of the branches."""
+    """Junctions, turning points, Hopf points and kinks, each once, in branch order."""
     labels: Counter[str] = Counter()
     found: list[tuple[str, LocatedEvent, list[int]]] = []
     places: PointIndex[tuple[str, list[int]]] = PointIndex()

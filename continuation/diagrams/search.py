@@ -1,4 +1,4 @@
-"""`diagram`: every branch that hangs together with the start, breadth first, each once."""
+"""`diagram`: a breadth-first search."""
 
 from __future__ import annotations
 
@@ -29,21 +29,20 @@ from continuation.step.start import guessed
 from continuation.tracing import solve_at, trace
 
 WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.DIVERGED, Status.DEAD_END)
-"""Ends of branches that leave nothing open."""
+"""Final states of complete branches."""
 
 LEAVES = 0.1
-"""Guesses for deflation lie beside known solutions, by this part of how far these are apart."""
+"""Distance of guesses from known solutions, relative to their spread."""
 
 PATHS_AHEAD = 64
-"""Paths that an executor is given before the first of them is looked at: enough for as many processes, and what has
-come back and waits is bounded."""
+"""Largest number of submitted paths, which bounds memory."""
 
 
 @frozen(eq=False)
 class Task:
-    """A path to be traced.
+    """A path to trace.
 
-    `weights`, `used`, `ray`: Where it leaves a junction, the metric there, the rays that are followed, and its own.
+    `weights`, `used`, `ray`: its junction's metric and used rays, and its own ray.
     """
 
     start: Any
@@ -54,7 +53,7 @@ class Task:
 
 
 def _path(homotopy: Any, start: Any, direction: int, options: Options, before: Array | None) -> Path:
-    """One path, in this process or in a worker's; `before` is the metric where it leaves another."""
+    """Trace one path; `before` is the metric where it leaves another."""
     asked = options.copy()
     asked["direction"] = direction
     if start is not None:
@@ -66,7 +65,7 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
 
 @define(eq=False)
 class BranchSearch:
-    """A search under way."""
+    """A search in progress."""
 
     homotopy: Any
     options: Options
@@ -83,7 +82,7 @@ class BranchSearch:
     counts: Counts = field(factory=Counts)
 
     def run(self, starts: list[Any], deflate: list[float]) -> None:
-        """All of it."""
+        """Search from all starts, then by deflation."""
         for path, kept in () if self.log is None else self.log.held(self.homotopy):
             self._recall(path, kept)
         for start in starts:
@@ -95,7 +94,7 @@ class BranchSearch:
 
     @property
     def found(self) -> Diagram:
-        """What there is by now."""
+        """The diagram so far."""
         said = (
             f"Not complete: {'; '.join(dict.fromkeys(self.missing))}."
             if self.missing
@@ -111,7 +110,7 @@ class BranchSearch:
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
     def _recall(self, path: Path, kept: Path) -> None:
-        """A branch of the archive, and what stays of it: the rays that it follows are not followed again."""
+        """Add an archived branch; mark its rays as used."""
         self.counts = self.counts + path.counts
         self._meet(path)
         points = enumerate(path.u)
@@ -127,7 +126,7 @@ class BranchSearch:
         self._add(kept, junction.label, junction.generation + 1, held=True)
 
     def _begin(self, start: Any) -> None:
-        """Both ways from a start, and all that hangs on it, unless it lies on a known branch."""
+        """Trace a start both ways and everything connected, unless known."""
         u = np.append(*self.homotopy.start()) if start is None else guessed(start)
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
@@ -147,17 +146,16 @@ class BranchSearch:
         return is_inside(self.options.get("box"), Labels.of(self.homotopy), u)
 
     def _known(self, u: Array) -> bool:
-        """Whether a branch has the point: Newton's method leads there from what is interpolated."""
+        """Whether Newton's method from a branch reaches the point."""
         known = self._solutions(float(u[-1]))
         (y,) = self._polished(float(u[-1]), [u[:-1]])
         return any(same_solution(y, other) for other in known)
 
     def _solutions(self, lam: float) -> list[Array]:
-        """Those of the branches at a value of the parameter."""
         return self._polished(lam, list(Diagram(self.branches).at(lam)))
 
     def _polished(self, lam: float, guesses: list[Array]) -> list[Array]:
-        """Solutions from guesses; one from which Newton's method leads nowhere, as beside a fold, stays what it is."""
+        """Solve from each guess; keep it if Newton's method fails, as beside a fold."""
         found = []
         for guess in guesses:
             try:
@@ -167,7 +165,7 @@ class BranchSearch:
         return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
-        """The paths of tasks in their order; None where somebody has come along the ray meanwhile."""
+        """Paths of tasks in order; None if the ray is used."""
         ready: deque[Future[Path] | None] = deque()
         following = iter(tasks if self.executor is not None else ())
         try:
@@ -193,7 +191,7 @@ class BranchSearch:
         return self.homotopy, task.start, task.direction, self.options, task.weights
 
     def _meet(self, path: Path) -> None:
-        """The junctions on a path: new ones wait, of old ones rays are taken."""
+        """Mark junctions and rays of a path."""
         if not len(path):
             self.missing.append(path.message)
         for event in meetings(path):
@@ -211,7 +209,7 @@ class BranchSearch:
         return junction
 
     def _add(self, path: Path, origin: str, generation: int, held: bool = False) -> None:
-        """A finished branch: its junctions get labels, and it is written, unless the archive has `held` it."""
+        """Label the junctions of a finished branch, and write it unless `held`."""
         if path.status not in WHOLE:
             self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
         for event in meetings(path):
@@ -229,7 +227,6 @@ class BranchSearch:
         self.branches.append(Branch(path, origin, generation))
 
     def _spread(self) -> None:
-        """Generation after generation, until no ray is open."""
         while True:
             labelled = sorted((j for j in self.junctions if j.label), key=lambda j: j.number)
             rays = [(j, ray) for j in labelled for ray in j.open() if self._inside(j.starts[ray - 2][0])]
@@ -245,7 +242,6 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """One generation: its paths, each accepted before the next is looked at, and the branches that they make."""
         paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
         waiting = {(j.number, ray) for j, ray in rays}
         tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]
@@ -259,7 +255,7 @@ class BranchSearch:
                         paths[junction.number, ray] = junction, path
                 self._put_together(paths, waiting, generation)
         except KeyboardInterrupt:
-            # What has come one way is shown; it is traced again when the diagram goes on.
+            # The diagram shows finished halves; resuming traces them again.
             self.log = None
             self._put_together(paths, set(), generation)
             raise
@@ -267,7 +263,7 @@ class BranchSearch:
     def _put_together(
         self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
     ) -> None:
-        """The branches whose paths are there, each from both its rays, in the order of the rays."""
+        """Make branches from paths along both rays."""
         while paths:
             number, ray = next(iter(paths))
             junction = paths[number, ray][0]
@@ -282,6 +278,6 @@ class BranchSearch:
 
 
 def _through(behind: Path, ahead: Path) -> Path:
-    """One path out of two that leave a point; the end that leaves something open is the one that it tells of."""
+    """Join two paths; keep the status of an incomplete end."""
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)

@@ -1,4 +1,4 @@
-"""Interval arithmetic on numpy arrays: functions written in plain numpy over boxes, rounded outward."""
+"""Interval arithmetic on numpy arrays, rounded outward."""
 
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.boxes import enclose, jacobian

@@ -1,4 +1,4 @@
-"""Truncated Taylor arithmetic on numpy arrays: series and derivatives of functions written in plain numpy."""
+"""Truncated Taylor arithmetic on numpy arrays: derivatives of functions in plain NumPy."""
 
 from continuation.numbers import Jet, JetDomainError
 from continuation.numbers.derivatives import (

@@ -1,8 +1,6 @@
 """Bordered linear systems ``[[H_y, H_lam], [border']] z = (r, rho)``, with the sign of their determinant.
 
-A structure factors H_y alone, and block elimination borders it, with a refinement that knows when it is not accurate:
-next to a fold, where H_y is useless, the whole matrix is factored instead. Dense matrices are factored whole at once.
-How near a matrix is to singular, and along which vectors, a border tells as well (`nullspace`).
+Structured H_y are factored alone and bordered by elimination; near a fold the whole matrix is factored.
 """
 
 from continuation.linear.banded import Banded

@@ -1,4 +1,4 @@
-"""Banded H_y: LU within the band, in O(N)."""
+"""Banded H_y: LU in O(N)."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def _diagonals(ab: Any) -> Array:
 
 @frozen(eq=False)
 class Banded:
-    """A banded matrix A in the diagonal-ordered form of LAPACK: ``ab[upper + i - j, j] = A[i, j]``.
+    """A banded matrix A in LAPACK's diagonal-ordered form: ``ab[upper + i - j, j] = A[i, j]``.
 
     Parameters
     ----------
     ab : Array
-        Shape (lower + upper + 1, N). Entries that lie outside A are never read.
+        Shape (lower + upper + 1, N). Entries outside A are never read.
     lower, upper : int
         Number of diagonals below and above the main one.
     """
@@ -48,13 +48,13 @@ class Banded:
         return (self.ab.shape[1], self.ab.shape[1])
 
     def tosparse(self) -> Matrix:
-        """The same matrix as a scipy sparse array."""
+        """A scipy sparse array."""
         offsets = np.arange(self.upper, -self.lower - 1, -1)
-        inside = np.abs(offsets) < self.ab.shape[1]  # scipy 1.15 puts diagonals that lie outside on the main one
+        inside = np.abs(offsets) < self.ab.shape[1]  # scipy 1.15 moves diagonals outside onto the main one
         return dia_array((self.ab[inside], offsets[inside]), shape=self.shape).tocsc()
 
     def toarray(self) -> Array:
-        """A dense copy, shape (N, N)."""
+        """A dense copy."""
         return np.asarray(self.tosparse().toarray())
 
     def __abs__(self) -> Banded:
@@ -70,9 +70,9 @@ class Banded:
 
 
 def factor_band(matrix: Banded) -> Solver | None:
-    """LU factors of a banded matrix by itself, with partial pivoting; None where a pivot is exactly zero."""
+    """LU factors with partial pivoting; None if a pivot is zero."""
     lower, upper = matrix.lower, matrix.upper
-    # Row exchanges fill as many diagonals more as there are below the main one.
+    # Row exchanges fill `lower` more diagonals.
     room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")
     room[lower:] = matrix.ab
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)

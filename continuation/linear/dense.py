@@ -1,4 +1,4 @@
-"""Dense bordered systems: one LU factorisation of the whole matrix, at which a fold costs nothing."""
+"""Dense bordered systems: one LU factorisation of the whole matrix."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
-"""Ratio of the smallest to the largest row or column above which scaling changes nothing (as in LAPACK)."""
+"""Smallest row (column) size over the largest; above it scaling changes nothing (LAPACK)."""
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
-    """Sign of the determinant: rows exchanged with others, and negative pivots (the diagonal of U), are counted."""
-    # Bytes of ones are counted in a third of the time that numpy takes for a few.
+    """Sign of the determinant: row exchanges and negative pivots are counted."""
+    # Counting bytes is three times as fast as numpy for short arrays.
     odd = (exchanges != _rows(len(exchanges))).tobytes().count(1) + np.signbit(pivots).tobytes().count(1)
     return -1 if odd % 2 else 1
 
@@ -34,28 +34,24 @@ def _rows(n: int) -> NDArray[np.int32]:
 
 
 HIDDEN = 1e-10
-"""An entry smaller than this part of the largest, once rows and columns are scaled, may be all that matters to its row,
-where units differ more than scaling by the largest can mend: six digits of it are left by a factorisation."""
+"""A scaled entry below this, relative to the largest, may decide its row; LU leaves six of its digits, so solutions are
+corrected."""
 
 
 @frozen(eq=False)
 class Dense:
-    """LU factors of the bordered matrix, its rows and columns scaled to comparable size.
-
-    The scaling makes partial pivoting choose well, and alike in any units, so that the solution is as accurate as M
-    allows and no residual has to be measured.
-    """
+    """LU factors of the bordered matrix; row and column scaling makes pivots independent of units."""
 
     finite: ClassVar[bool] = True
-    """What it solves is finite, or raises."""
+    """Solutions are finite, or `solve` raises."""
     lu: Array
     pivots: NDArray[np.int32]
     scale: Array | None
-    """Powers of two, (1, N + 1), by which the rows were multiplied; None for ones."""
+    """Row factors, powers of two, shape (1, N + 1); None for ones."""
     columns: Array | None
-    """The same for the columns."""
+    """Column factors."""
     whole: tuple[Array, Array] | None = None
-    """The scaled matrix, and the magnitudes of its entries, where solutions are to be corrected."""
+    """The scaled matrix and its magnitudes, to correct solutions."""
 
     @property
     def sign(self) -> int:
@@ -63,17 +59,13 @@ class Dense:
         return lu_sign(self.pivots, self.lu.diagonal())
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,).
-
-        Raises `SingularError` if z overflows, or the right-hand side is not finite.
-        """
+        """The solution z, shape (N + 1,); `SingularError` if not finite."""
         z = np.empty(r.size + 1)
         z[:-1] = r
         z[-1] = rho
-        # Arguments of LAPACK and BLAS by position, the last 1 to write over what is given: by name they take as long as
-        # the work itself, for a few unknowns.
+        # Positional arguments (the last 1: overwrite): for a few unknowns keywords take as long as the work.
         if self.scale is not None:
-            # By BLAS, which does not warn of overflow.
+            # BLAS does not warn of overflow.
             z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, 1)
         if self.whole is None:
             dgetrs(self.lu, self.pivots, z, 0, 1)
@@ -86,12 +78,12 @@ class Dense:
         return z
 
     def _corrected(self, whole: Array, sizes: Array, right: Array) -> Array:
-        """The scaled solution; iterative refinement makes each row hold (Skeel, Math. Comp. 35, 1980)."""
+        """Iterative refinement, row by row (Skeel, Math. Comp. 35, 1980)."""
         z: Array = dgetrs(self.lu, self.pivots, right)[0]
         found = z
         left = before = np.inf
         with np.errstate(all="ignore"):
-            # Each row is to hold to round-off of its terms; a correction that does not halve what is left is the last.
+            # A correction that does not halve the residual is the last.
             while left > BACKWARD_ERROR:
                 gap, terms = right - whole @ z, sizes @ np.abs(z) + np.abs(right)
                 left = float((np.abs(gap) / np.where(terms > 0.0, terms, 1.0)).max())
@@ -103,9 +95,9 @@ class Dense:
 
 
 def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
-    """Factor ``[[matrix, column], [row']]`` by LU with partial pivoting, in O(N^3).
+    """Factor ``[[matrix, column], [row']]`` by LU in O(N^3).
 
-    Raises `SingularError` if a pivot is exactly zero, or an entry is not finite.
+    Raises `SingularError` if a pivot is zero or an entry is not finite.
     """
     n = len(column)
     whole = np.empty((n + 1, n + 1), order="F")
@@ -136,7 +128,7 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
 
 @frozen(eq=False)
 class LU:
-    """LU factors of a dense matrix, with partial pivoting."""
+    """LU factors of a dense matrix."""
 
     lu: Array
     pivots: NDArray[np.int32]
@@ -152,6 +144,6 @@ class LU:
 
 
 def factor_lu(matrix: Array) -> LU | None:
-    """LU factors of a square matrix by itself; None where a pivot is exactly zero."""
+    """LU factors of a square matrix; None if a pivot is zero."""
     lu, pivots, info = dgetrf(matrix)
     return LU(lu, pivots) if info == 0 else None

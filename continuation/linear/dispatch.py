@@ -1,4 +1,4 @@
-"""From the type of H_y to the factorisation that suits it."""
+"""The factorisation for each type of H_y."""
 
 from __future__ import annotations
 
@@ -18,13 +18,12 @@ from continuation.linear.system import BorderedSystem
 
 
 def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
-    """Factor the bordered matrix ``M = [[H_y, H_lam], [border']]`` by the method that suits the type of `H_y`.
+    """Factor ``M = [[H_y, H_lam], [border']]`` by the method for the type of `H_y`.
 
     Parameters
     ----------
     H_y : ndarray, Symmetric, Banded, scipy sparse array, LinearOperator or Operator
-        Shape (N, N), N >= 1. It may be singular, as at a fold, if M is not. It is kept, not copied, by all but the
-        dense structure: change it only when the factorisation is no longer needed.
+        Shape (N, N), N >= 1; may be singular if M is not. Only dense ones are copied: do not change others.
     H_lam : Array
         Shape (N,).
     border : Array
@@ -33,9 +32,9 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     Raises
     ------
     SingularError
-        If M is exactly singular, or has an entry that is not finite.
+        If M is singular or not finite.
     TypeError
-        If `H_y` is of no type named above, or an entry is not real.
+        If `H_y` has another type or is not real.
     ValueError
         If the shapes do not fit.
     """

@@ -1,8 +1,6 @@
-"""Block elimination: a matrix with k columns and rows more, by the factors of the matrix alone.
+"""Block elimination for [[A, P], [R, S]], with k border columns and rows, by factors of A.
 
-[[A, P], [R, S]] with W = A^-1 P has the Schur complement S - R W, of order k, and the determinant det A det(S - R W).
-With H_y for A and k = 1 this is the bordered system of a structured matrix, refined; where H_y is too near to singular
-for that, the whole matrix is factored instead.
+W = A^-1 P gives the Schur complement S - R W and the determinant det A det(S - R W).
 """
 
 from __future__ import annotations
@@ -23,10 +21,9 @@ from continuation.linear.system import BorderedSystem
 
 @frozen(eq=False)
 class Elimination:
-    """[[A, P], [R, S]], with A factored.
+    """Factors of [[A, P], [R, S]]; `first` solves with A, `small` with the Schur complement.
 
-    `first`: Solves with A. `W`, of shape (n, k): A^-1 P. `R` of shape (k, n). `schur` of shape (k, k). `small`, `sign`:
-    Solves with it, and the sign of its determinant.
+    W = A^-1 P, (n, k); R, (k, n); `sign`: of det `schur`.
     """
 
     first: Callable[[Array], Array]
@@ -48,9 +45,9 @@ class Elimination:
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
-    """Border A by columns, given as W = A^-1 P, and by rows [R, S], shape (k, n + k).
+    """Border A by columns, given as W = A^-1 P, and rows [R, S], (k, n + k).
 
-    Raises `SingularError` if the whole is singular, and k > 1.
+    Raises `SingularError` if k > 1 and the whole is singular.
     """
     R, S = np.split(rows, [len(W)], axis=1)
     schur = S - R @ W
@@ -62,7 +59,7 @@ def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimin
 
 @frozen(eq=False, slots=False)
 class BlockElimination:
-    """The bordered system, solved with a factorisation of H_y that is far from singular."""
+    """A bordered system, solved with factors of a well-conditioned H_y."""
 
     bordered: BorderedMatrix
     factor: Factored
@@ -75,12 +72,12 @@ class BlockElimination:
         return self.factor.sign * self.elimination.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,); by the factorisation of the whole where elimination is not accurate."""
+        """The solution z, shape (N + 1,); if inaccurate, by factoring the whole."""
         z, accurate = refined(self.bordered, self.elimination.solve, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 
     def approximate(self, r: Array, rho: float) -> Array:
-        """The same without measuring the residual: for an iteration that measures its own."""
+        """Solve without refinement."""
         return self.elimination.solve(join(r, rho))
 
     @cached_property
@@ -96,17 +93,11 @@ def eliminate(
     factor: Callable[[Any], Factored | None],
     whole: Callable[[], BorderedSystem],
 ) -> BorderedSystem:
-    """Factor H_y and border it; near a fold, where H_y is useless, factor the whole matrix instead.
+    """Factor H_y and border it; near a fold factor the whole matrix. `SingularError` if singular or not finite.
 
-    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is to this factorisation: at a fold w is round-off.
-    The test depends on no norm, and so on no scaling. Within its limits both signs in ``det M = det H_y * schur`` are
-    certain; beyond them neither is, though their product is well determined, and only the whole matrix tells it.
-
-    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
-
-    References
-    ----------
-    W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, section 3.
+    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED both signs in ``det
+    M = det H_y * schur`` are certain (W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM
+    2000, section 3).
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     factors = factor(matrix)

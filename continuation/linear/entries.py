@@ -1,4 +1,4 @@
-"""What may stand in a matrix: real numbers; and a matrix with columns and rows more."""
+"""Real entries, and bordered matrices."""
 
 from __future__ import annotations
 
@@ -17,27 +17,14 @@ def require_real(name: str, dtype: np.dtype[Any]) -> None:
 
 
 def real(name: str, entries: Any) -> Array:
-    """The entries as float64, copied only where they are of another type.
-
-    Raises
-    ------
-    TypeError
-        If they are not real numbers; `name` is what the message calls them.
-    """
+    """The entries as float64, or TypeError with `name`."""
     array = np.asarray(entries)
     require_real(name, array.dtype)
     return array if array.dtype == np.float64 else array.astype(float)
 
 
 def extended(matrix: Matrix, columns: Array, rows: Array) -> Matrix:
-    """[[matrix, columns], [rows]], dense or (csc) sparse as the matrix is: in a quarter of the time of `block_array`.
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array, shape (n, m)
-    columns : ndarray, shape (n, k)
-    rows : ndarray, shape (l, m + k)
-    """
+    """[[matrix, columns], [rows]] of shapes (n, m), (n, k), (l, m + k), dense or csc; faster than `block_array`."""
     if not sp.issparse(matrix):
         return np.vstack([np.hstack([matrix, columns]), rows])
     part, (n, m) = sp.csc_array(matrix), matrix.shape

@@ -1,4 +1,4 @@
-"""One door to sparse factorisations: SuperLU, and CHOLMOD where it is installed, chosen by a look at the matrix."""
+"""Sparse factorisations by SuperLU, or by CHOLMOD if installed."""
 
 from __future__ import annotations
 
@@ -12,19 +12,15 @@ from continuation.linear.look import Look
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
 METHODS = ("auto", SuperLUMethod.name, "cholmod")
-"""What may be asked for."""
+"""Names."""
 
 CHOLMOD_FROM = 1000
-"""The order from which on "auto" means CHOLMOD: of five-point Laplacians it takes half of SuperLU's time from n = 2,000
-on, a third at 1e5; below 400 SuperLU is quicker."""
+"""Least order for CHOLMOD: on five-point Laplacians it halves SuperLU's time from n = 2,000 on; below 400 SuperLU is
+quicker."""
 
 
 def check_method(argument: str, name: object) -> str:
-    """The name of a method, or "auto".
-
-    `argument`: What an error calls it. Raises `ValueError` if there is no such method. Raises `ImportError` if its
-    package is not installed.
-    """
+    """The method's name, checked; ValueError if unknown, ImportError if not installed."""
     if not isinstance(name, str) or name not in METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
         raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")
@@ -35,16 +31,16 @@ def check_method(argument: str, name: object) -> str:
 
 @define(eq=False)
 class Factoring:
-    """Factors sparse matrices, and keeps account of what did it.
+    """Factors sparse matrices and counts which method did.
 
     Attributes
     ----------
     method : str
-        "auto", "superlu", or "cholmod" for what is definite.
+        "auto", "superlu", or "cholmod" for definite matrices.
     direct : SuperLUMethod
-        What is left where nothing else suits.
+        The method for all other matrices.
     used : dict
-        By name, how many matrices were factored, and the largest fill.
+        By name: number of matrices, largest fill.
     """
 
     method: str = "auto"
@@ -52,15 +48,7 @@ class Factoring:
     used: dict[str, tuple[int, int]] = field(factory=dict, init=False)
 
     def factor(self, matrix: Matrix) -> SparseFactor | None:
-        """Factors of a square matrix by itself; None where it is singular.
-
-        What turns out not to be definite is left to SuperLU.
-
-        Parameters
-        ----------
-        matrix : csc_array of shape (N, N)
-            In canonical format.
-        """
+        """Factors of a square matrix, csc, in canonical format; None if singular."""
         look = Look(matrix)
         wanted = look.n >= CHOLMOD_FROM and find_spec("cvxopt") is not None
         definite = self.method == "cholmod" or (self.method == "auto" and wanted)
@@ -79,7 +67,7 @@ class Factoring:
 
 
 def factor_definite(look: Look) -> SparseFactor | None:
-    """Factors of a matrix that is positive or negative definite; None where it is neither."""
+    """Factors of a positive or negative definite matrix, or None."""
     # A discretised Laplacian is negative definite; det A = (-1)^n det(-A).
     negative = bool((look.diagonal < 0.0).all())
     look = Look(-look.matrix) if negative else look
@@ -91,10 +79,7 @@ def factor_definite(look: Look) -> SparseFactor | None:
 
 
 def factor_cholmod(matrix: Matrix) -> SparseFactor | None:
-    """Supernodal Cholesky factors, by way of cvxopt; None where a pivot is not positive.
-
-    Chen, Davis, Hager and Rajamanickam, "Algorithm 887: CHOLMOD", ACM Trans. Math. Softw. 35 (2008).
-    """
+    """Supernodal Cholesky factors (Chen et al., ACM Trans. Math. Softw. 35 (2008)); None if a pivot is not positive."""
     from cvxopt import cholmod, spmatrix
     from cvxopt import matrix as column
 
@@ -113,5 +98,5 @@ def factor_cholmod(matrix: Matrix) -> SparseFactor | None:
         cholmod.solve(factors, x)
         return np.array(x).ravel()
 
-    # How many numbers they are cvxopt does not say.
+    # cvxopt does not tell the fill.
     return SparseFactor("CHOLMOD", solve, 0, lambda: 1)

@@ -1,4 +1,4 @@
-"""What a look at the entries of a sparse matrix tells of it; a method of factorisation is chosen by that."""
+"""Statistics of a sparse matrix, to choose a factorisation."""
 
 from __future__ import annotations
 
@@ -13,10 +13,7 @@ from continuation.linear.refine import BACKWARD_ERROR
 
 @frozen(eq=False, slots=False)
 class Look:
-    """What the entries of a matrix tell, each found out when it is asked for.
-
-    `matrix`, of shape (N, N): In canonical format.
-    """
+    """Statistics of a matrix, (N, N), in canonical format; computed on demand."""
 
     matrix: Matrix
 
@@ -36,7 +33,7 @@ class Look:
 
     @cached_property
     def symmetric_pattern(self) -> bool:
-        """Whether the pattern is symmetric with a full diagonal; minimum degree then halves the fill of COLAMD."""
+        """Whether the pattern is symmetric with full diagonal: minimum degree then halves COLAMD's fill."""
         if not self.diagonal.all():
             return False
         rows, columns = self._rows, self.matrix
@@ -45,7 +42,7 @@ class Look:
 
     @cached_property
     def definite_perhaps(self) -> bool:
-        """Whether it is symmetric, but for rounding, with a positive diagonal: Cholesky's method decides."""
+        """Whether the matrix is symmetric, up to rounding, with positive diagonal."""
         if not (self.diagonal > 0.0).all() or not self.symmetric_pattern:
             return False
         here, across = self.matrix.data, self._rows.data

@@ -1,4 +1,4 @@
-"""A matrix of any rank with a border, factored as a whole; how far one is from losing a rank, along which vectors."""
+"""Bordered matrices of any rank, and null vectors."""
 
 from __future__ import annotations
 
@@ -18,30 +18,29 @@ from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
-"""Null vectors that are so much longer than the border, by which they are normalised, make an angle of 84 degrees with
-it: then they take its place. A digit is lost up to there."""
+"""Ratio of null vectors to border above which they replace it; the angle is 84 degrees, and a digit is lost."""
 
 REFRESHED = 4
-"""At most so often: each time the angle falls to that of round-off, or the matrix loses two ranks."""
+"""Limit of attempts; more do not help if two ranks are lost."""
 
 BORDER_SIZE = 1e-8
-"""The largest entry of a sparse matrix' last row, a border, beside the others': not eliminated early, it does not fill
-the factors (2000 unknowns, the Laplacian of two species: 17 thousand entries, 673 thousand at 1e-4). What is lost to
-so weak a pivot, half of the digits, one correction brings back."""
+"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors
+(Laplacian of two species, 2000 unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost
+half of the digits."""
 
 
 @frozen(eq=False)
 class Bordered:
-    """[[A, P], [R, S]] with k rows of border, factored as a whole: dense or sparse, real or complex, A of any rank.
+    """[[A, P], [R, S]] with k border rows, factored whole; A is dense or sparse, real or complex, of any rank.
 
     Attributes
     ----------
     matrix : ndarray or sparse array
-        The whole, the border's rows scaled if it is sparse.
+        The whole; sparse border rows are scaled.
     lu : object
         Its factors.
     scale : ndarray, shape (n + k, 1)
-        What the rows were multiplied by.
+        Row factors.
     """
 
     matrix: Matrix
@@ -50,10 +49,7 @@ class Bordered:
 
     @classmethod
     def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
-        """Factor A, shape (n, m), with columns, shape (n, l), and rows, shape (k, m + l).
-
-        Raises `SingularError` where that is impossible.
-        """
+        """Factor A, (n, m), with columns, (n, l), and rows, (k, m + l), or raise `SingularError`."""
         sparse, scale = sp.issparse(matrix), np.ones((matrix.shape[0] + len(rows), 1))
         if sparse:
             largest = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
@@ -67,7 +63,7 @@ class Bordered:
                 raise SingularError(str(error)) from error
 
     def solve(self, rhs: Array, adjoint: bool = False) -> Array:
-        """The solution of M x = rhs, one column or several, or of M* x = rhs."""
+        """The solution of M x = rhs, or M* x = rhs, for one or more columns."""
         columns = rhs.reshape(len(rhs), -1)
         if sp.issparse(self.matrix):
             x = self._sparse(columns.astype(self.matrix.dtype), adjoint)
@@ -78,7 +74,7 @@ class Bordered:
         return np.asarray(x.reshape(rhs.shape))
 
     def _sparse(self, rhs: Array, adjoint: bool) -> Array:
-        """With one correction, since small rows are weak pivots."""
+        """One correction makes up for weak pivots."""
         how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
         rhs = rhs if adjoint else rhs * self.scale
         x: Array = self.lu.solve(rhs, how)
@@ -96,10 +92,10 @@ class Bordered:
 
 @frozen(eq=False)
 class NearlySingular:
-    """The solution of [[A, b], [c*, 0]] (v, s) = (0, 1) and of the adjoint system, (w, s*) = (0, 1).
+    """Solutions of [[A, b], [c*, 0]] (v, s) = (0, 1) and of the adjoint system, (w, s*) = (0, 1).
 
-    s vanishes where A is singular, since s = det A / det [[A, b], [c*, 0]], and v and w span the null spaces then; its
-    derivative is -w* A' v (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 4.1).
+    s vanishes where A is singular, with null vectors v and w; s' = -w* A' v (Govaerts, Numerical Methods for
+    Bifurcations of Dynamical Equilibria, Section 4.1).
     """
 
     factors: Bordered
@@ -108,24 +104,13 @@ class NearlySingular:
     left: Array
     s: complex
     made: int
-    """How many factorisations it took."""
+    """Number of factorisations."""
 
 
 def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
-    """Border a matrix by b and c, or, where these are nearly orthogonal to its null vectors, by the null vectors.
+    """Border a matrix, (n, n), by unit vectors b and c, or, if nearly orthogonal to its null vectors, by these.
 
-    Nothing is remembered from one matrix to the next, so that a path that is resumed is the one that was not stopped.
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array, shape (n, n)
-    b, c : ndarray, shape (n,)
-        Of unit length.
-
-    Raises
-    ------
-    SingularError
-        If the bordered matrix is singular: more than one rank is lost, or the border says nothing.
+    Matrices share no state, so resumed paths are the same. Raises `SingularError` if several ranks are lost.
     """
     unit = np.zeros(len(b) + 1)
     unit[-1] = 1.0

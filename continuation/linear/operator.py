@@ -15,11 +15,11 @@ from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
 
 LARGEST_RESIDUAL = 1e-4
-"""Largest residual, relative to the right-hand side, of a solution; that of a condition number of 1e12."""
+"""Relative to the right-hand side; that of condition number 1e12."""
 
 RESTART = 100
 CYCLES = 20
-"""GMRES keeps RESTART vectors of length N + 1, and gives up after CYCLES restarts."""
+"""GMRES keeps RESTART vectors and stops after CYCLES restarts."""
 
 
 def _operator(operator: Any) -> Matrix:
@@ -28,14 +28,14 @@ def _operator(operator: Any) -> Matrix:
 
 @frozen(eq=False)
 class Operator:
-    """A matrix known by its products alone, with an optional approximation of its inverse.
+    """A matrix known by its products, with an optional preconditioner.
 
     Parameters
     ----------
     operator : LinearOperator
         H_y, shape (N, N).
     preconditioner : LinearOperator, optional
-        An approximation of H_y^{-1}, shape (N, N).
+        Approximates H_y^{-1}, shape (N, N).
     """
 
     operator: Matrix = field(converter=_operator)
@@ -52,7 +52,7 @@ class Operator:
         return int(n), int(m)
 
     def toarray(self) -> Array:
-        """A dense copy, shape (N, N), for N products."""
+        """A dense copy, by N products."""
         return np.asarray(self.operator @ np.eye(self.shape[0]))
 
     def __matmul__(self, other: Array) -> Array:
@@ -61,10 +61,9 @@ class Operator:
 
 @frozen(eq=False)
 class Krylov:
-    """The bordered operator, solved by GMRES at each call.
+    """The bordered operator, solved by GMRES.
 
-    `bordered`: With its last row multiplied by `scale`, which brings it to the size of the others. `inverse`: The
-    bordered preconditioner, a LinearOperator of order N + 1.
+    `scale` multiplies the last row; `inverse` is the bordered preconditioner.
     """
 
     bordered: BorderedMatrix
@@ -73,19 +72,16 @@ class Krylov:
 
     @property
     def sign(self) -> int:
-        """0: products do not tell the sign of a determinant."""
+        """0: products do not tell the sign."""
         return 0
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,).
-
-        Raises `SingularError` if GMRES does not converge.
-        """
+        """The solution z, shape (N + 1,); `SingularError` if GMRES does not converge."""
         rhs = join(r, self.scale * rho)
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
             left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
-        # A z of size 1 / eps makes any residual round-off: that is how a singular operator answers.
+        # A singular operator yields z of size 1 / eps, whose residual is round-off.
         if not (accurate and left <= LARGEST_RESIDUAL):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
@@ -94,7 +90,7 @@ class Krylov:
         return z
 
     def approximate(self, r: Array, rho: float) -> Array:
-        """The same to six digits: an iteration that measures its own residual gains them with each increment."""
+        """Solve to six digits."""
         return self._gmres(join(r, self.scale * rho))
 
     def _gmres(self, rhs: Array) -> Array:
@@ -107,14 +103,11 @@ class Krylov:
 
 
 def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
-    """Prepare GMRES: the size of H_y by one product, and block elimination with its preconditioner.
-
-    Raises `SingularError` if a product with H_y is not finite, or the border is zero.
-    """
+    """Prepare GMRES; `SingularError` if a product is not finite or the border is zero."""
     n, length = len(column), float(np.linalg.norm(row))
     if length == 0:
         raise SingularError("The bordered operator is singular: the border is zero.")
-    # For a vector of random signs, E |A v|^2 is the squared Frobenius norm.
+    # For random signs, E |A v|^2 is the squared Frobenius norm.
     probe = np.where(np.random.default_rng(n).random(n) < 0.5, -1.0, 1.0)
     with np.errstate(all="ignore"):
         size = float(np.linalg.norm(matrix @ probe))

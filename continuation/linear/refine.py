@@ -1,4 +1,4 @@
-"""The refinement that every structure shares: residuals measured row by row."""
+"""Iterative refinement with row-wise residuals."""
 
 from __future__ import annotations
 
@@ -13,17 +13,14 @@ from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
-"""Corrections that a solve may take before its answer is called inaccurate: each gains the digits of TRUSTED. Here no
-ratio of increments is watched, as in `continuation.contraction`, since the residual itself is at hand and decides."""
+"""Limit per solve: each correction gains the digits of TRUSTED."""
 
 BACKWARD_ERROR = 16 * float(np.finfo(float).eps)
-"""Row-wise backward error below which a solution cannot be improved."""
+"""Row-wise backward error of round-off."""
 
 TRUSTED = 1e-6
-"""Largest relative error of H_y^{-1} H_lam, and smallest relative Schur complement, that block elimination may have.
-
-Refinement then gains six digits a step, and the signs of det H_y and of the Schur complement are certain.
-"""
+"""Largest relative error of H_y^{-1} H_lam, and smallest relative Schur complement: refinement then gains six digits a
+step, and both signs are certain."""
 
 
 class Factored(Protocol):
@@ -41,16 +38,16 @@ class Factored(Protocol):
 
 @frozen(eq=False)
 class BorderedMatrix:
-    """The matrix ``M = [[A, column], [row']]`` itself, to measure residuals with."""
+    """``M = [[A, column], [row']]``, to measure residuals with."""
 
     matrix: Matrix
-    """A: anything with ``@``, (N, N)."""
+    """Supports ``@``, shape (N, N)."""
     column: Array
     """(N,)."""
     row: Array
     """(N + 1,)."""
     row_sums: Array
-    """Sums of magnitudes of the rows of A, or a bound of that size; shape (N,)."""
+    """Row sums of |A|, or a bound, shape (N,)."""
 
     def __attrs_post_init__(self) -> None:
         for name, entries in (("H_y", self.row_sums), ("H_lam", self.column), ("border", self.row)):
@@ -59,7 +56,7 @@ class BorderedMatrix:
 
     @classmethod
     def of(cls, matrix: Matrix, column: Array, row: Array) -> BorderedMatrix:
-        """Of a matrix whose magnitudes can be had."""
+        """With row sums of ``abs(matrix)``."""
         with np.errstate(over="ignore"):
             return cls(matrix, column, row, abs(matrix) @ np.ones(len(column)))
 
@@ -76,11 +73,7 @@ class BorderedMatrix:
         return gap
 
     def negligible(self, gap: Array, z: Array, rhs: Array) -> bool:
-        """Whether the residual `gap` of `z` is round-off in each row.
-
-        The measure is invariant under scaling of rows, and under a change of the unit of lambda (Oettli & Prager 1964,
-        with |y| replaced by its largest entry).
-        """
+        """Whether `gap`, the residual of `z`, is round-off in each row, in any units (Oettli & Prager 1964)."""
         largest = np.abs(z[:-1]).max()
         size = np.abs(rhs)
         size[:-1] += self.row_sums * largest + np.abs(self.column * z[-1])
@@ -89,7 +82,7 @@ class BorderedMatrix:
 
 
 def join(r: Array, rho: float) -> Array:
-    """The right-hand side (r, rho) in one new array, shape (N + 1,)."""
+    """(r, rho) in one new array."""
     rhs = np.empty(len(r) + 1)
     rhs[:-1] = r
     rhs[-1] = rho
@@ -98,10 +91,7 @@ def join(r: Array, rho: float) -> Array:
 
 @without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
-    """M z = rhs by `solve`, an approximate inverse, corrected at most `REFINEMENTS` times.
-
-    Returns z, and whether its residual is round-off.
-    """
+    """Solve M z = rhs by an approximate inverse and corrections; also whether the residual is round-off."""
     z = solve(rhs)
     for _ in range(REFINEMENTS):
         gap = bordered.residual(z, rhs)

@@ -1,4 +1,4 @@
-"""Numpy's warnings switched off, once for many evaluations: each time by itself takes as long as a small residual."""
+"""Numpy's warnings switched off once: switching takes as long as a small residual."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ Found = TypeVar("Found")
 _silent: ContextVar[bool] = ContextVar("silent", default=False)
 
 silent: Callable[[], bool] = _silent.get
-"""Whether numpy warns of nothing since somebody, in this thread or task, is within a `Silence`."""
+"""Whether this thread or task is within a `Silence`."""
 
 
 class Silence:
-    """Within, numpy warns of nothing."""
+    """A context without numpy warnings."""
 
     __slots__ = ("_before", "_errors")
     _before: Token[bool]
@@ -36,13 +36,7 @@ class Silence:
 
 
 def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Found]], Callable[Given, Found]]:
-    """Decorates a function within which numpy is not to warn, as `numpy.errstate` does; free of charge in a `Silence`.
-
-    Parameters
-    ----------
-    **ignored
-        As of `numpy.errstate`: each "ignore".
-    """
+    """Decorator: no numpy warnings within; free of charge in a `Silence`."""
 
     def decorate(function: Callable[Given, Found]) -> Callable[Given, Found]:
         guarded = np.errstate(**ignored)(function)

@@ -1,4 +1,4 @@
-"""Sparse matrices: factored by themselves, or with a border as a whole."""
+"""Sparse matrices, factored with or without a border."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from continuation.linear.system import BorderedSystem, SingularError, Solver
 
 
 def canonical(matrix: Matrix) -> Matrix:
-    """The matrix by columns, each entry once."""
+    """The matrix in csc format, without duplicates."""
     matrix = csc_array(matrix, dtype=float)
     if not matrix.has_canonical_format:
         matrix = matrix.copy()
@@ -23,19 +23,13 @@ def canonical(matrix: Matrix) -> Matrix:
 
 
 def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
-    """Factor the bordered matrix as one sparse matrix with scaled rows.
+    """Factor the bordered matrix as one sparse matrix; `SingularError` if singular or not finite.
 
-    The dense row of the border doubles the fill and the time of a factorisation (five-point Laplacian, m = 100), and
-    its size, which is a matter of units, can make that ten times: elimination, which depends on H_y alone, comes first.
-
-    Raises
-    ------
-    SingularError
-        If a pivot is exactly zero, or an entry is not finite.
+    The dense border row doubles fill and time (five-point Laplacian, m = 100), so elimination comes first.
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     n = len(column)
-    # The last row at a hundredth of the others: then it is not eliminated early, where it would fill the factors.
+    # A small last row is eliminated late and does not fill the factors.
     sizes = np.append(bordered.row_sums + np.abs(column), 100 * np.abs(row).max())
     if not sizes.all():
         raise SingularError(f"The bordered matrix is singular: its row {int(np.argmin(sizes))} is zero.")
@@ -55,10 +49,5 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
 
 
 def factor_square(matrix: Matrix) -> SparseFactor | None:
-    """Factor a sparse matrix by itself, by what suits it and is installed; None where a pivot is exactly zero.
-
-    Parameters
-    ----------
-    matrix : csc_array of shape (N, N)
-    """
+    """Factor a csc matrix by the method that suits it; None if a pivot is zero."""
     return Factoring().factor(matrix)

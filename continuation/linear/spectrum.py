@@ -1,4 +1,4 @@
-"""Eigenvalues of H_y for questions of stability: all of them, the ones on the right, or no more than their signs."""
+"""Eigenvalues of H_y for stability: all, the rightmost, or only signs."""
 
 from __future__ import annotations
 
@@ -18,41 +18,38 @@ from continuation.linear.sparse import factor_square
 from continuation.linear.symmetric import Symmetric, factor_ldl
 
 ALL_OF_DENSE = 100
-"""Up to this order all eigenvalues of a dense matrix are computed: 8 ms there, and 80 ms at twice the order."""
+"""Largest order for all eigenvalues: 8 ms, and 80 ms at twice the order."""
 
 WANTED = 6
-"""Eigenvalues on the right that are computed beyond that, where nothing is said."""
+"""Default number of eigenvalues beyond that."""
 
 OFF_AXIS = 1e-10
-"""The real part, relative to the largest of the eigenvalues known, from which an eigenvalue counts as unstable: events
-are located to that."""
+"""Least real part of an unstable eigenvalue, relative to the largest modulus; events are located to that."""
 
 SHIFT = 0.517
-"""Of the bound on real parts: in the middle of where unstable eigenvalues may be, and not on a round number."""
+"""Fraction of the bound on real parts; no round number."""
 
 LEAST_SHIFT = 1e-6
-"""At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
+"""Relative to the diagonal; a singular matrix needs a shift."""
 
 SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
-"""Eigenvalues are computed until the error of their real parts, relative to these, is the first, so that it is known on
-which side they are; for the rightmost and the one nearest to the axis, the second. Near the axis that is as good as an
-event needs that is located to 1e-10: down to the last, relative to the eigenvalue."""
+"""Relative errors of real parts: SURE tells the side, DIGITS holds for the rightmost and the one nearest to the axis;
+LAST_DIGITS of the eigenvalue suffices, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
-"""At most so many dimensions of the Krylov space for each eigenvalue and one more; 30 in all are usual for six.
-After so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
+"""Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
+solves."""
 
 LOST_DIRECTION = 1e-14
-"""A vector that loses all but this to the ones before it has no direction of its own."""
+"""Relative size of a vector after orthogonalisation at which it counts as zero."""
 
 
 @frozen(eq=False)
 class Spectrum:
-    """What is known of the eigenvalues of a matrix.
+    """Known eigenvalues of a matrix.
 
-    `values`: Those computed, the rightmost first; none where only signs were asked for. `unstable`: How many lie to the
-    right of the imaginary axis. `covered`: Whether no other eigenvalue can lie there. `solves`: With the one
-    factorisation of Arnoldi's method.
+    `values`: the rightmost first, empty if only signs are known. `unstable`: number of positive real parts, complete if
+    `covered`.
     """
 
     values: np.ndarray[Any, np.dtype[np.complex128]]
@@ -62,38 +59,36 @@ class Spectrum:
 
     @property
     def rightmost(self) -> float:
-        """The largest real part; nan where only signs are known."""
+        """The largest real part, or nan."""
         return float(self.values[0].real) if self.values.size else np.nan
 
     @property
     def size(self) -> float:
-        """The largest modulus of those computed; 1 where there are none."""
+        """The largest computed modulus, or 1."""
         return float(np.abs(self.values).max()) if self.values.size else 1.0
 
     @property
     def pairs(self) -> np.ndarray[Any, np.dtype[np.complex128]]:
-        """The upper one of each complex pair, the rightmost first."""
+        """Eigenvalues with positive imaginary part."""
         return self.values[self.values.imag > OFF_AXIS * self.size]
 
     @property
     def unstable_pairs(self) -> int:
-        """How many complex pairs lie to the right."""
+        """Number of unstable complex pairs."""
         return int(np.count_nonzero(self.pairs.real > 0.0))
 
     @property
     def critical(self) -> bool:
-        """Whether an eigenvalue lies on the axis, to half of the digits: then the count is as round-off wants it."""
+        """Whether an eigenvalue is on the axis to half of the digits."""
         return bool((np.abs(self.values.real) <= np.sqrt(OFF_AXIS) * self.size).any())
 
 
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide on stability.
 
-    Of a `Symmetric` matrix the inertia of its LDL' factorisation (Sylvester's law); of a small one all, by the QR
-    method; of others the k nearest to a shift in the middle of where unstable ones may be, by Arnoldi's method on the
-    inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem
-    bounds real and imaginary parts by the eigenvalues of the symmetric and of the skew part, which Gershgorin's discs
-    bound: where the disc that Arnoldi's method has emptied covers what is left on the right, the count is complete.
+    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k nearest to
+    a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
+    Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
 
     Parameters
     ----------
@@ -105,7 +100,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     Raises
     ------
     TypeError
-        If the matrix is an operator, which has no entries.
+        If the matrix is an operator.
     ArithmeticError
         If Arnoldi's method does not converge.
     """
@@ -120,10 +115,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
 
 
 def nearest_zero(matrix: Matrix, k: int) -> Any:
-    """The eigenvalues of a small matrix, or the k nearest to zero of a large one, to four digits.
-
-    `matrix`: ndarray or sparse array, shape (N, N). Raises `ArithmeticError` as `spectrum`.
-    """
+    """All eigenvalues of a small matrix, or the k nearest to zero to four digits."""
     n = matrix.shape[0]
     if n <= ALL_OF_DENSE:
         return _all(matrix)
@@ -140,7 +132,7 @@ def _all(matrix: Matrix) -> Any:
 
 
 def plain(matrix: Matrix) -> Matrix:
-    """The same matrix, sparse if it is banded."""
+    """The matrix, sparse if banded."""
     return matrix.tosparse() if isinstance(matrix, Banded) else matrix
 
 
@@ -152,12 +144,7 @@ def _counted(values: Any, covered: bool = True) -> Spectrum:
 
 
 def bounds(matrix: Matrix) -> tuple[float, float]:
-    """The largest real part and the largest imaginary part that an eigenvalue may have (Bendixson, Gershgorin).
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array, shape (N, N)
-    """
+    """Bounds of real and imaginary parts of eigenvalues (Bendixson's theorem, Gershgorin's discs)."""
     turned = csc_array(matrix.T) if issparse(matrix) else matrix.T
     rows = abs(matrix + turned).sum(axis=1)
     diagonal = matrix.diagonal()
@@ -167,10 +154,9 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 
 
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
-    """The k eigenvalues nearest to a shift in the middle of where unstable ones can be."""
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
-    # Where all are stable the shift is not much farther away than what oscillates, and no eigenvalue itself.
+    # If all are stable, the shift is comparable to oscillations.
     shift = SHIFT * max(real, 0.1 * imaginary, LEAST_SHIFT * float(np.abs(matrix.diagonal()).max()))
     inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
     wanted, solves = min(k, n), 0
@@ -178,7 +164,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        # The ones that are stored, and that cross: the rightmost, and the nearest to the axis.
+        # The rightmost and the one nearest to the axis are stored, and cross.
         kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
         wanted = np.full(theta.size, SURE)
         wanted[kept] = DIGITS
@@ -191,17 +177,16 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
         covered = wanted == n or real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
         if covered or not (found.real > 0.0).all():
             return evolve(_counted(found, covered), solves=solves)
-        # There are more on the right than were asked for.
+        # There may be more on the right.
         wanted = min(2 * wanted, n)
 
 
 def dominant(
     apply: Callable[[Array], Array], start: Array, k: int, known: Callable[[Any, Array], bool]
 ) -> tuple[Any, int]:
-    """The k eigenvalues of largest modulus, by Arnoldi's method, and how often the operator was applied.
+    """The k eigenvalues of largest modulus, by Arnoldi's method, and the number of applications.
 
-    `start` of shape (N,). `known`: Of eigenvalues and bounds on their errors: whether they are good enough. Raises
-    `ArithmeticError` if they do not converge.
+    `known(theta, error)`: whether they are accurate. Raises `ArithmeticError` if not.
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))
@@ -210,7 +195,7 @@ def dominant(
     for j in range(1, most + 1):
         x = apply(Q[j - 1])
         size = float(np.linalg.norm(x))
-        # Always twice: once leaves copies of eigenvalues that are none.
+        # Twice: once leaves spurious copies of eigenvalues.
         for _ in range(2):
             part = Q[:j] @ x
             H[:j, j - 1] += part

@@ -1,4 +1,4 @@
-"""SuperLU, which comes with scipy: factors of any sparse matrix, with the sign of its determinant."""
+"""SuperLU: factors of any sparse matrix, with the sign of its determinant."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ from continuation.linear.look import Look
 def permutation_sign(permutation: NDArray[np.integer]) -> int:
     """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n).
 
-    The cycles are the connected components of the graph that joins i with permutation[i].
-
     Parameters
     ----------
     permutation : ndarray of int
@@ -34,18 +32,18 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 
 @frozen(eq=False)
 class SparseFactor:
-    """A sparse matrix made ready for solves.
+    """A factored sparse matrix.
 
     Attributes
     ----------
     name : str
-        Of what made it, as a message has it.
+        The method's.
     solve : callable
-        The solution of A x = rhs, shape (N,); `rhs` is not modified.
+        Solves A x = rhs, shape (N,); keeps `rhs`.
     fill : int
-        How many numbers it holds; 0 where that is not told.
+        Number of entries; 0 if unknown.
     tell_sign : callable
-        The sign of det A, 0 where that is not known.
+        Sign of det A; 0 if unknown.
     """
 
     name: str
@@ -55,26 +53,19 @@ class SparseFactor:
 
     @property
     def sign(self) -> int:
-        """Sign of det A, worked out when it is asked for."""
+        """Sign of det A."""
         return self.tell_sign()
 
 
 def superlu_sign(lu: Any) -> int:
-    """Sign of the determinant of what SuperLU factored: from the pivots and the parity of both permutations."""
+    """Sign of the determinant, from pivots and both permutations."""
     negative = np.count_nonzero(lu.U.diagonal() < 0)
     exchanges = permutation_sign(lu.perm_r) * permutation_sign(lu.perm_c)
     return -exchanges if negative % 2 else exchanges
 
 
 def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
-    """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero.
-
-    Parameters
-    ----------
-    matrix : csc_array of shape (N, N)
-    **how
-        As for `scipy.sparse.linalg.splu`.
-    """
+    """SuperLU factors of a csc matrix, with options of `splu`; None if a pivot is zero."""
     try:
         lu = splu(matrix, **how)
     except RuntimeError as error:
@@ -86,19 +77,18 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
 
 @frozen
 class SuperLUMethod:
-    """Factorisations by SuperLU, which take any matrix.
+    """SuperLU, for any matrix.
 
-    `weak_pivots`: On a symmetric pattern a pivot on the diagonal, however weak, keeps the ordering's fill, and is left
-    to a refinement; other matrices are ordered by columns. Without it rows are exchanged.
+    `weak_pivots`: keep weak diagonal pivots of symmetric patterns, which saves fill; refinement corrects.
     """
 
     name: ClassVar[str] = "superlu"
     weak_pivots: bool = True
 
     def factor(self, look: Look) -> SparseFactor | None:
-        """The factors; None where a pivot is exactly zero."""
+        """The factors; None if a pivot is zero."""
         if not self.weak_pivots:
-            # On a face of a symmetric pattern this ordering fills half as much as the default one.
+            # On faces of a symmetric pattern MMD fills half as much as the default.
             return factor_superlu(look.matrix, permc_spec="MMD_AT_PLUS_A")
         if not look.symmetric_pattern:
             return factor_superlu(look.matrix, permc_spec="COLAMD")

@@ -21,15 +21,14 @@ def _dense(matrix: Any) -> Array:
 
 @frozen(eq=False)
 class Symmetric:
-    """A dense symmetric matrix, which costs half the work of a general one.
+    """A dense symmetric matrix, at half the cost of a general one.
 
     Parameters
     ----------
     matrix : Array
-        Shape (N, N). Both triangles are read; a matrix that is not symmetric is solved right, but slowly.
+        Shape (N, N). An unsymmetric matrix is solved correctly, but slowly.
     definite : bool, optional
-        True: Cholesky first. None: Cholesky first where the diagonal is positive. False: LDL' at once. A wrong guess
-        costs time only.
+        True: Cholesky first. None: if the diagonal is positive. False: LDL'. A wrong guess only costs time.
     """
 
     matrix: Array = field(converter=_dense)
@@ -57,17 +56,14 @@ class Symmetric:
 
 @frozen(eq=False)
 class Cholesky:
-    """factor A = L L', the factor 1 or 2: that which makes A's first entry 1 to 2 times a power of four.
-
-    Then A and 2 A have one L, whose entries are rounded alike: units that are powers of two change no digit.
-    """
+    """factor A = L L', where the factor, 1 or 2, gives A and 2 A one L, so powers of two change no digit."""
 
     lower: Array
     factor: float = 1.0
 
     @property
     def least_pivot(self) -> float:
-        """The least diagonal entry of L, squared: of A what elimination leaves there."""
+        """The least pivot of A."""
         return least(self.lower.diagonal()) ** 2 / self.factor
 
     @property
@@ -83,14 +79,14 @@ class Cholesky:
 
 @frozen(eq=False)
 class LDL:
-    """P' A P = L D L' with the diagonal pivoting of Bunch and Kaufman."""
+    """P' A P = L D L' with Bunch-Kaufman pivoting."""
 
     ldu: Array
     pivots: NDArray[np.int32]
-    """As LAPACK gives them: from one, and negative in both rows of a block of order two."""
+    """LAPACK's: from one, negative in 2x2 blocks."""
 
     def count(self, side: int) -> int:
-        """How many eigenvalues of A have a sign, by the inertia of D: each block of order two has one of either."""
+        """Number of eigenvalues with a sign, by inertia: each 2x2 block has one of either."""
         single = self.ldu.diagonal()[self.pivots > 0]
         return (len(self.pivots) - single.size) // 2 + int(np.count_nonzero(side * single > 0.0))
 
@@ -105,7 +101,7 @@ class LDL:
 
 
 def factor_symmetric(symmetric: Symmetric) -> Factored | None:
-    """Factor a symmetric matrix by itself; None where a pivot is exactly zero."""
+    """Factor a symmetric matrix; None if a pivot is zero."""
     matrix = symmetric.matrix
     positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
     if positive and (factor := factor_cholesky(matrix.T)) is not None:
@@ -115,17 +111,14 @@ def factor_symmetric(symmetric: Symmetric) -> Factored | None:
 
 
 def factor_ldl(matrix: Array) -> tuple[LDL, bool]:
-    """L D L' of a symmetric matrix by itself, and whether no pivot is zero."""
+    """L D L' of a symmetric matrix, and whether no pivot is zero."""
     work, _ = dsytrf_lwork(len(matrix), lower=1)
     ldu, pivots, info = dsytrf(matrix.T, lower=1, lwork=int(work))
     return LDL(ldu, pivots), info == 0
 
 
 def factor_cholesky(matrix: Array) -> Cholesky | None:
-    """The Cholesky factor of a symmetric matrix by itself; None where a pivot is not positive.
-
-    `matrix`, of shape (N, N): Only the lower triangle is read.
-    """
+    """The Cholesky factor, from the lower triangle; None if a pivot is not positive."""
     factor = 2.0 - math.frexp(matrix[0, 0])[1] % 2
     lower, info = dpotrf(matrix if factor == 1.0 else factor * matrix, lower=1, clean=0)
     return Cholesky(lower, factor) if info == 0 else None

@@ -1,4 +1,4 @@
-"""What a factored bordered matrix can do; every structure of `continuation.linear` is one of these."""
+"""The interface of a factored bordered matrix."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from continuation.arrays import Array
 
 
 class SingularError(ArithmeticError):
-    """The bordered matrix has no factorisation: it is singular to working precision, or not finite."""
+    """The bordered matrix is singular to working precision, or not finite."""
 
 
 class BorderedSystem(Protocol):
-    """A factorisation of the bordered matrix ``[[H_y, H_lam], [border']]`` of order N + 1.
+    """A factorisation of ``[[H_y, H_lam], [border']]``, order N + 1.
 
-    A structure whose `solve` refines its answer may offer `approximate`, with the same arguments, which does not.
+    `approximate`, if present, solves without refinement.
     """
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant, +1 or -1; 0 where the structure cannot tell (operators)."""
+        """Sign of the determinant, +1 or -1; 0 if unknown (operators)."""
         ...
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,), of ``H_y dy + H_lam dlam = r`` and ``border . z = rho``.
+        """The solution z of ``H_y dy + H_lam dlam = r``, ``border . z = rho``.
 
         Parameters
         ----------
@@ -42,11 +42,7 @@ class BorderedSystem(Protocol):
 
 @frozen(eq=False)
 class Solver:
-    """A matrix that is factored, or a bordered system that another one solves.
-
-    `solve`: The solution for a right-hand side, or for that of a `BorderedSystem`. `tell_sign`: The sign of the
-    determinant, worked out when it is asked for.
-    """
+    """A factored matrix or bordered system, given by its `solve` and `tell_sign`."""
 
     solve: Callable[..., Array]
     tell_sign: Callable[[], int]

@@ -1,10 +1,8 @@
 """BLAS on one thread while a path is traced or an LCP is solved.
 
-numpy and scipy each bring an OpenBLAS with a pool of threads of its own. After a call the threads of one pool spin for
-a while, on the cores that the other pool is about to use; a library that calls both in turn loses by that. Measured on
-two idle cores, two threads in place of one take 1.0 to 6 times as long (`lcp.solve` with a positive definite matrix,
-n = 50 to 4,000; dense paths, n = 50 to 2,400); on two busy cores up to 400 times. Where OPENBLAS_NUM_THREADS or
-OMP_NUM_THREADS is set, the user has chosen, and nothing is changed.
+numpy and scipy each have an OpenBLAS pool, whose threads spin after a call on cores that the other needs: two threads
+take 1.0 to 6 times as long as one on two idle cores (n = 50 to 4,000), up to 400 times on busy ones.
+OPENBLAS_NUM_THREADS or OMP_NUM_THREADS override this.
 """
 
 from __future__ import annotations
@@ -21,16 +19,16 @@ from scipy.linalg import _fblas
 
 CHOSEN = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 SYMBOLS = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", "openblas_{}_num_threads")
-"""What OpenBLAS calls its functions in the wheels of numpy and of scipy, and in other distributions."""
+"""OpenBLAS function names in numpy, scipy and elsewhere."""
 
 
 @cache
 def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
-    """Functions that get and set the number of threads of each OpenBLAS; none for another BLAS, or a user's choice."""
+    """Getter and setter of each OpenBLAS's thread count; none if the user has chosen."""
     found = []
     if not any(name in os.environ for name in CHOSEN):
         for module in (_umath_linalg, _fblas):
-            # A symbol is looked for in what the module was linked with, too.
+            # Linked libraries are searched too.
             library = ctypes.CDLL(module.__file__)
             name = next((name for name in SYMBOLS if hasattr(library, name.format("set"))), None)
             if name is not None:
@@ -39,10 +37,7 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
 
 
 class _OneThread(ContextDecorator):
-    """BLAS uses one thread within; the numbers of before come back when the last of those inside has left.
-
-    The number is the process's own, so there is one counter for it: it costs 2 us where nobody else is inside.
-    """
+    """BLAS uses one thread within; the last to leave restores the counts (2 us)."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -66,4 +61,4 @@ class _OneThread(ContextDecorator):
 
 
 one_thread = _OneThread()
-"""``with one_thread:``, or a decorator of a function."""
+"""``with one_thread:``, or a decorator."""

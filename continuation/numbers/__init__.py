@@ -1,8 +1,7 @@
-"""Numbers or intervals, times a truncated algebra: arrays on which functions in plain numpy give series and ranges.
+"""Arrays of truncated series of numbers or intervals, accepted by numpy.
 
-A ring (floats, or ends of intervals that are rounded outward) and an algebra (Taylor series along one direction, first
-derivatives in many, either beside one direction more) make an array that numpy accepts. One dispatch of numpy's
-functions serves all of them. Users call `continuation.jets` and `continuation.intervals`.
+A ring (floats, or outward-rounded intervals) times an algebra (Taylor series, first derivatives, or either with one
+more direction). Users call `continuation.jets` and `continuation.intervals`.
 """
 
 from continuation.numbers.array import Interval, Jet

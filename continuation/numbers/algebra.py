@@ -1,8 +1,7 @@
-"""Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d, whose products beyond some order are zero.
+"""Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d.
 
-One direction to high order (`TaylorAlgebra`), many to first order (`Gradient`), or either one beside one direction more
-(`Beside`). All keep coefficients along the leading axis, so everything linear is shared. They differ in products, and
-so in f(c_0 + d) = sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
+Coefficients lie along the leading axis, so algebras share linear operations. They differ in products, and in f(c_0 + d)
+= sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
 """
 
 from __future__ import annotations
@@ -22,27 +21,27 @@ Store: TypeAlias = Any
 
 
 class Algebra(Protocol):
-    """What is done to coefficients."""
+    """Operations on coefficients."""
 
     def degrees(self, length: int) -> list[int]:
-        """The power of d to which each of so many coefficients belongs."""
+        """Each coefficient's power of d."""
         ...
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-        """A bilinear product, which broadcasts over the leading axis, of two that are no constants."""
+        """A bilinear product of two non-constants."""
         ...
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """sum_k f_k d^k, where a = c_0 + d is no constant; f may be longer than is asked for."""
+        """The sum of f_k d^k, where a = c_0 + d is not constant."""
         ...
 
 
 @frozen
 class TaylorAlgebra:
-    """sum_k c_k s**k, truncated: the coefficients of one direction."""
+    """Truncated series sum_k c_k s**k."""
 
     def degrees(self, length: int) -> list[int]:
-        """One after the other."""
+        """Coefficient k has degree k."""
         return list(range(length))
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
@@ -55,7 +54,7 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """Power k of d begins at s**k."""
+        """The sum of f_k d^k; d**k begins at s**k."""
         power = d = a[1:]
         out = f[1] * d
         for k in range(2, len(a)):
@@ -67,10 +66,10 @@ class TaylorAlgebra:
 
 @frozen
 class Gradient:
-    """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions at once."""
+    """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions."""
 
     def degrees(self, length: int) -> list[int]:
-        """One, of all but the first."""
+        """0, 1, 1, ..."""
         return [0] + [1] * (length - 1)
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
@@ -86,15 +85,12 @@ class Gradient:
 
 @frozen
 class Beside:
-    """x + y s with s^2 = 0 and x, y of another algebra: its derivatives along one direction.
-
-    Over `Gradient`, derivatives along one direction of those in many. Coefficients: all of x, then all of y.
-    """
+    """x + y s with s^2 = 0 and x, y of the inner algebra. Coefficients: all of x, then all of y."""
 
     inner: Algebra
 
     def degrees(self, length: int) -> list[int]:
-        """One more with s."""
+        """Those of x, then those of y, one higher."""
         inner = self.inner.degrees(length // 2)
         return [*inner, *(degree + 1 for degree in inner)]
 
@@ -105,7 +101,7 @@ class Beside:
         return joined(product(self.inner, multiply, x, v), slope)
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The chain rule: f(x) and f'(x) y."""
+        """f(x) and f'(x) y."""
         x, y = _halves(a)
         slopes = [f[1], *(float(k) * f[k] for k in range(2, len(f)))]
         return joined(_at(self.inner, f, x), product(self.inner, operator.mul, _at(self.inner, slopes, x), y))
@@ -120,22 +116,22 @@ def _at(algebra: Algebra, f: list[Any], a: Store) -> Store:
 
 
 def joined(*parts: Store) -> Store:
-    """Coefficients one after the other."""
+    """Coefficients concatenated along the leading axis."""
     return moved(lambda *arrays: np.concatenate(arrays), *parts)
 
 
 def lengthened(a: Store, length: int) -> Store:
-    """With zeros for the coefficients behind."""
+    """`a` with zero coefficients appended."""
     return a if len(a) == length else moved(lambda x: series.padded(x, length), a)
 
 
 def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-    """A bilinear product, of constants too."""
+    """A bilinear product; either factor may be constant."""
     return multiply(a, b) if len(a) == 1 or len(b) == 1 else algebra.product(multiply, a, b)
 
 
 def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
-    """A / b, of constants too: q = (a - d q) / b_0, where b = b_0 + d, as often as d is no zero."""
+    """The quotient, by q = (a - d q) / b_0 with b = b_0 + d, iterated until powers of d vanish."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
     if len(b) == 1:
@@ -150,7 +146,7 @@ def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
-    """A function of one argument, given by its rule on truncated Taylor series."""
+    """Apply a function of one argument, given by its rule."""
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
@@ -162,7 +158,7 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
 
 
 def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
-    """Taylor coefficients over a box: none where the function has no value, though its derivatives have a formula."""
+    """Taylor coefficients over a box; nan where the function is undefined."""
     f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
     told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
     return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]

@@ -1,4 +1,4 @@
-"""The two rings: arrays of series of numbers, `Jet`, and of intervals, `Interval`."""
+"""Arrays of truncated series of numbers, `Jet`, and of intervals, `Interval`."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
 class Entries:
-    """What arrays with axes have. Scalars are no sequences, so that np.array([y[0], ...]) holds them as entries."""
+    """Array methods; scalars lack them, so np.array([y[0], ...]) stores scalars as entries."""
 
     __slots__ = ()
 
     def __array__(self: Any, dtype: Any = None, copy: Any = None) -> Any:
         if asked_by_sparse():
-            return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
+            return np.array(None, dtype=object)  # scipy then declines, and Python calls `__rmatmul__`
         raise TypeError(
             f"{self.NAME} cannot become a plain array, which would drop its {self.LOST}: leave out numpy.asarray, use "
             "np.stack for np.array([...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a "
@@ -42,7 +42,7 @@ class Entries:
             part = self.moved(operator.itemgetter((*(slice(None),) * self.OWN, key)))
         else:
             part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
-        return part if part.ndim else part.copy()  # a scalar does not change with the array
+        return part if part.ndim else part.copy()  # a scalar must not change with the array
 
     def __setitem__(self: Any, key: Any, value: Any) -> None:
         value = self.lifted(value)
@@ -60,7 +60,6 @@ class Entries:
 
 
 def _own_last(x: Array, own: int) -> Array:
-    """The array's own axes behind the others, out of the way of any index."""
     return x.transpose(*range(own, x.ndim), *range(own))
 
 
@@ -69,7 +68,6 @@ def _own_first(x: Array, own: int) -> Array:
 
 
 def _behind(key: Any, own: int) -> tuple[Any, ...]:
-    """The index that leaves the last axes alone."""
     key = key if isinstance(key, tuple) else (key,)
     if not any(part is Ellipsis for part in key):
         key = (*key, Ellipsis)
@@ -79,21 +77,20 @@ def _behind(key: Any, own: int) -> tuple[Any, ...]:
 class Jet(Truncated):
     """An array of truncated power series, sum_k c[k] s**k.
 
-    It has the shape of one coefficient and goes through numpy as an array of that shape would: operators, indexing,
-    assignment, ufuncs and the common numpy functions. Comparisons look at the leading coefficient. An operation that
-    jets do not know raises TypeError and names itself; one without a series at that coefficient `JetDomainError`.
+    numpy treats a jet as an array with the shape of one coefficient; comparisons use the leading one. Unsupported
+    operations raise TypeError, functions without a series `JetDomainError`.
 
     Parameters
     ----------
     c : array_like, (K + 1, *shape)
-        The coefficients, s**0 first; that of s**k is ``jet.c[k]``.
+        Coefficients; ``jet.c[k]`` belongs to s**k.
     """
 
     __slots__ = ()
     OWN, WHO, ONE, NAME, LOST = 1, "jets", "a jet", "a Jet", "series"
 
     def __new__(cls, c: Any) -> Jet:
-        """Check the coefficients and copy them."""
+        """Check and copy the coefficients."""
         coefficients = np.array(c, dtype=float)
         if coefficients.ndim == 0 or len(coefficients) == 0:
             raise ValueError(f"c has shape {coefficients.shape}; expected (order + 1, *shape) with order >= 0")
@@ -102,7 +99,7 @@ class Jet(Truncated):
 
     @property
     def order(self) -> int:
-        """The highest power of s that is kept."""
+        """The highest power of s."""
         return len(self.c) - 1
 
     def __repr__(self) -> str:
@@ -116,11 +113,10 @@ class ArrayJet(Entries, Jet):
 
 
 class Interval(Truncated):
-    """An array of intervals that goes through numpy as an array of its shape would.
+    """An array of intervals, which numpy treats as an array of its shape.
 
-    Every operation gives intervals that hold all values of the operation on numbers of its operands, round-off
-    included; plain arrays that it meets are taken as the numbers that they are. Where an operation is not defined on
-    part of an interval the result is nan. A comparison that is not decided raises `UndecidedError`.
+    Results contain all values of the operation on numbers of its operands, round-off included; nan where it is
+    undefined on part of an interval. Plain arrays count as exact. Undecided comparisons raise `UndecidedError`.
 
     Parameters
     ----------
@@ -130,14 +126,14 @@ class Interval(Truncated):
     Raises
     ------
     ValueError
-        If an end is nan, or lo above hi.
+        If an end is nan, or lo > hi.
     """
 
     __slots__ = ()
     OWN, WHO, ONE, NAME, LOST = 2, "interval arrays", "an interval array", "an Interval", "width"
 
     def __new__(cls, lo: Any, hi: Any = None) -> Interval:
-        """Check the ends and copy them."""
+        """Check and copy the ends."""
         low = np.array(lo, dtype=float)
         high = low if hi is None else np.array(hi, dtype=float)
         if low.shape != high.shape or not (low <= high).all():
@@ -148,12 +144,12 @@ class Interval(Truncated):
 
     @property
     def lo(self) -> Array:
-        """Lower ends of the value; where there are many boxes their number comes first in its shape."""
+        """Lower ends; the first axis counts boxes if there are several."""
         return self._values(self.c.lo)
 
     @property
     def hi(self) -> Array:
-        """Upper ends of the value."""
+        """Upper ends, likewise."""
         return self._values(self.c.hi)
 
     def _values(self, ends: Array) -> Array:
@@ -161,7 +157,7 @@ class Interval(Truncated):
 
     @staticmethod
     def constant(x: Array) -> Store:
-        """Numbers as coefficients, for one box.
+        """Numbers as coefficients for one box.
 
         Parameters
         ----------
@@ -176,7 +172,7 @@ class Interval(Truncated):
 
 
 class ArrayInterval(Entries, Interval):
-    """One with axes."""
+    """An `Interval` with axes."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Ranges of functions and of their derivatives over boxes."""
+"""Ranges of functions and derivatives over boxes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.numbers.truncated import wrap
 
 
 def with_gradient(lo: Array, hi: Array) -> Any:
-    """The boxes as variables, with the unit vectors as their derivatives: `lo`, `hi` of shape (boxes, m)."""
+    """Boxes, shape (boxes, m), as variables whose derivatives are unit vectors."""
     count, m = lo.shape
     seeds = np.zeros((1 + m, count, m))
     seeds[np.arange(1, 1 + m), :, np.arange(m)] = 1.0
@@ -25,32 +25,32 @@ def with_gradient(lo: Array, hi: Array) -> Any:
 
 
 def along_curve(value: Ends, first: Ends, half_second: Ends) -> Any:
-    """A curve over intervals of its parameter: value, derivative and half the second one, of shape (boxes, m) each."""
+    """A curve over parameter intervals, from value, derivative and half the second one, each (boxes, m)."""
     parts = value, first, half_second
     return wrap(Ends(np.stack([x.lo for x in parts]), np.stack([x.hi for x in parts])), TAYLOR)
 
 
 def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
-    """The range of f over a box, or an interval array that holds it.
+    """An enclosure of the range of f over a box.
 
     Parameters
     ----------
     f : callable
-        A function of an array, written in numpy functions that interval arrays know (those that jets know).
+        A function of an array, written in numpy functions that jets support.
     lo, hi : array_like
-        Ends of the box; one point unless `hi` is given.
+        Ends of the box; `hi` defaults to `lo`.
 
     Returns
     -------
     Interval
-        nan where f is not defined everywhere in the box.
+        nan where f is undefined on part of the box.
 
     Raises
     ------
     TypeError
-        Where f uses an operation that interval arrays do not know; the message names it.
+        If f uses an unsupported operation; the message names it.
     UndecidedError
-        Where f compares numbers and the box does not decide.
+        If the box does not decide a comparison in f.
     """
     box = Interval(lo, hi)
     image: Interval = box.lifted(f(box))
@@ -58,7 +58,7 @@ def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
 
 
 def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
-    """The range of the Jacobian of f: R^m -> R^n over a box, shape (n, m): of the generalized one where f has kinks.
+    """An enclosure of the Jacobian of f: R^m -> R^n over a box, shape (n, m); the generalized one at kinks.
 
     Parameters
     ----------
@@ -77,8 +77,7 @@ def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
 
     References
     ----------
-    Moore, Kearfott and Cloud, Introduction to Interval Analysis (2009); forward derivatives as in Griewank and
-    Walther (2008).
+    Moore, Kearfott and Cloud, Introduction to Interval Analysis (2009); Griewank and Walther (2008).
     """
     box = Interval(lo, hi)
     image = box.lifted(f(with_gradient(box.c.lo[0], box.c.hi[0])))
@@ -87,6 +86,6 @@ def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
 
 
 def derivatives(image: Interval, m: int) -> tuple[Array, Array]:
-    """Lower and upper ends of the derivatives of an image, shape (boxes, *shape, m); zero for a constant."""
+    """Lower and upper ends of an image's derivatives, shape (boxes, *shape, m)."""
     slopes = lengthened(image.c, 1 + m)
     return np.moveaxis(slopes.lo[1:], 0, -1), np.moveaxis(slopes.hi[1:], 0, -1)

@@ -1,4 +1,4 @@
-"""Series and derivatives of functions that are written in plain numpy."""
+"""Series and derivatives of functions written in plain NumPy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.numbers.array import Jet
 from continuation.numbers.truncated import Truncated, alike, common, wrap
 
 BLOCK = 128
-"""Directions of a Jacobian that go through the function together; more only cost memory."""
+"""Jacobian columns per call; more only cost memory."""
 
 
 def variable(x0: Any, direction: Any, order: int) -> Jet:
@@ -24,11 +24,10 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     Parameters
     ----------
     x0 : array_like
-        Where the line is at s = 0.
     direction : array_like
         Broadcast to the shape of `x0`.
     order : int
-        The highest power of s that is kept, 0 or more.
+        Highest power of s.
     """
     x0 = _numbers(x0, "x0")
     order = _order(order, 0)
@@ -41,7 +40,7 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
 
 
 def evaluate(jet: Jet, s: Any) -> Array:
-    """The polynomial's value at `s`: shape ``(*s.shape, *jet.shape)``.
+    """The polynomial's value at `s`, shape ``(*s.shape, *jet.shape)``.
 
     Parameters
     ----------
@@ -62,11 +61,11 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
     Parameters
     ----------
     f : callable
-        A function of an array, written in numpy functions that jets know.
+        A function of an array, written in numpy functions that jets support.
     x0, direction : array_like
-        The line; `direction` is broadcast to the shape of `x0`.
+        `direction` is broadcast.
     order : int
-        The highest power of s.
+        Highest power of s.
 
     Returns
     -------
@@ -75,9 +74,9 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
     Raises
     ------
     TypeError
-        Where `f` uses an operation that jets do not know; the message names it.
+        If `f` uses an unsupported operation; the message names it.
     JetDomainError
-        Where `f` has no Taylor series.
+        If `f` has no Taylor series.
     """
     x = variable(x0, direction, order)
     return np.asarray(_image(f, x))
@@ -89,9 +88,9 @@ def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int)
     Parameters
     ----------
     f : callable
-        A function of an array, written in numpy functions that jets know.
+        As in `taylor`.
     x, v : array_like
-        Point and direction; `v` is broadcast to the shape of `x`.
+        `v` is broadcast.
     order : int
 
     Returns
@@ -109,14 +108,14 @@ def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int)
 
 
 def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
-    """The Jacobian of f: R^m -> R^n at x, without truncation error: shape (n, m).
+    """The Jacobian of f: R^m -> R^n at x, without truncation error.
 
-    The directions go through `f` together (128 at a time), so `f` is called once for m <= 128.
+    One call of f yields up to 128 columns.
 
     Parameters
     ----------
     f : callable
-        Written in numpy functions that jets know; of any shape, which gives ``(*shape, m)``.
+        As in `taylor`; an image of any shape gives ``(*shape, m)``.
     x : array_like, shape (m,)
 
     Returns
@@ -137,12 +136,12 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
 
 
 def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
-    """The derivative along v of the Jacobian of f: R^m -> R^n at x, f''(x)[v, .], without truncation error.
+    """f''(x)[v, .] of f: R^m -> R^n, without truncation error.
 
     Parameters
     ----------
     f : callable
-        Written in numpy functions that jets know.
+        As in `taylor`.
     x, v : array_like, shape (m,)
 
     Returns
@@ -163,7 +162,6 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
 
 
 def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
-    """The last coefficients of f on lines with these directions, the unit vectors, a block at a time."""
     columns = []
     for begin in range(0, m, BLOCK):
         directions = np.eye(min(BLOCK, m - begin), m, begin)
@@ -174,24 +172,23 @@ def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> A
 def path_series(
     residual: Callable[[Any, Any], Any], u0: Any, tangent: Any, solve: Callable[[Array, float], Array], order: int
 ) -> Array:
-    """Taylor coefficients of the path u(s) through u0 with H(u(s)) = H(u0) and border . (u(s) - u0) = s.
+    """Taylor coefficients of the path u(s) with H(u(s)) = H(u0) and border . (u(s) - u0) = s.
 
-    Coefficient k solves the bordered system of the point for (-R_k, 0), R_k the k-th coefficient of H along the
-    series found so far: one factorisation serves all orders (Cochelin, Computers & Structures 53 (1994)
-    1181-1192). The residual is called order - 1 times, with jets of growing order.
+    Coefficient k solves the bordered system for (-R_k, 0), where R_k is coefficient k of H along the lower terms. One
+    factorisation serves all orders (Cochelin, Computers & Structures 53 (1994) 1181-1192).
 
     Parameters
     ----------
     residual : callable
-        ``residual(y, lam) -> (N,)`` in plain numpy; a list or an array of scalars will do.
+        ``residual(y, lam) -> (N,)`` in plain numpy, called order - 1 times.
     u0 : (N + 1,) array
         The point (y, lam).
     tangent : (N + 1,) array
-        The first coefficient: H' tangent = 0 and border . tangent = 1.
+        H' tangent = 0 and border . tangent = 1.
     solve : callable
         ``solve(r, rho) -> (N + 1,)`` solves ``[H'; border'] z = (r, rho)``.
     order : int
-        The highest power of s, 1 or more.
+        1 or more.
 
     Returns
     -------
@@ -218,12 +215,12 @@ def path_series(
 
 
 def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
-    """f(x) and f'(x) v, where x and v may be numbers, jets or interval arrays; numbers may be objects.
+    """f(x) and f'(x) v for numbers (also objects), jets or interval arrays.
 
     Parameters
     ----------
     f : callable
-        Written in numpy functions that jets know.
+        As in `taylor`.
     x, v : array_like, Jet or Interval, of one shape
 
     Returns

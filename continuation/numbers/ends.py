@@ -1,7 +1,7 @@
-"""Lower and upper ends of intervals: the four operations, rounded outward.
+"""Intervals as lower and upper ends, with arithmetic rounded outward.
 
-An end that is nan says that the operation has no value for some number of the interval. It stays nan through every
-later operation, and no comparison with it holds, so that nothing is ever proved from it.
+An end is nan if the operation is undefined on part of the interval. Later operations keep nan, and no comparison with
+nan holds.
 """
 
 from __future__ import annotations
@@ -21,31 +21,29 @@ Mask = NDArray[np.bool_]
 EPS = 2.0**-52
 
 TINIEST = 2.0**-1074
-"""The smallest positive number: what underflow may cost one operation."""
+"""Smallest positive number: the largest underflow error of an operation."""
 
 
 def down(x: Array) -> Array:
-    """The next number below: below every real number that rounds to x."""
+    """The next lower number."""
     return np.nextafter(x, -np.inf)
 
 
 def up(x: Array) -> Array:
-    """The next number above."""
+    """The next higher number."""
     return np.nextafter(x, np.inf)
 
 
 def up_sum(x: Array) -> Array:
-    """A number above every real sum that rounds to x, by at most two units in the last place; x where that is zero.
+    """A number above every real sum that rounds to x, by at most two ulps; x if zero.
 
-    EPS |x| is at least the distance from x to the next number: it is exact, or, where it is subnormal, is rounded to no
-    less than that. A sum that is zero or subnormal is exact, as sums do not underflow. `nextafter` takes several times
-    as long.
+    EPS |x| is at least the distance to the next number. Sums that are zero or subnormal are exact. `nextafter` takes
+    several times as long.
     """
     return x + EPS * np.abs(x)
 
 
 def _outward(x: Array, out: Array) -> Array:
-    """How far the end of a product is to be moved."""
     np.multiply(np.abs(x, out=out), EPS, out=out)
     return np.add(out, TINIEST, out=out)
 
@@ -59,7 +57,7 @@ class Ends:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of either array."""
+        """Shape of either array."""
         return self.lo.shape
 
     @property
@@ -79,7 +77,7 @@ class Ends:
         self.lo[key], self.hi[key] = value.lo, value.hi
 
     def copy(self) -> Ends:
-        """Ends in memory of their own, two arrays even where both are the same."""
+        """A copy with two separate arrays."""
         return Ends(self.lo.copy(), self.hi.copy())
 
     def __neg__(self) -> Ends:
@@ -99,19 +97,19 @@ class Ends:
         return as_ends(other) - self
 
     def __mul__(self, other: Ends | float) -> Ends:
-        """The product; the square, which is nowhere negative, of an array with itself."""
+        """The product; the square, which is not negative, if other is self."""
         return whole_power(self, 2) if other is self else self._times(as_ends(other))
 
     __rmul__ = __mul__
 
     def _times(self, other: Ends) -> Ends:
-        # In place, as to ask for memory takes as long as to multiply.
+        # In place: allocation takes as long as multiplication.
         a, b = np.asarray(self.lo * other.lo), np.asarray(self.lo * other.hi)
         lo, hi = np.asarray(np.minimum(a, b)), np.asarray(np.maximum(a, b))
         if self.lo is not self.hi:
             for product in (np.multiply(self.hi, other.lo, out=a), np.multiply(self.hi, other.hi, out=b)):
                 lo, hi = np.minimum(lo, product, out=lo), np.maximum(hi, product, out=hi)
-        # As `up_sum`, and the tiniest number for what underflows; a product with a factor that is zero is zero.
+        # TINIEST covers underflow; a product with a factor zero is exact.
         zero = None if np.all(hi) else (lo == 0.0) & (hi == 0.0)
         lo, hi = lo - _outward(lo, a), hi + _outward(hi, b)
         if zero is not None and zero.any():
@@ -135,7 +133,7 @@ class Ends:
         return whole_power(self, n) if n >= 0 else 1.0 / whole_power(self, -n)
 
     def where(self, condition: Mask) -> Ends:
-        """The same, without value (nan) where the condition does not hold."""
+        """The intervals, nan where `condition` is false."""
         return Ends(np.where(condition, self.lo, np.nan), np.where(condition, self.hi, np.nan))
 
     def middle(self) -> Array:
@@ -143,7 +141,7 @@ class Ends:
         return 0.5 * self.lo + 0.5 * self.hi
 
     def radius(self, middle: Array) -> Array:
-        """At least the distance of any number of the interval from `middle`."""
+        """A bound of the distance of numbers inside from `middle`."""
         return np.maximum(up_sum(self.hi - middle), up_sum(middle - self.lo))
 
     def magnitude(self) -> Array:
@@ -157,16 +155,16 @@ def thin(x: Array) -> Ends:
 
 
 def as_ends(x: Ends | float) -> Ends:
-    """`x` as it is, or a number as an interval."""
+    """`x` itself, or a number as an interval."""
     return x if isinstance(x, Ends) else thin(np.asarray(x, dtype=float))
 
 
 Coefficients = TypeVar("Coefficients", Array, Ends)
-"""Numbers, or intervals: what an algebra is built over."""
+"""Numbers or intervals."""
 
 
 def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
-    """Numbers as `move` places them; of intervals both ends, in one array if they are one array."""
+    """Apply `move` to numbers or to both ends; shared ends stay shared."""
     if not isinstance(arrays[0], Ends):
         return move(*arrays)
     lo = move(*(x.lo for x in arrays))
@@ -174,7 +172,7 @@ def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
 
 
 def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coefficients:
-    """Sums of up to `count` entries, in whatever order `add` takes them."""
+    """Sums of up to `count` entries, enclosed whatever order `add` uses."""
     if not isinstance(x, Ends):
         return np.asarray(add(x))
     if count <= 1:
@@ -201,7 +199,6 @@ def whole_power(u: Ends, n: int) -> Ends:
 
 
 def _nonnegative_power(u: Ends, n: int) -> Ends:
-    """By repeated squaring, each product of its range."""
     if n == 1:
         return u
     half = _nonnegative_power(u, n // 2)
@@ -212,30 +209,20 @@ def _nonnegative_power(u: Ends, n: int) -> Ends:
 
 
 def accumulated(count: float) -> float:
-    """Relative error of a sum of `count` products in any order, against the sum of their sizes.
+    """Relative error of a sum of `count` products, against the sum of their sizes.
 
-    gamma_n = n u / (1 - n u) of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1; with room
-    for the rounding of the bound itself, which is computed by as many operations.
+    gamma_n of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged for rounding of the
+    bound.
     """
     return float((2.0 * count + 8.0) * EPS)
 
 
 def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float | None = None) -> Ends:
-    """The range of sums of products, as of `matmul` or `einsum`: middle and radius, by the plain product.
+    """The range of sums of products (`matmul`, `einsum`), by middles and radii (Rump, BIT 39 (1999) 534-554).
 
-    Rump, BIT 39 (1999) 534-554: four products of matrices, and no change of the rounding mode.
-
-    Parameters
-    ----------
-    product : callable
-        Bilinear in two arrays, its entries sums of products of entries, each computed with an error below
-        `accumulated`: numpy's, in whatever order they add.
-    a : Ends or sparse matrix
-    b : Ends
-    count : float, optional
-        How many products are in a sum, where a is a sparse matrix.
+    `product` is bilinear, with errors below `accumulated`. `count`: products per sum, if a is sparse.
     """
-    # Intervals of one number, made by `thin`, have no radius to be computed: of large matrices that is what costs.
+    # Radii cost most for large matrices; thin intervals have none.
     (ma, ra), (mb, rb) = _middle_and_radius(a), _middle_and_radius(b)
     size_a, size_b = abs(ma), abs(mb)
     centre, sizes = product(ma, mb), product(size_a, size_b)
@@ -248,7 +235,7 @@ def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float
         radius = radius + product(ra, size_b if rb is None else size_b + rb)
     radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
     if not sizes.all() and isinstance(a, Ends):
-        # Sums of sizes that are zero are sums of zeros: no product of two nonzero entries can underflow to it.
+        # A zero sum of sizes is exact if products of nonzero entries do not underflow.
         least = [float(np.min(s, where=s > 0.0, initial=np.inf)) for s in (a.magnitude(), b.magnitude())]
         exact = least[0] * least[1] > 1e-290
         radius = np.where((sizes + radius == 4.0 * count * TINIEST) & exact, 0.0, radius)
@@ -256,7 +243,6 @@ def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float
 
 
 def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
-    """Numbers in the middle of intervals, and how far others are away; no radius of numbers themselves."""
     if not isinstance(x, Ends) or x.lo is x.hi:
         return getattr(x, "lo", x), None
     middle = x.middle()

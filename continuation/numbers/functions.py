@@ -1,4 +1,4 @@
-"""What numpy's functions (as opposed to its ufuncs) do to arrays of series."""
+"""Rules of numpy functions for arrays of series."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from continuation.numbers.ends import added
 from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
 from continuation.numbers.ufuncs import sums_of_products
 
-# --- reductions -------------------------------------------------------------------------------------------
+# Reductions
 
 
 def _axes(axis: Any, ndim: int) -> tuple[int, ...]:
@@ -77,7 +77,7 @@ def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
     return (places[:, None] == x).astype(float) @ gather(weights)
 
 
-# --- products ---------------------------------------------------------------------------------------------
+# Products
 
 
 def _dot(a: Any, b: Any) -> Any:
@@ -102,7 +102,7 @@ def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
 
 
 def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
-    """Two operands at a time: what neither the others nor the result have is summed at once."""
+    """Contract two operands at a time; sum as soon as possible."""
     like = next(x for x in map(gather, operands) if isinstance(x, Truncated))
     if not isinstance(subscripts, str):
         raise like.unknown("numpy.einsum without subscripts")
@@ -135,7 +135,7 @@ def _contracted(spec: str, a: Any, b: Any) -> Any:
     return wrap(product(algebra, sums_of_products(partial(np.einsum, spec)), a.c, b.c), algebra)
 
 
-# --- assembly ---------------------------------------------------------------------------------------------
+# Assembly
 
 
 def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
@@ -170,11 +170,11 @@ def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
     return out + value
 
 
-# --- shape ------------------------------------------------------------------------------------------------
+# Shape
 
 
 def _moved(function: Any) -> Callable[..., Any]:
-    """The rule of a function that only selects entries or zeros, found by applying it to the numbers of the entries."""
+    """A rule for functions that only select entries or zeros: apply them to entry numbers."""
 
     def rule(a: Any, *args: Any, **keywords: Any) -> Any:
         a = gather(a)
@@ -250,4 +250,4 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
         )
     },
 }
-"""Every numpy function that these arrays know."""
+"""All supported numpy functions."""

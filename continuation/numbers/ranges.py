@@ -1,7 +1,7 @@
-"""Ranges of elementary functions over intervals; those of their derivatives follow by `continuation.numbers.series`.
+"""Ranges of elementary functions over intervals.
 
-Numpy's functions are not correctly rounded. What is assumed of them on this platform is an error of at most 4 units in
-the last place of the result; ranges are widened by 8. `tests/continuation/intervals` measures it against 200 digits.
+Errors of NumPy's functions are assumed to be at most 4 ulps, and ranges are widened by 8.
+`tests/continuation/intervals` compares with 200 digits.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from continuation.numbers.ends import EPS, Ends, Mask, absolute, down, up
 LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
-"""Arguments of circular functions beyond this are not reduced: the range is then all of [-1, 1]."""
+"""In radians; larger arguments have the range [-1, 1]."""
 
 Function = Callable[[Ends], Ends]
 
 
 def near(x: float) -> Ends:
-    """A number that is rounded to x, or to a neighbour of it."""
+    """An interval around a number that rounds to x or a neighbour."""
     return Ends(down(np.asarray(x)), up(np.asarray(x)))
 
 
@@ -30,13 +30,13 @@ PI, LN2, LN10 = near(np.pi), near(float(np.log(2.0))), near(float(np.log(10.0)))
 
 
 def widened(lo: Array, hi: Array) -> Ends:
-    """Ends as a library function computed them, moved apart by what it may be wrong; none where one is not finite."""
+    """Ends moved apart by the library's error; nan where one is not finite."""
     apart = Ends(lo - LIBRARY_ULPS * np.spacing(np.abs(lo)), hi + LIBRARY_ULPS * np.spacing(np.abs(hi)))
     return apart.where(np.isfinite(lo) & np.isfinite(hi))
 
 
 def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
-    """The range of a function that only rises, or only falls, and has no values but between two numbers."""
+    """The range of a monotone function, clipped to [least, most]."""
 
     def rule(u: Ends) -> Ends:
         one, other = f(u.lo), f(u.hi)
@@ -47,15 +47,15 @@ def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float =
 
 
 def sqrt(u: Ends) -> Ends:
-    """Correctly rounded, by IEEE 754."""
+    """The range; IEEE 754 rounds correctly."""
     return Ends(np.maximum(down(np.sqrt(u.lo)), 0.0), up(np.sqrt(u.hi)))
 
 
-# --- circular and hyperbolic functions --------------------------------------------------------------------
+# Circular and hyperbolic functions
 
 
 def _meets(u: Ends, offset: float) -> Mask:
-    """Whether some (offset + 2 k) pi may lie in u: as the number of turns up to either end, with room for rounding."""
+    """Whether u may contain some (offset + 2 k) pi."""
     lo, hi = u.lo / np.pi - offset, u.hi / np.pi - offset
     slack = 8.0 * EPS * (1.0 + u.magnitude())
     found: Mask = np.floor((hi + slack) / 2.0) >= np.ceil((lo - slack) / 2.0)
@@ -76,13 +76,13 @@ sin, cos = _oscillating(np.sin, 0.5, -0.5), _oscillating(np.cos, 0.0, 1.0)
 
 
 def tan(u: Ends) -> Ends:
-    """No value across a pole."""
+    """The range, nan across a pole."""
     pole = _meets(u, 0.5) | _meets(u, -0.5) | (u.magnitude() > LARGEST_ANGLE)
     return _monotone(np.tan)(u).where(~pole)
 
 
 def power(u: Ends, r: float) -> Ends:
-    """u**r where r is no whole number, for u > 0."""
+    """u**r for u > 0, r not an integer."""
     return _monotone(lambda x: np.power(x, r), 0.0)(u).where(u.lo > 0.0)
 
 
@@ -110,4 +110,4 @@ RANGES: dict[np.ufunc, Function] = {
     np.arccosh: _monotone(np.arccosh, 0.0),
     np.arctanh: _monotone(np.arctanh),
 }
-"""The range of a function, by numpy's name for it."""
+"""The range of a function, by its ufunc."""

@@ -1,10 +1,8 @@
-"""Truncated power series: each function's own, by the equation that it solves with its derivative.
+"""Truncated power series of elementary functions, by recurrences from their differential equations.
 
-A series is an array of shape (L, *shape), coefficient k of s**k first; a constant has L = 1. Over intervals it is a
-list: the argument is then x + s, its coefficients (x, 1, 0, ...), and what is exactly zero or one is a number, by which
-nothing is multiplied; the coefficients that result are the ranges of a function's derivatives over k!. The recurrences
-are those of Griewank & Walther, "Evaluating Derivatives" (2nd ed., 2008), ch. 13, and Neidinger, SIAM Review
-52 (2010) 545-563: they give coefficient k from those below it.
+A series is an array, (L, *shape), s**0 first; a constant has L = 1. Over intervals it is a list of intervals and exact
+zeros and ones: of x + s, whose results are ranges of derivatives over k!. Recurrences: Griewank & Walther, "Evaluating
+Derivatives" (2nd ed., 2008), ch. 13; Neidinger, SIAM Review 52 (2010) 545-563.
 """
 
 from __future__ import annotations
@@ -22,30 +20,29 @@ from continuation.numbers.ranges import LN2, LN10, RANGES, near
 from continuation.numbers.ranges import power as power_range
 
 PowerSeries: TypeAlias = Any
-"""An array, or a list of intervals and of exact numbers."""
+"""An array, or a list of intervals and exact numbers."""
 
 Rule: TypeAlias = Callable[[PowerSeries], PowerSeries]
 """A function of one series."""
 
 
 class JetDomainError(ArithmeticError):
-    """A function was asked for its series at a point where it has none: sqrt(0), log(0), abs(0), 1/0."""
+    """A function has no series at a point, as sqrt(0), log(0), abs(0), 1/0."""
 
 
 def demand(fine: Any, operation: str, need: str) -> None:
-    """Raise JetDomainError, naming the operation, unless every entry is fine."""
+    """Raise JetDomainError unless `fine` holds everywhere."""
     if not np.all(fine):
         raise JetDomainError(f"{operation} has no Taylor series here: {need}")
 
 
 def _demand(u: PowerSeries, fine: Callable[[Array], Any], operation: str, need: str) -> None:
-    """As `demand`, of the leading coefficient; intervals have no value (nan) where a function has none."""
     if not isinstance(u, list):
         demand(fine(u[0]), operation, f"its argument's leading coefficient must {need}")
 
 
 def padded(u: Array, length: int) -> Array:
-    """The same series with zero coefficients behind it."""
+    """`u` with zero coefficients appended."""
     out = np.zeros((length, *u.shape[1:]), u.dtype)
     out[: len(u)] = u
     return out
@@ -56,11 +53,11 @@ def of(function: np.ufunc, x: Any) -> Any:
     return RANGES[function](x) if isinstance(x, Ends) else function(x)
 
 
-# --- products and quotients -------------------------------------------------------------------------------
+# Products and quotients
 
 
 def multiply(a: PowerSeries, b: PowerSeries) -> PowerSeries:
-    """Cauchy product of series of one length, as one contraction with a Toeplitz view of the second factor."""
+    """Cauchy product: a contraction with a Toeplitz view of b."""
     if isinstance(a, list):
         return [_dot(a[: k + 1], b[k::-1]) for k in range(len(a))]
     length = len(b)
@@ -97,7 +94,7 @@ def _dot(p: PowerSeries, q: PowerSeries) -> Any:
         return np.einsum("j...,j...->...", p, q)
     total: Any = 0.0
     for a, b in zip(p, q):
-        if a != 0.0 and b != 0.0:  # an interval is equal to no number
+        if a != 0.0 and b != 0.0:  # an interval equals no number
             term = b if a == 1.0 else a if b == 1.0 else a * b
             total = term if total == 0.0 else total + term
     return total
@@ -109,13 +106,13 @@ def _tail(p: PowerSeries, q: PowerSeries, k: int) -> Any:
 
 
 def _over(a: Any, b: Any) -> Any:
-    """A / b; 0 / b is 0, and x / 2 costs intervals less as a product, which is the same."""
+    """Quotient; intervals divide by two as a cheaper product."""
     if type(a) is float and a == 0.0:
         return a
     return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
 
 
-# --- helpers of the recurrences ---------------------------------------------------------------------------
+# Helpers
 
 
 def _room(*series: PowerSeries) -> PowerSeries:
@@ -131,19 +128,17 @@ def _orders(u: Array) -> Array:
 
 
 def _weighted(u: PowerSeries) -> PowerSeries:
-    """The coefficients k u_k, of s u'(s)."""
+    """The coefficients of s u'(s)."""
     return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
 
 
 def _scaled(u: PowerSeries, factor: Any) -> PowerSeries:
-    """The series factor u."""
     if isinstance(u, list):
         return [_dot([factor], [x]) for x in u]
     return u if type(factor) is float and factor == 1.0 else factor * u
 
 
 def _known(u: PowerSeries, constant: Ends) -> Any:
-    """A constant as an interval, or as the number that it is near to."""
     return constant if isinstance(u, list) else float(constant.middle())
 
 
@@ -156,11 +151,11 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
     return out
 
 
-# --- elementary functions ---------------------------------------------------------------------------------
+# Elementary functions
 
 
 def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
-    """Solves v' = rate v u'; `first` is what the value is of, where the function is off by a constant."""
+    """Solve v' = rate v u'; `first` then replaces the value."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = of(function, u[0])
     for k in range(1, len(u)):
@@ -170,7 +165,7 @@ def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.
 
 
 def _pair(u: PowerSeries, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[PowerSeries, PowerSeries]:
-    """Circular (sign -1) or hyperbolic (+1): v' = w u', w' = sign v u'."""
+    """Solve v' = w u', w' = sign v u': circular (-1) or hyperbolic (+1)."""
     du, v, w = _weighted(u), _room(u), _room(u)
     v[0], w[0] = of(sine, u[0]), of(cosine, u[0])
     for k in range(1, len(u)):
@@ -181,7 +176,7 @@ def _pair(u: PowerSeries, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[
 
 
 def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) -> PowerSeries:
-    """Solves v' = w u' with w = 1 + sign v**2; tan for sign +1, tanh for -1."""
+    """Solve v' = w u', w = 1 + sign v**2: tan (+1) or tanh (-1)."""
     du, v, w = _weighted(u), _room(u), _room(u)
     v[0] = of(function, u[0])
     if isinstance(u, list):
@@ -196,7 +191,7 @@ def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) ->
 
 
 def _circle(u: PowerSeries, sign: int) -> PowerSeries:
-    """Sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
+    """Factors keep sign (1 - u**2) accurate near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
@@ -214,11 +209,11 @@ BY_SLOPE: dict[np.ufunc, Inverse] = {
     np.arccosh: (lambda u: sqrt(_circle(u, -1)), lambda x: x <= 1, "be above 1"),
     np.arctanh: (lambda u: _circle(u, 1), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
 }
-"""Functions with the derivative 1 / D(u): D, where there is none, and what the argument must do instead."""
+"""Functions with derivative 1 / D(u): D, where undefined, and what the argument must do."""
 
 
 def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
-    """Solves v' = u' / D(u)."""
+    """Solve v' = u' / D(u)."""
     divisor, outside, need = BY_SLOPE[function]
     _demand(u, lambda x: ~np.asarray(outside(x)), f"numpy.{function.__name__}", need)
     slope = divide(_weighted(u), divisor(u))
@@ -229,7 +224,7 @@ def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
     return np.asarray(out)
 
 
-# --- powers and roots -------------------------------------------------------------------------------------
+# Powers and roots
 
 
 def sqrt(u: PowerSeries) -> PowerSeries:
@@ -238,19 +233,19 @@ def sqrt(u: PowerSeries) -> PowerSeries:
     out = _room(u)
     out[0] = of(np.sqrt, u[0])
     twice = 2.0 * out[0]
-    for k in range(1, len(u)):  # by v v = u, since v_0 / u_0 has a wider range than 1 / v_0
+    for k in range(1, len(u)):  # v v = u: v_0 / u_0 has a wider range than 1 / v_0
         out[k] = _over(u[k] - _dot(out[1:k], out[k - 1 : 0 : -1]), twice)
     return out
 
 
 def cbrt(u: PowerSeries) -> PowerSeries:
-    """u**(1/3), for negative u too."""
+    """u**(1/3), also for u < 0."""
     _demand(u, lambda x: x != 0, "numpy.cbrt", "not be 0")
     return _power(u, as_ends(1.0) / 3.0 if isinstance(u, list) else 1 / 3, of(np.cbrt, u[0]))
 
 
 def absolute(u: PowerSeries) -> PowerSeries:
-    """The branch of +-u that is positive; over an interval with zero inside it has the slopes of both, and no more."""
+    """|u|; an interval around zero has both slopes, and nan as higher derivatives."""
     _demand(u, lambda x: x != 0, "numpy.absolute", "not be 0")
     if not isinstance(u, list):
         return np.asarray(np.sign(u[0]) * u)
@@ -272,12 +267,12 @@ def reciprocal(u: PowerSeries) -> PowerSeries:
 
 
 def power(u: PowerSeries, r: float) -> PowerSeries:
-    """u**r; whole r allow a leading coefficient <= 0, negative ones no 0."""
+    """u**r; integers allow a leading coefficient <= 0, negative ones not 0."""
     if r != int(r):
         _demand(u, lambda x: ~(x <= 0), "numpy.power", "be positive for a fractional power")
         return _power(u, r, power_range(u[0], r) if isinstance(u, list) else u[0] ** r)
     n = int(r)
-    if isinstance(u, list):  # of x + s
+    if isinstance(u, list):  # u = x + s
         counts = [comb(n, k) if n >= 0 else (-1) ** k * comb(k - n - 1, k) for k in range(len(u))]
         factors = [float(count) if abs(count) <= 2**53 else near(float(count)) for count in counts]
         return [_dot([factor], [u[0] ** (n - k)]) for k, factor in enumerate(factors)]
@@ -285,7 +280,7 @@ def power(u: PowerSeries, r: float) -> PowerSeries:
 
 
 def _whole_power(u: Array, n: int) -> Array:
-    """By repeated squaring: exact for polynomials, with no condition on the leading coefficient."""
+    """Repeated squaring, exact for polynomials."""
     if n < 0:
         demand(u[0] != 0, "numpy.power", "a negative power of a leading coefficient 0")
         return np.asarray(reciprocal(_whole_power(u, -n)))
@@ -298,8 +293,8 @@ def _whole_power(u: Array, n: int) -> Array:
 
 
 def _power(u: PowerSeries, r: Any, v0: Any) -> PowerSeries:
-    """Solves u v' = r v u'."""
-    if isinstance(u, list):  # of x + s
+    """Solve u v' = r v u'."""
+    if isinstance(u, list):  # u = x + s
         out: PowerSeries = [v0]
         for k in range(1, len(u)):
             out.append(out[k - 1] * (as_ends(r) - (k - 1.0)) / (float(k) * u[0]))
@@ -330,4 +325,4 @@ ELEMENTARY: dict[np.ufunc, Rule] = {
     np.tanh: lambda u: _tangent(u, np.tanh, np.cosh, -1),
     **{function: partial(_by_slope, function) for function in BY_SLOPE},
 }
-"""Functions of one argument, by numpy's."""
+"""Rules of one-argument functions, by ufunc."""

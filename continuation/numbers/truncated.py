@@ -1,7 +1,6 @@
-"""Arrays whose entries are truncated series of numbers or of intervals, accepted by numpy as arrays.
+"""Arrays of truncated series, accepted by numpy as arrays.
 
-A ring (`Jet`: numbers; `Interval`: intervals, many boxes at once) times a truncated algebra. What differs is in the
-coefficients `c`, an array or `Ends`, and in the algebra; everything else is shared.
+Kinds (`Jet`, `Interval`) differ in coefficients and algebra.
 """
 
 from __future__ import annotations
@@ -22,15 +21,15 @@ from continuation.numbers.ends import Ends, moved, sparse_product
 from continuation.numbers.series import ELEMENTARY
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}
-"""Rules by numpy function. The package fills it from `functions`, whose rules are built on `Truncated`."""
+"""Rules by numpy function, filled by the package, since `functions` imports `Truncated`."""
 
 
 METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
-"""Functions of numpy that arrays have as methods."""
+"""Numpy functions that arrays have as methods."""
 
 
 class Truncated(NDArrayOperatorsMixin):
-    """An array of truncated series that goes through numpy as an array of its shape would."""
+    """An array of truncated series."""
 
     __slots__ = ("algebra", "c")
 
@@ -39,7 +38,7 @@ class Truncated(NDArrayOperatorsMixin):
     ONE: ClassVar[str]
     NAME: ClassVar[str]
     LOST: ClassVar[str]
-    """Axes of the coefficients in front of the shape; what errors call such arrays, and what plain ones lack."""
+    """Number of axes in front of the shape; words for error messages."""
 
     c: Store
     algebra: Algebra
@@ -61,7 +60,7 @@ class Truncated(NDArrayOperatorsMixin):
 
     @property
     def dtype(self) -> np.dtype[np.float64]:
-        """That of the coefficients."""
+        """Always float64."""
         return np.dtype(np.float64)
 
     def __bool__(self) -> bool:
@@ -74,7 +73,7 @@ class Truncated(NDArrayOperatorsMixin):
         )
 
     def __getattr__(self, name: str) -> Any:
-        # numpy's loops over object arrays call a method of the function's name on each entry.
+        # numpy's object loops call a method of the function's name on each entry.
         function = getattr(np, name, None)
         if function not in ELEMENTARY and function not in METHODS:
             raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
@@ -84,7 +83,7 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap, (self.c.copy(), self.algebra)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
-        if method == "__call__" and not keywords:  # at once: it is asked for each operator
+        if method == "__call__" and not keywords:  # fast, since each operator comes here
             return self._call(ufunc, inputs)
         name = f"numpy.{ufunc.__name__}"
         if method != "__call__":
@@ -93,7 +92,7 @@ class Truncated(NDArrayOperatorsMixin):
         if keywords:
             raise self.unknown(f"{name} with {', '.join(keywords)}")
         result = self._call(ufunc, inputs)
-        if out is None or (isinstance(out, Truncated) and out.ndim == 0):  # scalars of numpy never change
+        if out is None or (isinstance(out, Truncated) and out.ndim == 0):  # numpy scalars never change
             return result
         if not isinstance(out, Truncated):
             raise TypeError(
@@ -119,88 +118,54 @@ class Truncated(NDArrayOperatorsMixin):
 
     @property
     def T(self) -> Any:
-        """The axes in reverse order."""
+        """The transpose."""
         return self.transpose()
 
     def copy(self) -> Any:
-        """An array of its own memory."""
+        """A copy."""
         return wrap(self.c.copy(), self.algebra)
 
     def reshape(self, *shape: Any) -> Any:
-        """The same entries in another shape; a view where that is possible.
-
-        Parameters
-        ----------
-        *shape : int
-            Or one tuple of them.
-        """
+        """The entries in another shape; a view if possible."""
         (shape,) = shape if len(shape) == 1 else (shape,)
         return self.moved(lambda x: x.reshape(*x.shape[: self.OWN], *np.atleast_1d(shape)))
 
     def ravel(self) -> Any:
-        """One axis."""
+        """The entries along one axis."""
         return self.reshape(-1)
 
     def flatten(self) -> Any:
-        """One axis, in memory of its own."""
+        """A copy along one axis."""
         return self.ravel().copy()
 
     def transpose(self, *axes: Any) -> Any:
-        """The axes in another order (reversed unless given), as a view.
-
-        Parameters
-        ----------
-        *axes : int
-            Or one tuple of them.
-        """
+        """A view with permuted axes, reversed by default."""
         if len(axes) == 1 and not isinstance(axes[0], int):
             (axes,) = axes
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
         own = self.OWN
         return self.moved(lambda x: x.transpose(*range(own), *(axis + own for axis in order)))
 
-    # --- not for functions that are evaluated ---------------------------------------------------------------
+    # Not for functions that are evaluated
 
     def unknown(self, operation: str) -> TypeError:
-        """The error for what these arrays cannot do.
-
-        Parameters
-        ----------
-        operation : str
-        """
+        """The error for an unsupported operation."""
         return TypeError(
             f"{self.WHO} do not know {operation}; write it with numpy functions that they know, or give a jacobian"
         )
 
     def moved(self, move: Callable[[Array], Array]) -> Any:
-        """What comes of an operation that only selects entries.
-
-        Parameters
-        ----------
-        move : callable
-            Of an array of shape (coefficients, *shape), for intervals (coefficients, boxes, *shape).
-        """
+        """Apply `move`, which selects entries, to arrays (coefficients, *shape), or (coefficients, boxes, *shape)."""
         return wrap(moved(move, self.c), self.algebra)
 
     def lifted(self, x: Any) -> Any:
-        """`x` as it is, or numbers as constants of this kind; lists and object arrays are stacked.
-
-        Parameters
-        ----------
-        x : array_like
-            Numbers, arrays of this kind, or both in lists.
-        """
+        """`x` itself, or numbers as constants of this kind."""
         x = x if isinstance(x, Truncated) else gather(x, self.ONE)
         return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
 
     @staticmethod
     def constant(x: Array) -> Store:
-        """Numbers as coefficients.
-
-        Parameters
-        ----------
-        x : ndarray
-        """
+        """Numbers as coefficients."""
         return x.astype(float, copy=False)[None]
 
     def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
@@ -211,7 +176,7 @@ class Truncated(NDArrayOperatorsMixin):
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
         if len(stores) == 2 and ufunc is not np.matmul:
             stores = list(ufuncs.aligned(*stores))
-        # Overflow shows as inf, as in any array; where no series exists, demand() raises.
+        # Overflow gives inf; demand() raises where no series exists.
         with np.errstate(all="ignore"):
             if ufunc in ufuncs.UFUNC_RULES:
                 return wrap(ufuncs.UFUNC_RULES[ufunc](algebra, *stores), algebra)
@@ -220,7 +185,6 @@ class Truncated(NDArrayOperatorsMixin):
         raise self.unknown(f"numpy.{ufunc.__name__}")
 
     def _sparse_product(self, a: Any, b: Any) -> Any:
-        """A sparse matrix of numbers times a vector, from either side."""
         matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
         if x.ndim != 1:
             raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
@@ -228,7 +192,7 @@ class Truncated(NDArrayOperatorsMixin):
 
 
 KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
-"""Scalars and arrays, by the type of the coefficients; each kind enters itself."""
+"""Scalar and array class by type of coefficients; each kind registers itself."""
 
 
 def wrap(c: Store, algebra: Algebra) -> Any:
@@ -240,7 +204,7 @@ def wrap(c: Store, algebra: Algebra) -> Any:
 
 
 def gather(x: Any, one: str = "an array of series") -> Any:
-    """`x` as it is, or as an array of numbers; lists and object arrays that hold truncated series are stacked."""
+    """`x` itself, an array of numbers, or stacked lists of truncated series."""
     if isinstance(x, Truncated):
         return x
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
@@ -257,7 +221,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 
 def common(operands: Any) -> Algebra:
-    """The algebra of those that are no constants: one, and over one ring."""
+    """The algebra of all operands that are not constant."""
     first, *others = operands if len(operands) == 1 else sorted(operands, key=lambda x: len(x.c) == 1)
     for x in others:
         constant = len(x.c) == 1 or (len(x.c) == len(first.c) and x.algebra == first.algebra)
@@ -269,7 +233,7 @@ def common(operands: Any) -> Algebra:
 
 
 def alike(parts: Any) -> list[Store]:
-    """The coefficients of arrays, as many of each and for as many boxes."""
+    """Coefficients, extended to equal numbers of coefficients and boxes."""
     length = max(len(x.c) for x in parts)
     stores = [lengthened(x.c, length) for x in parts]
     if not isinstance(stores[0], Ends):
@@ -283,13 +247,13 @@ def alike(parts: Any) -> list[Store]:
 
 
 def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
-    """Arrays put together: `join(arrays, own)` of arrays with so many axes of their own in front."""
+    """Combine arrays by `join(arrays, own)`."""
     own = parts[0].OWN
     return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))
 
 
 def parts_of(arrays: Any) -> list[Any]:
-    """Arrays of which one is of a kind here, all of that kind."""
+    """Arrays, numbers lifted to the kind of the others."""
     parts = [gather(x) for x in arrays]
     like = next(x for x in parts if isinstance(x, Truncated))
     return [like.lifted(x) for x in parts]

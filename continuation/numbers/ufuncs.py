@@ -1,4 +1,4 @@
-"""What each numpy ufunc does to coefficients."""
+"""Rules of numpy ufuncs for coefficients."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ Binary = Callable[[Algebra, Store, Store], Store]
 
 
 class UndecidedError(ArithmeticError):
-    """A comparison that holds for some numbers of an interval and not for others, or not for all boxes alike."""
+    """A comparison holds for some numbers or boxes only."""
 
 
 def own_axes(c: Store) -> int:
-    """Axes that a function does not see: the coefficients', and of intervals the boxes'."""
+    """Number of axes in front of the shape."""
     return 2 if isinstance(c, Ends) else 1
 
 
 def aligned(a: Store, b: Store) -> tuple[Store, Store]:
-    """Both with as many axes behind their own, as broadcasting wants them."""
+    """Both with equally many axes, for broadcasting."""
     if a.ndim == b.ndim:
         return a, b
     own, most = own_axes(a), max(a.ndim, b.ndim)
@@ -41,7 +41,7 @@ def aligned(a: Store, b: Store) -> tuple[Store, Store]:
 
 
 def spread(c: Store, shape: tuple[int, ...]) -> Store:
-    """Coefficients in a larger shape behind the leading axis, in memory of their own."""
+    """A copy, broadcast to `shape`."""
     return (
         c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
     )
@@ -59,7 +59,7 @@ def _add(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _multiply(algebra: Algebra, a: Store, b: Store) -> Store:
-    if a is b and isinstance(a, Ends):  # a square, which is nowhere negative
+    if a is b and isinstance(a, Ends):  # a square is not negative
         return compose(algebra, series.square, a)
     return product(algebra, operator.mul, a, b)
 
@@ -80,7 +80,7 @@ def _power(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _exponents(b: Store) -> Array | None:
-    """The exponents where they are numbers."""
+    """Exponents that are numbers, else None."""
     if len(b) > 1:
         return None
     if not isinstance(b, Ends):
@@ -114,7 +114,7 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
         return _angle(algebra, a, b)
     size = np.hypot(a[:1], b[:1])
     series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
-    # Turned by its leading angle, the point lies on the positive axis, where arctan of the slope is analytic.
+    # Rotation onto the positive axis, where arctan is analytic.
     sine, cosine = a[:1] / size, b[:1] / size
     along, across = _add(algebra, cosine * b, sine * a), _add(algebra, cosine * a, -sine * b)
     out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
@@ -123,7 +123,7 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The angle of points (b, a), without value across the negative axis."""
+    """The angle of points (b, a); nan across the negative axis."""
     ahead, beside = (compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, *x)) for x in ((a, b), (b, a)))
     above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
     turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
@@ -143,7 +143,7 @@ def _extremum(name: str, sign: int) -> Binary:
 
 
 def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The larger of two; where boxes do not decide, either, with the slopes of both and no more."""
+    """The maximum; undecided boxes have both slopes, and nan as higher derivatives."""
     first, second = a.lo[:1] > b.hi[:1], b.lo[:1] > a.hi[:1]
     lo = np.where(first, a.lo, np.where(second, b.lo, np.minimum(a.lo, b.lo)))
     hi = np.where(first, a.hi, np.where(second, b.hi, np.maximum(a.hi, b.hi)))
@@ -154,7 +154,7 @@ def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
 
 
 def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
-    """The product of vectors and matrices, with numpy's rules for vectors and stacks."""
+    """The matrix product, with numpy's rules for vectors and stacks."""
     own = own_axes(a)
     if a.ndim == own or b.ndim == own:
         raise ValueError("numpy.matmul: a scalar has no matrix product; use *")
@@ -171,7 +171,7 @@ def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def sums_of_products(function: Callable[[Array, Array], Array]) -> Callable[[Any, Any], Any]:
-    """A bilinear function of arrays as one of coefficients."""
+    """Extend a bilinear function to coefficients."""
     return lambda a, b: bilinear(function, a, b) if isinstance(a, Ends) else function(a, b)
 
 
@@ -196,19 +196,18 @@ UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
     np.minimum: _extremum("numpy.minimum", -1),
     np.matmul: matmul,
 }
-"""Of an algebra and one or two coefficients; all but those of `matmul` have been given the same number of axes."""
+"""Rules of an algebra and one or two coefficients; all but `matmul` get equally many axes."""
 
 
-# --- comparisons ---------------------------------------------------------------------------------------------
+# Comparisons
 
 
 NEGATION: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
 NEGATION |= {other: one for one, other in NEGATION.items()}
-"""What holds where a comparison of two numbers does not."""
+"""The negation of a comparison of two numbers."""
 
 
 def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
-    """Where a comparison holds for all numbers of two intervals: it does if it holds for their ends."""
     if ufunc is np.not_equal:
         return _surely(np.less, a, b) | _surely(np.greater, a, b)
     holds: Mask = ufunc(a.lo, b.lo) & ufunc(a.lo, b.hi) & ufunc(a.hi, b.lo) & ufunc(a.hi, b.hi)
@@ -216,7 +215,7 @@ def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
 
 
 def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
-    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
+    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
     yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, NEGATION[ufunc]))
@@ -237,4 +236,4 @@ DECIDED: dict[np.ufunc, Callable[..., Any]] = {
     np.isfinite: finite,
     np.isnan: lambda c: ~finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
 }
-"""What has no series."""
+"""Ufuncs whose results are no series."""
