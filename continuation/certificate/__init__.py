@@ -1,13 +1,8 @@
-"""Proofs that traced paths are one path: one inequality, in intervals, on the cubics between a path's points.
+"""Proofs that a traced path is one curve, in interval arithmetic, on the cubics between its points.
 
-In the chart c . (u - p(s)) = 0 across a cubic p let G(s, u) = (H(u), c . (u - p(s))), and Y any matrix. Where
-
-    |Y G(s, p(s))| + |I - Y G'(p(s) + [-r, r])| r < r        for all s of a cell,
-
-the tube p(s) + [-r, r] holds one smooth curve of zeros of H (Krawczyk). The same inequality on a cell of no length
-links two tubes at a node, puts the curve next to each stored point and event, and joins the arcs of a kinked path. What
-is left is signs along the curve: of the parameter's component of the tangent, whose zeros are turning points, and of
-switches. Cells and radii are searched for by any means; `verify` says what of them is a proof.
+Krawczyk's test (`certificate.krawczyk`) on a cell gives a tube that holds exactly one smooth curve of zeros. The test
+on a cell of length zero links tubes, proves points and events, and joins the arcs of a kinked path. Signs along the
+curve count turning points and kinks. The search for cells and radii is heuristic; `verify` decides what they prove.
 """
 
 from continuation.certificate.certifying import certify
