@@ -1,8 +1,7 @@
-"""Stability along a path: eigenvalues at its points, Hopf points between them, and a census of what crosses.
+"""Stability along a path: eigenvalues at points, Hopf points, and a check of the eigenvalue count.
 
-The flow is dy/dt = side H(y, lam). Its equilibria are the points of the path; they are stable where all eigenvalues of
-side H_y lie to the left of the imaginary axis. A real eigenvalue crosses it at turning points and branch points, which
-the tracer finds by itself, a complex pair at Hopf points.
+Equilibria of dy/dt = side H(y, lam) are stable if all eigenvalues of side H_y lie left of the imaginary axis. A real
+eigenvalue crosses it at turning points and branch points, which the tracer finds itself, a complex pair at Hopf points.
 """
 
 from __future__ import annotations
@@ -28,41 +27,39 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns, where eigenvalues take less time than a step, an arc is looked at between its ends too: a pair may
-cross, become real, and one of the two come back through a turning point, within one step (MatCont's catalyst)."""
+"""Up to 30 unknowns eigenvalues cost less than a step, so arcs are also examined inside: within one step a pair may
+cross, become real, and half of it return by a turning point (MatCont's catalyst)."""
 
 EVENT_MARGIN = 0.02
-"""So far from where it lies on an arc, in its lengths, an event may change what is seen on the segment."""
+"""Distance, in arcs, within which an event may explain a change on the segment."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
-"""How many eigenvalues change sides there, at most."""
+"""Largest number of eigenvalues that change sides."""
 
 SPECTRA_KEPT = 12
-"""Spectra that are remembered: those along an arc, and the event that is being looked at."""
+"""Spectra kept: those of an arc and of one event."""
 
 ON_AXIS = 1e-6
-"""The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
-crossed."""
+"""Largest relative real part of a Hopf pair; beyond, a pair appeared or vanished without crossing."""
 
 ZERO_RESOLVED = 1e-14
-"""The real part of a pair, relative to its modulus, that is zero: what is left is round-off of the eigenvalues."""
+"""Relative real part that is round-off."""
 
 
 @frozen
 class HopfPoint:
-    """A complex pair of eigenvalues of H_y crosses the imaginary axis: a Hopf point, with what is known on the way.
+    """A complex pair of eigenvalues of H_y crosses the imaginary axis.
 
     Parameters
     ----------
     side : {1, -1}, default 1
-        Of dy/dt = side H(y, lam): a Hopf point does not depend on it, the counts stored do.
+        Of dy/dt = side H(y, lam); it changes counts, not Hopf points.
     k : int, optional
-        So many eigenvalues on the right are computed, by Arnoldi's method. By default all where there are
-        at most 100, else 6.
+        Rightmost eigenvalues to compute, by Arnoldi's method. Default: all up to 100 unknowns, else 6.
     terminal : int, default 0
-        The trace ends at the k-th occurrence; 0 for never.
+        The trace ends at the k-th occurrence; 0: never.
     direction : int, default 0
-        +1 only where a pair becomes unstable, -1 only where one becomes stable.
+        +1: only a pair that becomes unstable; -1: only one that becomes stable.
     """
 
     side: int = field(default=1, validator=one_of(1, -1))
@@ -73,11 +70,11 @@ class HopfPoint:
     name: str = field(default="Hopf point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: the event needs H_y, and watches for crossings when it is `bound` to a homotopy."""
+        """A constant: the `bound` event watches."""
         return 1.0
 
     def bound(self, evaluator: Evaluator) -> BoundHopf:
-        """The event as it watches one path.
+        """The event for one path.
 
         Parameters
         ----------
@@ -90,17 +87,17 @@ class HopfPoint:
 
 @frozen
 class Stability:
-    """An observer that stores the stability of each point, and locates Hopf points.
+    """An observer that stores the stability of points and locates Hopf points.
 
-    Each point, and each event, has ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the
-    largest real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis (nan without one);
-    and ``"covered"``, 1 where no unstable eigenvalue can have been overlooked. Pictures are solid where none is
-    unstable, and dashed elsewhere. Where H_y is `Symmetric` only signs are computed: ``"unstable"`` is all there is.
+    Points and events have ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the largest
+    real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis (nan without one);
+    ``"covered"``, 1 if no unstable eigenvalue can be missing. Pictures are solid where stable, else dashed. For a
+    `Symmetric` H_y only ``"unstable"`` is computed.
 
     Parameters
     ----------
     side, k, terminal
-        As for `HopfPoint`, which is watched for.
+        As for `HopfPoint`.
     """
 
     side: int = field(default=1, validator=one_of(1, -1))
@@ -109,22 +106,22 @@ class Stability:
 
     @property
     def events(self) -> tuple[HopfPoint, ...]:
-        """What is watched for: ``trace_both(homotopy, events=Stability().events)`` does the same."""
+        """The Hopf event: ``trace_both(homotopy, events=Stability().events)`` does the same."""
         return (HopfPoint(self.side, self.k, self.terminal),)
 
     def step(self, tracer: Any, step: Step) -> None:
-        """The point has its numbers already."""
+        """Does nothing; the event observes."""
 
     def event(self, tracer: Any, event: LocatedEvent) -> None:
-        """The event has its numbers already."""
+        """Does nothing."""
 
     def end(self, tracer: Any) -> None:
-        """Nothing is left to do."""
+        """Does nothing."""
 
 
 @define(eq=False)
 class BoundHopf:
-    """The event `HopfPoint` on the path of one homotopy."""
+    """`HopfPoint` on one path."""
 
     evaluator: Evaluator
     side: int
@@ -136,7 +133,7 @@ class BoundHopf:
     _known: dict[Any, Spectrum] = field(factory=dict, init=False)
 
     def at(self, u: Array) -> Spectrum:
-        """The eigenvalues at a point, on the piece that the path is on."""
+        """Eigenvalues at a point, on the path's present piece."""
         key = (id(self.evaluator.homotopy), u.tobytes())
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
@@ -156,12 +153,12 @@ class BoundHopf:
             raise EvaluationError(str(error)) from error
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The real part of the pair nearest to the axis: how well a Hopf point is located."""
+        """Real part of the pair nearest to the axis."""
         pairs = self.at(u).pairs
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
     def observe(self, u: Array) -> dict[str, float]:
-        """What is stored with a point."""
+        """Numbers stored with a point."""
         found = self.at(u)
         if not found.values.size:
             return {"unstable": float(found.unstable)}
@@ -171,11 +168,11 @@ class BoundHopf:
         return dict(zip(("unstable", "rightmost", "frequency", "covered"), known))
 
     def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
-        """The Hopf points of an arc, in order: of each pair that changes sides, where its real part vanishes."""
+        """Hopf points of an arc, in order."""
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs
-            # Real eigenvalues that become a pair, or a pair that becomes real, change no other number.
+            # Pairs that become real, or the reverse, change no other number.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
             points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
@@ -183,13 +180,13 @@ class BoundHopf:
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
-        """Spectra along an arc: at its ends, and between them on its segment where eigenvalues cost next to nothing."""
+        """Spectra at the arc's ends, and inside if cheap."""
         inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
-        """Of the pair of a rank, the rightmost first: smooth where that pair crosses alone."""
+        """Real part of the pair of a rank, rightmost first; smooth where it crosses alone."""
         found = self.at(u)
         if rank >= found.pairs.size:
             return -found.size
@@ -197,7 +194,7 @@ class BoundHopf:
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """Where on the path the real part of the pair of a rank vanishes, if it does and that pair is on the axis."""
+        """Where the real part of the pair of a rank vanishes on the path, or None."""
         ends = {0.0: arc.a.u, 1.0: arc.b.u}
 
         def real_part(t: float) -> float:
@@ -206,7 +203,7 @@ class BoundHopf:
             )
 
         a, b = (left, real_part(left)), (right, real_part(right))
-        # What the segment shows may not be so on the path itself.
+        # The segment may differ from the path.
         t = None if a[1] * b[1] > 0.0 else root(real_part, a, b, solver.noise(arc.a) / arc.length)
         if t is None:
             return None
@@ -215,7 +212,7 @@ class BoundHopf:
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
-        """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""
+        """Whether the events on an arc explain its change in the number of unstable eigenvalues."""
         length = position(arc, arc.b.u)
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):
