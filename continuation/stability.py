@@ -1,7 +1,7 @@
-"""Stability along a path: eigenvalues at points, Hopf points, and a check of the eigenvalue count.
+"""Stability along a path: eigenvalues, Hopf points, and a check of the eigenvalue count.
 
 Equilibria of dy/dt = side H(y, lam) are stable if all eigenvalues of side H_y lie left of the imaginary axis. A real
-eigenvalue crosses it at turning points and branch points, which the tracer finds itself, a complex pair at Hopf points.
+eigenvalue crosses it at turning points and branch points, a complex pair at Hopf points.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns eigenvalues cost less than a step, so arcs are also examined inside: within one step a pair may
-cross, become real, and half of it return by a turning point (MatCont's catalyst)."""
+"""Up to 30 unknowns eigenvalues cost less than a step, and arcs are examined inside: a pair may cross, become real, and
+one return at a turning point (MatCont's catalyst)."""
 
 EVENT_MARGIN = 0.02
-"""Distance, in arcs, within which an event may explain a change on the segment."""
+"""Distance, in arcs, at which an event may explain a change."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
-"""Largest number of eigenvalues that change sides."""
+"""Most eigenvalues that change sides."""
 
 SPECTRA_KEPT = 12
-"""Spectra kept: those of an arc and of one event."""
+"""An arc's spectra and one event's."""
 
 ON_AXIS = 1e-6
 """Largest relative real part of a Hopf pair; beyond, a pair appeared or vanished without crossing."""
@@ -53,13 +53,13 @@ class HopfPoint:
     Parameters
     ----------
     side : {1, -1}, default 1
-        Of dy/dt = side H(y, lam); it changes counts, not Hopf points.
+        Of dy/dt = side H(y, lam). Stored numbers depend on it, Hopf points do not.
     k : int, optional
-        Rightmost eigenvalues to compute, by Arnoldi's method. Default: all up to 100 unknowns, else 6.
+        Rightmost eigenvalues to compute, by Arnoldi's method. Default: all if at most 100, else 6.
     terminal : int, default 0
         The trace ends at the k-th occurrence; 0: never.
     direction : int, default 0
-        +1: only a pair that becomes unstable; -1: only one that becomes stable.
+        +1: only if a pair becomes unstable; -1: only if stable.
     """
 
     side: int = field(default=1, validator=one_of(1, -1))
@@ -87,12 +87,11 @@ class HopfPoint:
 
 @frozen
 class Stability:
-    """An observer that stores the stability of points and locates Hopf points.
+    """An observer that stores stability and locates Hopf points.
 
     Points and events have ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the largest
-    real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis (nan without one);
-    ``"covered"``, 1 if no unstable eigenvalue can be missing. Pictures are solid where stable, else dashed. For a
-    `Symmetric` H_y only ``"unstable"`` is computed.
+    real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis, or nan; ``"covered"``, 1 if
+    none can be missing. Pictures are solid where stable, else dashed. A `Symmetric` H_y has ``"unstable"`` only.
 
     Parameters
     ----------
@@ -106,17 +105,17 @@ class Stability:
 
     @property
     def events(self) -> tuple[HopfPoint, ...]:
-        """The Hopf event: ``trace_both(homotopy, events=Stability().events)`` does the same."""
+        """Hopf points: ``trace_both(homotopy, events=Stability().events)`` does the same."""
         return (HopfPoint(self.side, self.k, self.terminal),)
 
     def step(self, tracer: Any, step: Step) -> None:
-        """Does nothing; the event observes."""
+        """The event stores the numbers."""
 
     def event(self, tracer: Any, event: LocatedEvent) -> None:
-        """Does nothing."""
+        """The event stores the numbers."""
 
     def end(self, tracer: Any) -> None:
-        """Does nothing."""
+        """Nothing is left to do."""
 
 
 @define(eq=False)
@@ -158,7 +157,7 @@ class BoundHopf:
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
     def observe(self, u: Array) -> dict[str, float]:
-        """Numbers stored with a point."""
+        """Numbers to store."""
         found = self.at(u)
         if not found.values.size:
             return {"unstable": float(found.unstable)}
@@ -172,7 +171,7 @@ class BoundHopf:
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs
-            # Pairs that become real, or the reverse, change no other number.
+            # A pair that becomes real, or the reverse, changes no other number.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
             points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
@@ -180,13 +179,12 @@ class BoundHopf:
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
-        """Spectra at the arc's ends, and inside if cheap."""
         inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
-        """Real part of the pair of a rank, rightmost first; smooth where it crosses alone."""
+        """Real part of a pair, rightmost first; smooth if it crosses alone."""
         found = self.at(u)
         if rank >= found.pairs.size:
             return -found.size
@@ -194,7 +192,7 @@ class BoundHopf:
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """Where the real part of the pair of a rank vanishes on the path, or None."""
+        """Where a pair's real part vanishes, or None."""
         ends = {0.0: arc.a.u, 1.0: arc.b.u}
 
         def real_part(t: float) -> float:
@@ -212,7 +210,7 @@ class BoundHopf:
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
-        """Whether the events on an arc explain its change in the number of unstable eigenvalues."""
+        """Whether the events explain the change in the number of unstable eigenvalues."""
         length = position(arc, arc.b.u)
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):

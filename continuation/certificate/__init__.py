@@ -1,8 +1,8 @@
-"""Proofs that a traced path is one curve, in interval arithmetic, on the cubics between its points.
+"""Proofs that a traced path is one curve, in interval arithmetic.
 
-Krawczyk's test (`certificate.krawczyk`) on a cell gives a tube that holds exactly one smooth curve of zeros. The test
-on a cell of length zero links tubes, proves points and events, and joins the arcs of a kinked path. Signs along the
-curve count turning points and kinks. The search for cells and radii is heuristic; `verify` decides what they prove.
+Krawczyk's test (`certificate.krawczyk`) gives tubes around the cubics between points, each with exactly one smooth
+curve of zeros. The test at single parameters links tubes, proves points and events, and joins the arcs of kinked paths.
+Signs along the curve count turning points and kinks.
 """
 
 from continuation.certificate.certifying import certify

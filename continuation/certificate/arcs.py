@@ -1,8 +1,8 @@
-"""Kinked paths: each smooth arc is proved on its piece and joined to the next at a zero of a switch.
+"""Kinked paths: each smooth arc is proved on its piece and joined to the next.
 
 On boxes just before and behind an arc's end the switch has different signs, so the arc's curve has a zero z in between.
-Both pieces equal the map at z; if the next arc's tube holds z, z lies on that arc's curve. The switch's derivative
-along either curve has one sign, so z is unique.
+Both pieces equal the map at z, and the next arc's tube must hold z. The switch's derivative has one sign along either
+curve, so z is unique.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
-"""Distances from the end, in lengths of the last cell, at which signs of a switch are tried in turn."""
+"""Distances from an arc's end, in lengths of the last cell, at which the signs of a switch are tried."""
 
 ARC_PARTS = 4
-"""Parts of a slab: a switch that vanishes at both ends of an arc has a sign in between."""
+"""Parts of a slab: a switch that vanishes at both ends has a sign in between."""
 
 NO_KINK = "a kink is listed where there is none"
 NOT_LISTED = "a kink that the path does not list"
@@ -40,7 +40,7 @@ Prove = Callable[[Any, Path, Cells | None, Look], tuple[Proof, Engine, list[list
 
 @frozen(eq=False)
 class SmoothPart:
-    """An arc between two kinks: signs of the switches, proof, engine."""
+    """An arc between two kinks, with the signs of the switches."""
 
     signs: Array
     proof: Proof
@@ -48,7 +48,7 @@ class SmoothPart:
 
 
 def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
-    """Prove a path in pieces, or check `cells`; `prove` does so for a smooth path."""
+    """Prove a path in pieces, or check `cells`; `prove` does so for one arc."""
     switches = ByIntervals(homotopy.switches, path.u.shape[1] - 1)
     kinks, gaps = _listed(path)
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
@@ -57,7 +57,7 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     arcs: list[SmoothPart | None] = []
     before = None
     for k, (first, last) in enumerate(pairwise(places)):
-        if first == last:  # the path ends in this kink
+        if first == last:  # the path ends here
             arcs.append(None)
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
@@ -104,12 +104,11 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
 
 
 def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
-    """Kinks at points of the path, one for each point."""
     out: list[LocatedEvent] = []
     gaps = []
     for kink in sorted(path.kinks, key=lambda event: event.step):
         step, s = path.steps[min(max(kink.step, 1), len(path) - 1)], kink.arclength
-        # No arc leads to a kink in which the path begins.
+        # No arc leads to a first kink.
         if kink.step != step.index or s != step.arclength or not (kink.u == step.u).all():
             gaps.append(Gap(s, s, NO_KINK))
         elif out and out[-1].step == kink.step:
@@ -122,13 +121,13 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
 def _signs(
     homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
 ) -> tuple[tuple[float, float], Array | None]:
-    """The last step examined, and the signs of the switches; None if the points are not on one piece."""
+    """The last step examined, and the signs of the switches (None: not on one piece)."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
         found = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
     if before is not None:
-        # A switch that vanishes at both ends of a step also vanishes in the middle of its chord.
+        # A switch zero at both ends of a step is zero in the middle of its chord.
         crossed = [j for j in ends[0] if 0 <= j < len(found)]
         found[crossed] = -before[crossed]
     for row, end in zip((0, -1), ends):
@@ -140,7 +139,7 @@ def _signs(
 
 
 def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
-    """The points of an arc; a kink gets its outgoing tangent."""
+    """The points of an arc, with a kink's outgoing tangent."""
     if kink is None:
         return steps
     away = np.full_like(kink.u, np.nan) if kink.rays is None or len(kink.rays) < 2 else kink.rays[1]
@@ -151,9 +150,7 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
 
 
 def _look_at(switches: ByIntervals) -> Look:
-    """Look at the parameter's rate and at switches, with derivatives (gradient times tangent), over boxes that hold the
-    curve.
-    """
+    """Look at the parameter's rate, at switches, and at their derivatives (gradient times tangent)."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
         owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
@@ -168,7 +165,7 @@ def _look_at(switches: ByIntervals) -> Look:
 
 
 def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[Piece], list[Piece]]:
-    """Signs of each switch at the first and the last point of an arc."""
+    """Signs of each switch at the ends of an arc."""
     s, sides = np.array([0.0, 1.0]), cells.take([0, -1])
     radius = nodes(engine, sides, s).radius
     radius = np.where((radius <= sides.radius).all(axis=1, keepdims=True), radius, np.nan)
@@ -178,18 +175,15 @@ def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[
 
 
 def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
-    """Signs of the switches within radii of slab middles, shape (slabs, m); 0 if undecided."""
+    """Signs of the switches within radii of slab middles."""
     box = slabs.cubic[:, 0] + Ends(-radius, radius)
     return signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
 
 
 def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
-    """Why a switch is not proved to keep its sign on an arc of `count` cells.
-
-    `at`: whether it should vanish at the beginning, and at the end.
-    """
+    """Why a switch is not proved to keep its sign on an arc; `at`: whether it should vanish at either end."""
     begin, *inner, end = found
-    # There its value is round-off.
+    # A switch that should vanish at an end is round-off there.
     found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
     understood, unknown = turns(found)
     first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
@@ -209,7 +203,7 @@ def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> s
 def _joined(
     homotopy: Any, before: SmoothPart | None, after: SmoothPart | None, kink: LocatedEvent
 ) -> tuple[float, float] | str:
-    """A range of arclength that holds the kink, or why the two arcs are not proved to join."""
+    """A range of arclength that holds the kink, or why the arcs are not joined."""
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else NO_KINK
     (j,), s = kink.switches, kink.arclength
@@ -245,6 +239,6 @@ def _joined(
 
 
 def _rate(engine: Engine, cell: Cells, s: float, off: Array) -> int:
-    """Sign of the parameter's rate along the curve within `off` of a node; 0 if undecided."""
+    """Sign of the parameter's rate within `off` of a node."""
     t = engine.judge(at_node(cell, np.array([s])), off).tangent(off, off)
     return int(signs(t[0, -1]))

@@ -15,7 +15,7 @@ from continuation.numbers.ends import EPS, Ends, bilinear, thin
 Index = NDArray[np.intp]
 
 OVERHANG = 1e-3
-"""Tubes extend beyond both ends of a cell by this share of its length, so that neighbours overlap."""
+"""Share of its length by which a tube overlaps its neighbours."""
 
 
 @frozen(eq=False)
@@ -29,11 +29,11 @@ class Cells:
     slope_begin, slope_end : ndarray
         p'(0), p'(1).
     chart : ndarray
-        The vector c: u belongs to the parameter s with c . (u - p(s)) = 0.
+        The vector c: u has the parameter s with c . (u - p(s)) = 0.
     radius : ndarray
-        The tube: |u - p(s)| <= radius, component by component.
+        Tube: |u - p(s)| <= radius by component.
     slabs : ndarray of int, shape (cells,)
-        Equal parts of the parameter range in the test.
+        Equal parts in the test.
     place : ndarray, shape (cells, 2)
         Arclengths of the ends.
     """
@@ -51,11 +51,11 @@ class Cells:
         return len(self.begin)
 
     def take(self, index: Any) -> Cells:
-        """Select by indices or booleans."""
+        """Select cells."""
         return Cells(*(getattr(self, name)[index] for name in NAMES))
 
     def with_tubes(self, radius: Array, slabs: Index) -> Cells:
-        """Replace radii and numbers of slabs."""
+        """Replace radii and slabs."""
         return evolve(self, radius=radius, slabs=slabs)
 
 
@@ -70,9 +70,9 @@ def joined(parts: list[Cells]) -> Cells:
 def between(
     begin: Array, tangent_begin: Array, end: Array, tangent_end: Array, weights: Array, place: tuple[float, float]
 ) -> Cells:
-    """The cell between two nodes, without a tube; its chart is orthogonal to the chord in the metric.
+    """The cell between two nodes, without a tube; the chart is orthogonal to the chord in the metric.
 
-    Tangents may have any length; `place` holds the arclengths.
+    Tangents may have any length; `place`: arclengths.
     """
     chart = weights * (end - begin)
     chart = chart / (float(np.abs(chart).max()) or 1.0)
@@ -80,7 +80,7 @@ def between(
     slopes = []
     for tangent in (tangent_begin, tangent_end):
         rate = float(chart @ tangent)
-        # The chord replaces a tangent that does not advance.
+        # A tangent that does not advance is replaced by the chord.
         slopes.append(tangent * (along / rate) if rate > 0.0 else end - begin)
     first, last = (slope[None] for slope in slopes)
     nothing, one = np.zeros_like(begin)[None], np.ones(1, dtype=np.intp)
@@ -88,13 +88,13 @@ def between(
 
 
 def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
-    """Extent of cells by component, at least 1e-6 of the chord's length in the metric.
+    """Extent by component, at least 1e-6 of the chord in the metric.
 
-    `still`, shape (cells, N + 1): unit lengths of the metric for components that stand still.
+    `still`, shape (cells, N + 1): unit lengths where components stand still.
     """
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
-        # chart = weights * chord up to a factor, so sqrt(chord / chart) is a unit length.
+        # sqrt(chord / chart) is a unit length: chart = weights * chord up to a factor.
         unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
         if still is not None:
             unit = np.where(np.isfinite(unit), unit, still)
@@ -107,7 +107,7 @@ def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
 
 @frozen(eq=False, slots=False)
 class Slabs:
-    """Parameter ranges within `half` of `middle`, shape (slabs,); `owner` and `cells` give the cell of each."""
+    """Parameter ranges within `half` of `middle`, shape (slabs,), and their cells."""
 
     owner: Index
     middle: Array
@@ -130,7 +130,7 @@ class Slabs:
     def cubic(self) -> Ends:
         """Coefficients q of p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
 
-        Expanded from the nearer end: at a node the cubic is that node, without round-off from the other.
+        Expanded from the nearer end: a node has no round-off from the other.
         """
         cells, later = self.cells, self.middle[:, None] > 0.5
         sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]
@@ -168,13 +168,13 @@ class Slabs:
         steps = (2.0 * np.arange(parts) + 1.0) / parts - 1.0
         middle = (self.middle[:, None] + self.half[:, None] * steps).ravel()
         index = np.repeat(np.arange(len(self)), parts)
-        # Slightly longer, to cover the slab in spite of rounding.
+        # Slightly longer: rounding must not uncover the slab.
         half = np.repeat(self.half / parts, parts) * (1.0 + 1e-9)
         return Slabs(self.owner[index], middle, half, self.cells.take(index))
 
 
 def slabs_of(cells: Cells) -> Slabs:
-    """All slabs in order; those of one cell cover [-OVERHANG, 1 + OVERHANG]."""
+    """All slabs; those of a cell cover [-OVERHANG, 1 + OVERHANG]."""
     counts = cells.slabs.astype(np.intp)
     owner = np.repeat(np.arange(len(cells)), counts)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -184,12 +184,12 @@ def slabs_of(cells: Cells) -> Slabs:
 
 
 def at_node(cells: Cells, s: Array) -> Slabs:
-    """Slabs of length zero at the ends s (0 or 1)."""
+    """Slabs of length zero at s = 0 or 1."""
     return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
 
 
 def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
-    """Ranges of p, p', p''/2 for cubics of shape (slabs, 4, m) and offsets x of shape (slabs, 1)."""
+    """Ranges of p, p', p''/2 for cubics (slabs, 4, m) and offsets (slabs, 1)."""
     q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
     by_last = x * q3
     second = q2 + by_last + by_last + by_last
@@ -203,6 +203,6 @@ def advance(slabs: Slabs) -> Array:
 
 
 def along(chart: Array, v: Ends) -> tuple[Array, Array]:
-    """Range of c . v, row by row."""
+    """Range of c . v by row."""
     product = bilinear(np.matmul, thin(chart[:, None, :]), Ends(v.lo[..., None], v.hi[..., None]))
     return product.lo[:, 0, 0], product.hi[:, 0, 0]

@@ -33,17 +33,17 @@ from continuation.point.projection import PathSolver
 from continuation.tolerance import Tolerance
 
 CELL_HALVINGS = 8
-"""Halvings of a cell at most: its error, of fourth order, is then below round-off."""
+"""Halvings of a cell; its fourth-order error is then below round-off."""
 
 TAIL_NODES = 60
-"""Points added next to a singular end, at most: ten suffice if the parameter falls like the distance."""
+"""Most points added next to a singular end; ten suffice if the parameter falls like the distance."""
 
 NEARER = 0.25
 """Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
 boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
 
 LARGE_NUMBERS = 4_000_000
-"""Length of a 32 MB array, the largest with the effect explained below."""
+"""Length of a 32 MB array, the largest with the effect described below."""
 
 
 @frozen(eq=False)
@@ -60,17 +60,17 @@ class Node:
 def certify(path: Path, homotopy: Any) -> Proof:
     """Prove that a traced path is one curve; parts without a proof are returned as gaps.
 
-    A tube around the Hermite cubic between two points holds exactly one curve (folds allowed, no branch points) if
-    Krawczyk's test holds. Cells that fail are halved at a new point from the corrector. Tubes are linked at nodes,
-    turning points counted and compared with the path's, and the end joined to the target.
+    If Krawczyk's test holds around the Hermite cubic between two points, the tube holds exactly one curve, perhaps with
+    folds. Cells that fail are halved at a new point. Tubes are linked, turning points compared with the path's, and the
+    end joined to the target.
 
     Parameters
     ----------
     path : Path
-        Traced, or read from an archive; missing tangents are computed.
+        Traced, or read from an archive.
     homotopy : Homotopy
         The homotopy that was traced. Its residual must run on interval arrays, unless it has bounds of its own
-        (`SupportsProofEngine`): LCP homotopies are proved at a fraction of their traces' cost.
+        (`SupportsProofEngine`). LCP homotopies have these; proofs cost a fraction of their traces.
 
     Returns
     -------
@@ -81,14 +81,14 @@ def certify(path: Path, homotopy: Any) -> Proof:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     ValueError
-        If the path has fewer than two points, or does not belong to this homotopy.
+        If the path has fewer than two points, or belongs to another homotopy.
 
     References
     ----------
     Krawczyk, Computing 4 (1969) 187-201; for curves, Breden, Lessard and Vanicat, Acta Appl. Math. 128 (2013) 113-152.
     """
     require_path(path)
-    Evaluator(homotopy, Counts())  # raises if it is no homotopy
+    Evaluator(homotopy, Counts())  # raises if it is none
     width = path.u.shape[1]
     if width != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {width - 1} unknowns")
@@ -105,8 +105,8 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
-    """A proof, its engine, and the pieces of each observed number, the parameter's rate first."""
-    # glibc keeps freed memory once a large array was freed; otherwise requesting pages takes a third of a proof.
+    """A proof, its engine, and pieces of each observed number, first the parameter's rate."""
+    # glibc keeps freed memory after a large array was freed; otherwise requesting pages takes a third of a proof.
     np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
@@ -120,7 +120,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
-    """Check every condition of a proof again, with its charts and radii."""
+    """Check every condition of a proof again."""
     whole = lifted(homotopy, path, cells)
     if isinstance(whole, Proof):
         return whole
@@ -129,7 +129,7 @@ def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
 
 @frozen(eq=False)
 class TubeSearch:
-    """The search for cells and tubes; `look` gives signs of the observed numbers."""
+    """The search for cells and tubes; `look` observes numbers."""
 
     engine: Engine
     homotopy: Any
@@ -137,11 +137,11 @@ class TubeSearch:
     look: Look
 
     def run(self) -> tuple[Tubes, list[Gap]]:
-        """Proved cells in order, and the gaps; cells that fail are halved."""
+        """Proved cells in order, and gaps."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         end, own = nodes[-1], getattr(self.homotopy, "metric", None) is not None
-        # A path with a singular end is proved up to here; cells before are cut without limit.
+        # A path is proved up to here from a singular end; farther cells are cut without limit.
         near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(self.path.steps[-1]) else np.inf
         pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
         done: list[Tubes] = []
@@ -175,7 +175,6 @@ class TubeSearch:
         return whole.take(np.argsort(whole.cells.place[:, 0], kind="stable")), gaps
 
     def _nodes(self, evaluator: Evaluator) -> list[Node]:
-        """The stored points; missing tangents and chords are replaced."""
         u, out = self.path.u, list[Node]()
         for k, (step, weights) in enumerate(zip(self.path.steps, _weights(self.homotopy, self.path))):
             tangent = step.tangent
@@ -192,8 +191,8 @@ class TubeSearch:
 def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
     """A point of the path between two nodes, at a share of their distance from b, or why there is none.
 
-    The midpoint guess uses slopes as long as the chord: the chart's slope is huge if a tangent is nearly orthogonal to
-    the chord. Next to a singular end the guess is on a parabola through a (along its tangent) and the end.
+    A slope in the chart is huge if the tangent is nearly orthogonal to the chord, so slopes as long as the chord give
+    the midpoint guess. Next to a singular end a parabola gives it.
     """
     cell, x = _cell(a, b), 1.0 - share
     first, last = (v[0] / (norm(a.weights, v[0]) or 1.0) for v in (cell.slope_begin, cell.slope_end))
@@ -213,7 +212,7 @@ def _cell(a: Node, b: Node) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """The metric at each point: the next step's if stored, else the rule's."""
+    """Weights of the next step if stored, else the rule's."""
     rule, out = metric_of(homotopy, path), list[Array]()
     for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)

@@ -39,7 +39,7 @@ class SupportsEndCertificate(Protocol):
 
 
 def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> tuple[str, Array | None, str]:
-    """What is proved of the end, the curve's distance from the stored end, and what is missing."""
+    """What is proved of the end, the curve's distance from it, and what is missing."""
     end, last = path.steps[-1], float(cells.end[-1, -1])
     if path.status is not Status.REACHED_TARGET:
         return ("The end is a point of the curve.", None, "") if at.proved[-1] else ("", None, NO_CURVE)
@@ -59,5 +59,5 @@ def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> t
 
 
 def made(step: Step) -> bool:
-    """Whether an end was found without a step: its tangent is then a chord."""
+    """Whether an end was found without a step; its tangent is a chord."""
     return step.index > 0 and step.segment is None and step.corrector_iterations == 0

@@ -27,14 +27,14 @@ class Judged(Protocol):
         radius : ndarray, shape (slabs, N + 1)
             Bounds the curve's distance.
         tube : ndarray, shape (slabs, N + 1)
-            Radii for which the test holds: the norm.
+            Radii for which the test holds.
         """
         ...
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
-        """Ranges of the parameter's rate along the curve, up to a positive factor, and of its derivative.
+        """Ranges of the parameter's rate (up to a positive factor) and of its derivative, along the curve.
 
-        Shape (slabs, parts): equal parts of each slab, in order. The derivative is nan if unknown or not needed.
+        Shape (slabs, parts), equal parts in order. The derivative is nan if unknown or unneeded.
 
         Parameters
         ----------
@@ -59,18 +59,18 @@ class Engine(Protocol):
     Attributes
     ----------
     exact : bool
-        Whether bounds hold for all radii, so that smaller radii need no new judgement.
+        Whether bounds hold for all radii.
     """
 
     exact: ClassVar[bool]
 
     @property
     def most(self) -> int:
-        """Slabs of a cell at most; beyond, a new point of the path costs less."""
+        """Most slabs of a cell; then a new point costs less."""
         ...
 
     def together(self, m: int) -> int:
-        """Slabs to judge in one batch.
+        """Slabs for one batch.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Engine(Protocol):
 
 @runtime_checkable
 class SupportsProofEngine(Protocol):
-    """A homotopy with bounds of its own, cheaper than interval arithmetic."""
+    """A homotopy with bounds cheaper than interval arithmetic."""
 
     def proof_engine(self) -> Engine:
         """The engine.
@@ -105,7 +105,7 @@ class SupportsProofEngine(Protocol):
 
 
 def together(engine: Engine, cells: Cells) -> list[Index]:
-    """Indices of cells, in batches by number of slabs."""
+    """Batches of cells by number of slabs."""
     most = engine.together(cells.radius.shape[1])
     groups = (np.cumsum(cells.slabs) - cells.slabs) // most
     return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)

@@ -1,4 +1,4 @@
-"""Zeros of numbers along a proved curve, from signs of the numbers and their derivatives."""
+"""Zeros of numbers along a proved curve, from signs of numbers and derivatives."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from continuation.certificate.engine import Engine, Judged
 from continuation.numbers.ends import EPS, Ends
 
 RANGE = 0.25
-"""A longer range, in cells, does not locate its turning point."""
+"""Largest range, in cells, that locates a turning point."""
 
 PLACES = 32
-"""Points in a range at which the sign is computed; two rounds leave a thousandth of it."""
+"""Points in a range whose sign is computed; two rounds leave a thousandth."""
 
 Look = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
-"""Signs of each observed number, and of its derivative along the curve, on equal parts of slabs, shape (slabs, parts);
-the curve lies within a radius of the cubic."""
+"""Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
+slabs, shape (slabs, parts)."""
 
 
 @frozen(eq=False)
 class Piece:
     """A parameter range, within a cell or in cells (index + parameter).
 
-    `sign`: of a number on it; `bend`: of its derivative along the path; 0 if unknown.
+    `sign`: of a number; `bend`: of its derivative; 0 if unknown.
     """
 
     lo: float
@@ -38,9 +38,9 @@ class Piece:
 
 @frozen(eq=False)
 class Turn:
-    """A range, in cells, with exactly one zero; the derivative has the sign `bend`.
+    """A range, in cells, with exactly one zero and a derivative of sign `bend`.
 
-    Not `certain` at an end of the path: the zero may lie slightly beyond.
+    If not `certain`, the zero may lie beyond the path's end.
     """
 
     lo: float
@@ -55,13 +55,13 @@ def signs(x: Ends) -> Index:
 
 
 def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
-    """Look at the parameter's rate, whose zeros are turning points."""
+    """Look at the parameter's rate, zero at turning points."""
     slope, bend = judged.pace(radius, radius)
     return [(signs(slope), signs(bend))]
 
 
 def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
-    """Pieces of `count` cells, for each number, in order: one for a slab with one sign, else one for each part."""
+    """Pieces of `count` cells for each number, one for a slab with one sign, else one for each part."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]
     for j, (sign, bend) in enumerate(numbers):
@@ -75,10 +75,10 @@ def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) 
 
 
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
-    """Zeros in order, and ranges in which zeros could not be counted.
+    """Zeros in order, and ranges with an unknown number of zeros.
 
-    A run of pieces without a sign, on which the derivative has one sign, holds exactly one zero if the signs around it
-    differ; they cannot be equal. Other runs are undecided.
+    A run of pieces without a sign, but with one sign of the derivative, holds exactly one zero if the signs around it
+    differ; equal signs are impossible.
     """
     out: list[Turn] = []
     unknown: list[tuple[float, float]] = []
@@ -100,10 +100,9 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
 
 
 def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
-    """Shorten the turning points' ranges that exceed `RANGE`.
+    """Shorten the turning points' ranges above `RANGE`.
 
-    The number is monotone there, so its sign at a point tells on which side the zero lies. Away from nodes parameters
-    have the curve's order.
+    The number is monotone there: its sign tells the side of the zero. Away from nodes parameters follow the curve.
     """
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]

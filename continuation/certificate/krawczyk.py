@@ -28,25 +28,22 @@ from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, mo
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
-"""Size of one array in a residual: 4 MB, or 64 MB if each slab is cut into `most`."""
+"""Size of one array: 4 MB, or 64 MB if slabs are cut into `most`."""
 
 DIRECTIONS_THAT_PAY = 16
 """Second derivatives pay up to this many unknowns: they save nine boxes of ten with 10 (exponential-cosine), none with
-30 (Bratu), whose proof takes eight times as long."""
+30 (Bratu), where the proof takes eight times as long."""
 
 STRETCHES = 8
-"""Parts of a slab on which the parameter may turn."""
+"""Parts of a slab where the parameter may turn."""
 
 MISFIT_PARTS = 4
-"""Parts of a slab to bound H along the cubic; Taylor's remainder is of third order."""
+"""Parts of a slab to bound H on the cubic; Taylor's remainder is of third order."""
 
 
 @frozen(eq=False)
 class ByIntervals:
-    """Derivatives over boxes by interval arithmetic.
-
-    `unknowns`: N; the preconditioner follows the path if N <= `DIRECTIONS_THAT_PAY`.
-    """
+    """Derivatives over boxes by interval arithmetic; `unknowns` is N."""
 
     residual: Callable[[Any, Any], Any]
     unknowns: int
@@ -54,7 +51,7 @@ class ByIntervals:
 
     @property
     def moving(self) -> bool:
-        """Whether the preconditioner follows the path."""
+        """Whether the preconditioner follows the path: N <= `DIRECTIONS_THAT_PAY`."""
         return self.unknowns <= DIRECTIONS_THAT_PAY
 
     @property
@@ -63,7 +60,7 @@ class ByIntervals:
         return 8 if self.moving else 16
 
     def image(self, u: Interval) -> Any:
-        """H on an interval array of shape (N + 1,); nan for boxes with an undecided comparison."""
+        """H on an interval array, shape (N + 1,); nan where a comparison is undecided."""
         whole: Any = u
         try:
             return u.lifted(self.residual(whole[:-1], whole[-1]))
@@ -80,19 +77,18 @@ class ByIntervals:
         return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
     def judge(self, slabs: Slabs, radius: Array) -> Bounded:
-        """As `Engine.judge`, with Y(s) = (I - x E) Y_0 and E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W, x = s -
-        m.
+        """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W, x = s - m.
 
-        G_0 is the range of G' over the box at the middle m, W that of H''(p'(s), .) over the whole box. With R = I -
-        Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). At kinks, or with many unknowns, E
-        = D = 0 and G_0 is over the whole box.
+        G_0 is the range of G' over the box at the middle m, W that of H''(p'(s), .) over the whole. With R = I - Y_0
+        G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). At kinks, or with many unknowns, E = D
+        = 0 and G_0 is over the whole box.
         """
         m, x, whole = radius.shape[1], slabs.offset[:, None, None], slabs.box(radius)
         W = thin(np.full((len(slabs), m - 1, m), np.nan))
         moving = self.moving and bool(slabs.half.any())
         if moving:
             size = cell_sizes(slabs.cells)
-            # Components that stand still get as much room as the others, in unit lengths of the metric.
+            # Components that stand still get the room of others, in unit lengths.
             unit = np.where(size < radius, radius * (size / radius).max(axis=1, keepdims=True), size)
             W = self._change(whole, slabs.velocity, unit)
         at, largest = slabs.cubic[:, 0] + Ends(-radius, radius), W.magnitude().sum(axis=(1, 2), keepdims=True)
@@ -114,7 +110,7 @@ class ByIntervals:
         return Bounded(self, slabs, misfit, Y, off, radius, E)
 
     def _inverse(self, slabs: Slabs, box: Ends) -> tuple[Array, Array]:
-        """An inverse Y of the middle of G' over a box, and a bound of |I - Y G'| by entry."""
+        """Y, about the inverse of G' over a box, and a bound of |I - Y G'|."""
         m = box.shape[1]
         lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), m)
         middle = 0.5 * lo + 0.5 * hi
@@ -124,7 +120,7 @@ class ByIntervals:
             width = Ends(lo, hi).radius(middle)
             size_Y = np.abs(Y)
             off = np.abs(np.eye(m) - np.matmul(Y, full))
-            # Rounding of the product and of the subtraction; then the derivative's width.
+            # Rounding of product and subtraction, then the derivative's width.
             off = up_by(off + accumulated(m) * (np.matmul(size_Y, np.abs(full)) + np.eye(m)), 2)
             return Y, off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
 
@@ -146,7 +142,7 @@ class ByIntervals:
         return Ends(*(v.transpose(1, 2, 0) for v in (change.lo, change.hi)))
 
     def _misfit(self, slabs: Slabs, Y: Array, parts: int) -> Array:
-        """|Y H(p(s))| by Taylor's formula about each part's middle, to second order; to first at kinks."""
+        """|Y H(p(s))| by Taylor's formula to second order, at kinks to first."""
         fine = slabs.halved(parts)
         x, left, count = fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0), len(fine)
         both = [moved(lambda *ends: np.concatenate(ends), fine.cubic[:, k], fine.over[k]) for k in range(3)]
@@ -179,20 +175,20 @@ def engine_of(homotopy: Any) -> Engine:
 
 
 def applied(Y: Array, v: Ends) -> Ends:
-    """Range of matrix times interval vector, slab by slab."""
+    """Range of matrix times interval vector."""
     image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
     return image[..., 0]
 
 
 def size_of(Y: Array, v: Ends) -> Array:
-    """Upper bound of |Y v|, slab by slab."""
+    """Upper bound of |Y v|."""
     bound = applied(Y, v).magnitude()
     return np.where(np.isfinite(v.lo).all(axis=-1) & np.isfinite(v.hi).all(axis=-1), bound.T, np.nan).T
 
 
 @frozen(eq=False)
 class Bounded:
-    """Bounds for radii up to `largest`; `off` bounds |I - Y G'| by entry."""
+    """Bounds for radii up to `largest`; `off`: |I - Y G'| by entry."""
 
     engine: ByIntervals
     slabs: Slabs
@@ -214,7 +210,7 @@ class Bounded:
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
         """See `Judged.pace`, with c . t = 1.
 
-        Slabs without a sign are cut; the curve lies in the image of a box, a tenth of a wide one.
+        Slabs without a sign are cut; on parts the image of a wide box is a tenth of it.
         """
         slope = self.tangent(radius, tube)[:, -1:]
         ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], STRETCHES, axis=3)
@@ -236,14 +232,14 @@ class Bounded:
         return Ends(*ends[0]), Ends(*ends[1])
 
     def _image(self, radius: Array) -> Array:
-        """Greatest distance of the curve from the cubic."""
+        """Upper bound of the curve's distance from the cubic."""
         with np.errstate(all="ignore"):
             return (self.misfit + self.spread(radius, radius)) * (1.0 + 4.0 * EPS)
 
     def turned(self, radius: Array) -> tuple[Ends, Ends]:
-        """Ranges of t's last component and, up to a factor, of its derivative along the curve, shape (slabs,).
+        """Ranges of t's last component and of its derivative up to a factor, shape (slabs,).
 
-        H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0.
+        H' t = 0 gives H' t' = -H''(u', t), u' a positive multiple of t.
         """
         t = self.tangent(radius, radius)
         image = self.engine.image(along_curve(self.slabs.box(radius), t, thin(np.zeros_like(t.lo)))).c
@@ -255,8 +251,8 @@ class Bounded:
     def _solved(self, v: Ends, radius: Array, tube: Array) -> Ends:
         """Range of G'^{-1} b within `radius` of the cubic, for v that holds Y_0 b.
 
-        With F = I - Y(s) G' it is (I - F)^{-1} w, w = (I - x E) v. Its distance from w is at most the sum of F^k |w|
-        over k >= 1: two terms and a geometric series, as F^3 |w| <= theta r and F r <= kappa r.
+        With F = I - Y(s) G' and w = (I - x E) v it is (I - F)^{-1} w, off w by the sum of F^k |w|: two terms and a
+        geometric series, as F^3 |w| <= theta r, F r <= kappa r.
         """
         x = self.slabs.offset[:, None]
         with np.errstate(all="ignore"):
@@ -281,6 +277,5 @@ def _boxes(some: slice, x: Array) -> Array:
 
 
 def _side_by_side(parts: list[Interval]) -> Any:
-    """Concatenate boxes; missing derivatives are zero."""
     stores = [lengthened(part.c, max(len(part.c) for part in parts)) for part in parts]
     return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), parts[0].algebra)

@@ -1,4 +1,4 @@
-"""Paths of homotopies whose residual is plain arithmetic only with further unknowns."""
+"""Paths with further unknowns, for residuals that are plain arithmetic only with these."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class SupportsWrittenOut(Protocol):
     def written_out(self, points: Array) -> Any:
         """The homotopy with all unknowns; None if nothing is eliminated.
 
-        Its `lifted(u, before)` puts the further unknowns in front of u, those near `before` if there are several.
+        Its `lifted(u, before)` puts the further unknowns, near those of `before`, in front of u.
 
         Parameters
         ----------
@@ -33,7 +33,7 @@ class SupportsWrittenOut(Protocol):
 def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
     """The homotopy and path to prove, with further unknowns if needed, or an empty proof with a reason.
 
-    Nodes of `cells` give the further unknowns of the points that they share with the path.
+    Nodes of `cells` give the further unknowns of points that they share with the path.
     """
     points = path.u
     width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))

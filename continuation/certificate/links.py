@@ -1,8 +1,7 @@
 """Links between tubes at their nodes.
 
-At the node u of two cells Krawczyk's test on a box of length zero proves a point z of the left curve with |z - u| <=
-r_t. If the right tube holds z at its parameter s' near 0, z is the only zero there, so both curves pass through z. If
-the tangent at z advances in both charts, one curve continues the other.
+At a node u Krawczyk's test on a box of length zero proves a point z of the left curve, |z - u| <= r_t. If the right
+tube holds z, both curves pass through z. If the tangent there advances in both charts, one curve continues the other.
 """
 
 from __future__ import annotations
@@ -18,23 +17,22 @@ from continuation.certificate.engine import Engine, Judged, together, up_by
 from continuation.numbers.ends import EPS, Ends, Mask
 
 RADII = 12
-"""Radii tried with the bounds of one test."""
+"""Radii tried with one test's bounds."""
 
 INFLATION = 1.1
-"""Factor from the test's image to the next radii: a fixed point is approached from above."""
+"""Factor from image to next radii, as a fixed point is approached from above."""
 
 LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
-"""In radii of the tube: least box around a node, first box for derivatives."""
+"""In radii of the tube: least box, first box for derivatives."""
 
 NODE_ULPS = 32.0
-"""Least box around a node, in units in the last place."""
+"""Units in the last place of the least box."""
 
 
 @frozen(eq=False)
 class Nodes:
-    """Proved points of the curve near ends of cells.
-
-    `radius`, shape (cells, N + 1): |z - u| <= radius, nan if not proved. `tangent`: the curve's, with c . t = 1.
+    """Points of the curve near ends of cells: |z - u| <= `radius`, shape (cells, N + 1), or nan; `tangent` with c . t =
+    1.
     """
 
     radius: Array
@@ -42,7 +40,7 @@ class Nodes:
 
     @property
     def proved(self) -> Mask:
-        """Cells with a proved point."""
+        """Whether a point is proved, by cell."""
         return np.asarray(np.isfinite(self.radius).all(axis=1))
 
     def take(self, index: Any) -> Nodes:
@@ -59,7 +57,7 @@ class Nodes:
 
 
 def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
-    """A point of the curve near one end of each cell, or the curve within `half` of s, shape (cells,)."""
+    """A point of the curve near an end of each cell, or the curve within `half` of s, shape (cells,)."""
     parts = together(engine, cells)
     return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
 
@@ -78,9 +76,9 @@ def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
 
 
 def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple[Array, Array, Mask]:
-    """For each cell: radii slightly above the test's image, the contraction bound, and whether the test holds.
+    """By cell: radii slightly above the test's image, the contraction bound, whether the test holds.
 
-    `owner`: cell of each slab. `least`, `bounded`: smallest radii, and largest with valid bounds.
+    `least`, `bounded`: smallest radii, largest with valid bounds.
     """
     with np.errstate(all="ignore"):
         off = largest_by_cell(judged.misfit, owner, len(least))
@@ -97,7 +95,7 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple
 
 
 def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
-    """Largest value over each cell's slabs (at least one); nan if one is nan."""
+    """Largest value over each cell's slabs, or nan."""
     if len(values) == count:
         return values
     out = np.zeros((count, values.shape[1]))
@@ -106,7 +104,7 @@ def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
 
 
 def reach(cells: Cells, s: Array, off: Ends) -> Array:
-    """Radius that a tube needs at s, from 0 to 1, to hold points `off` the cubic; nan beyond the tube."""
+    """Radius that a tube needs at s in [0, 1] to hold points `off` the cubic; nan beyond the tube."""
     count = len(cells)
     speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).velocity
     with np.errstate(all="ignore"):
@@ -117,7 +115,7 @@ def reach(cells: Cells, s: Array, off: Ends) -> Array:
 
 
 def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
-    """Whether the curves of the left cells, with nodes `at` their ends, continue in the right ones."""
+    """Whether the left curves, with nodes `at` their ends, continue in the right cells."""
     with np.errstate(all="ignore"):
         same = (left.end == right.begin).all(axis=1)
         inside = (at.radius <= left.radius).all(axis=1)

@@ -51,26 +51,26 @@ class Proof:
     """A proof that a traced path is one curve, or the proved parts.
 
     If complete, the tubes hold one smooth curve of zeros of the residual, round-off included. It passes the boxes of
-    all stored points in order and in one direction, has no branch point, and turns exactly where the path says. Curves
-    outside the tubes are not excluded.
+    all points in order and in one direction, has no branch point, and turns exactly where the path says. Other curves
+    may exist outside the tubes.
 
     Attributes
     ----------
     cells : Cells
         Cubics, charts, radii.
     node_radius : ndarray, shape (cells, N + 1)
-        Bound of the curve's distance from each cell's end.
+        Largest distance of the curve from each cell's end.
     gaps : tuple of Gap
     turning_points : tuple of tuple of float
         Ranges of arclength with one turning point each.
     end : str
         What is known of the end.
     end_radius : ndarray or None
-        Bound of the curve's distance from the stored end, if proved exactly at the target.
+        Largest distance of the curve from the stored end, if proved exactly at the target.
     kinks : tuple of tuple of float
-        Ranges of arclength with exactly one zero of a switch each; none vanishes elsewhere.
+        Ranges of arclength with exactly one zero of a switch each; no switch vanishes elsewhere.
     width : int
-        N + 1 of the path; rows of cells are longer with further unknowns in front.
+        N + 1 of the path; cells may have further unknowns in front.
     """
 
     cells: Cells
@@ -118,7 +118,7 @@ class Proof:
 
     @property
     def shadow(self) -> Cells:
-        """The cells in the path's unknowns."""
+        """Cells in the path's unknowns."""
         rows = {name: getattr(self.cells, name)[:, -self.width :] for name in NAMES if name not in ("slabs", "place")}
         return evolve(self.cells, **rows)
 

@@ -12,14 +12,14 @@ from continuation.step.options import Options
 from continuation.step.tracer import Tracer
 
 TRACES = 4
-"""Traces at most; each halves the steps."""
+"""Most traces; each halves the steps."""
 
 
 @one_thread
 def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
-    """Options with which the path, or its longest part, is proved; and the proof (None below two points).
+    """Options with which the path, or its longest part, is proved, and the proof (None below two points).
 
-    Traces with the same number of threads are equal, so the recorded trace is the proved one.
+    The recorded trace is the proved one: traces with the same number of threads are equal.
     """
     best: tuple[Options, Proof] | None = None
     tried = options
@@ -39,5 +39,4 @@ def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
 
 
 def _missing(proof: Proof) -> tuple[float, int]:
-    """Arclength without a proof, and the number of gaps."""
     return sum(gap.end - gap.begin for gap in proof.gaps), len(proof.gaps)

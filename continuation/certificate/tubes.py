@@ -13,40 +13,40 @@ from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
-"""Least radius, in sizes of the cell: a tube thinner than round-off at its nodes does not hold its neighbour's curve.
-The misfit bounds the curve's position."""
+"""Least radius, in sizes of the cell: a tube thinner than round-off misses its neighbour's curve. The misfit bounds the
+curve's position."""
 
 STILL_ULPS = 1024.0
-"""Least radius where a component stands still, in units in the last place of the nodes."""
+"""Least radius of components that stand still, in units in the last place."""
 
 FIRST_RADII = 0.05
-"""First radii of a test, in lengths of a slab; derivatives widen in proportion."""
+"""First radii, in lengths of a slab; derivatives widen in proportion."""
 
 CELL_TESTS = 6
-"""Tests of a cell, with more slabs or other radii each time."""
+"""Most tests of a cell."""
 
 CONTRACTING = 0.6
-"""Above this bound of |I - Y G'| (norm of the radii) slabs are halved: the bound falls with their length."""
+"""Above this bound of |I - Y G'| slabs are halved: it falls with their length."""
 
 
 def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
-    """Whether the test holds, slab by slab; everything proved rests on this."""
+    """Whether the test holds, slab by slab; all proofs rest on this."""
     with np.errstate(all="ignore"):
         total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-        # The charts must advance, so that the cubic crosses each once, in order.
+        # Charts must advance: the cubic crosses each once.
         return np.asarray((total < radius).all(axis=1) & (advance(slabs) > 0.0))
 
 
 @frozen(eq=False)
 class Tubes:
-    """Cells with results of their tests.
+    """Cells with test results.
 
     Attributes
     ----------
     undefined : ndarray of bool, shape (cells,)
-        Whether the residual is undefined or undecided in the last box tried.
+        Whether the residual is undefined or undecided in the last box.
     pieces : list of list of list of Piece
-        For each proved cell and each observed number.
+        By proved cell and observed number.
     """
 
     cells: Cells
@@ -65,11 +65,11 @@ class Tubes:
         )
 
     def take(self, index: Index) -> Tubes:
-        """Select cells."""
+        """Select."""
         return Tubes(self.cells.take(index), self.proved[index], self.undefined[index], [self.pieces[k] for k in index])
 
     def numbers(self) -> list[list[Piece]]:
-        """Pieces of all cells for each observed number, in cells."""
+        """Pieces by observed number, in cells."""
         placed = [
             [[Piece(k + piece.lo, k + piece.hi, piece.sign, piece.bend) for piece in part] for part in parts]
             for k, parts in enumerate(self.pieces)
@@ -78,7 +78,7 @@ class Tubes:
 
 
 def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
-    """Find radii and slabs; `cells.radius` holds unit lengths of components that stand still."""
+    """Find radii and slabs; `cells.radius` holds unit lengths."""
     return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
 
 
@@ -93,7 +93,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
-        # Other bounds hold only up to the radii they were made for.
+        # Other bounds hold only up to their radii.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
         wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
@@ -120,7 +120,6 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
-    """Whether all slabs of a cell have a property."""
     out = np.ones(count, bool)
     np.logical_and.at(out, owner, values)
     return out

@@ -25,16 +25,14 @@ NO_END = "no tube was found at the end"
 NOWHERE = "where the parameter turns is not known"
 
 POINT_DISTANCE = 1e-4
-"""Allowed distance of points and events from the curve, in sizes of the step; events are located to 1e-6."""
+"""Allowed distance of points and events from the curve, in steps; events are located to 1e-6."""
 
 PARAMETER_STEPS = 30
-"""Newton steps at most from a cell's middle."""
+"""Newton steps from a cell's middle."""
 
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
-    """The proof that tested cells, in order, give; `gaps` are known so far, `found` are pieces for the parameter's
-    rate.
-    """
+    """The proof by tested cells in order; `gaps` so far, `found` pieces of the parameter's rate."""
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
@@ -63,10 +61,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
-    """Nodes at the ends of cells, whether each cell is linked to the next, and two more nodes.
-
-    The two: at the start, and at the end with the parameter as chart.
-    """
+    """Nodes at the ends of cells, links to the next, and nodes at the start and (chart: the parameter) the end."""
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
@@ -79,7 +74,7 @@ def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
-    """Check that points are nodes in order, cells have no gaps, and the start is proved."""
+    """Check the order of points, gaps between cells, and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
     places = cells.place.ravel().tolist()
@@ -106,9 +101,9 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 
 
 def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
-    """Check that the curve is near each node: a wide tube also holds a start that was moved.
+    """Check that the curve is near each node: wide tubes also hold a moved start.
 
-    On sound paths nodes are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
+    Sound paths are within 2e-8 of a step (twelve acceptance problems, two presets, ten examples).
     """
     own, u = cells.take(np.append(0, np.arange(len(cells)))), np.vstack([cells.begin[:1], cells.end])
     place = np.append(cells.place[0, 0], cells.place[:, 1])
@@ -117,7 +112,6 @@ def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
 
 
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
-    """Allowed distance from the curve, by component."""
     step = np.clip(np.searchsorted(path.arclength, arclength), 1, len(path) - 1)
     size = np.maximum(cell_sizes(own), np.abs(path.u[step] - path.u[step - 1]))
     # A component that stands still has no size but the tube's.
@@ -128,7 +122,7 @@ def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
 
 
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
-    """Add the signs at the first and last point, so that zeros beyond do not count."""
+    """Add signs at first and last point; zeros beyond do not count."""
     signs = []
     for node, k in ((start, 0), (at, -1)):
         lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
@@ -141,7 +135,7 @@ def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) ->
 def _turning(
     engine: Engine, cells: Cells, found: list[Piece], path: Path, places: list[float | None]
 ) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
-    """Ranges of arclength with one turning point each, and disagreements with the path."""
+    """Ranges of arclength with one turning point, and disagreements with the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
@@ -169,7 +163,6 @@ def _turning(
 
 
 def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
-    """Positions in cells as arclengths."""
     k = np.clip(np.array([lo, hi]).astype(int), 0, len(cells) - 1)
     begin, end = cells.place[k].T
     first, last = (begin + np.clip([lo, hi] - k, 0.0, 1.0) * (end - begin)).tolist()
@@ -177,7 +170,7 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
 
 
 def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
-    """Cell index + parameter of each event near the curve; None otherwise."""
+    """Cell index + parameter of each event near the curve, else None."""
     places = [_place(cells, event, path) for event in path.events]
     known = [k for k, place in enumerate(places) if place is not None]
     if known:
@@ -190,7 +183,7 @@ def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
 
 
 def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
-    """Cell index + parameter of an event in the tube; its arclength tells only its step."""
+    """Cell index + parameter of an event in the tube; arclength tells only the step."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
     begin, end = path.arclength[step - 1 : step + 1]
     for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
@@ -202,7 +195,7 @@ def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0, by Newton's method: the cubic advances throughout a proved cell."""
+    """About where c . (p(t) - u) = 0: the cubic advances in a proved cell."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
     cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
@@ -213,7 +206,7 @@ def _parameter(cell: Cells, u: Array) -> Array:
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
-    """Check that events lie in the tube in order, and that none is a branch point."""
+    """Check that events lie in the tube in order, none a branch point."""
     gaps, last = [], -np.inf
     for event, place in zip(path.events, places):
         s = event.arclength

@@ -10,14 +10,14 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
 SAME_POINT = 1e3
-"""Distance, in tolerances, of two computed points that count as one: both are corrected in their own planes and
-metrics, and condition numbers of a thousand are ordinary."""
+"""Distance, in tolerances, of equal points: each is corrected in its own plane and metric, and condition numbers of a
+thousand are ordinary."""
 
 SAME_TANGENT = 1e-3
-"""Distance of unit tangents that count as one."""
+"""Distance of equal unit tangents."""
 
 NEAR_START = 0.5
-"""Distance from the start, in lengths of the arc, within which an arc is examined: a segment errs far less."""
+"""Distance from the start, in arc lengths, within which an arc is examined; segments err far less."""
 
 
 def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
@@ -31,9 +31,8 @@ def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
 def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes the start in the start's direction.
 
-    The arc must cross the plane orthogonal to the start's tangent from behind, near the start; the crossing, corrected
-    in that plane, must be the start. The arc's metric measures both: near a turning point the plane of the start's
-    metric is crossed once more.
+    It must cross the plane orthogonal to the start's tangent from behind, and the corrected crossing must be the start.
+    In the start's own metric a path crosses that plane once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

@@ -1,8 +1,8 @@
-"""Whether a path goes to infinity while the parameter stops, by a model of its asymptote that must predict the path.
+"""Whether a path goes to infinity while the parameter stops, by a model that must predict the path.
 
-On a pole y ~ (limit - lam)^-p, or a logarithm (p = 0), slopes dy/dlam grow like (limit - lam)^-(p + 1). Three points
-give p and the limit. The model must predict the parameter until it is the limit to nearly all digits: a pitchfork with
-an imperfection of 1e-14 resembles a pole down to 1e-9 of the parameter's way.
+On a pole y ~ (limit - lam)^-p, or a logarithm (p = 0), slopes grow like (limit - lam)^-(p + 1); three points give p and
+the limit. Fast growth is no proof: a pitchfork with an imperfection of 1e-14 resembles a pole down to 1e-9 of the
+parameter's way.
 """
 
 from __future__ import annotations
@@ -20,35 +20,35 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
-"""Least growth of the slope between points of the model."""
+"""Least growth of the slope between marks."""
 
 MET = 0.1
 """Allowed error of a prediction, relative to the predicted change of the parameter."""
 
 MET_OVER = 1e-2
-"""A model is tried further once the distance to the limit has fallen by this factor, all predictions being met."""
+"""The model is tried further once the distance to the limit fell by this factor with all predictions met."""
 
 ARRIVED, LAST_PLACES = 1e-11, 8.0
 """The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
-Imperfect pitchforks turn off at the power 2/3 of the imperfection, so only those below 1e-16 come so near."""
+Imperfect pitchforks turn off at the power 2/3 of the imperfection: only those below 1e-16 come so near."""
 
 ASYMPTOTE_STEPS = 5
 """From an error of a tenth, four quadratic steps give all digits."""
 
 LARGER = 2.0
-"""Least growth of the largest unknown since the start, on a pole: smaller unknowns may still be bounded."""
+"""Least growth of the largest unknown on a pole; smaller unknowns may be bounded."""
 
 HORIZON = 1e100
 """Largest number on a path: norms square it."""
 
 ASYMPTOTE_ORDERS = 0.9, 13.0
-"""Range of p + 1: at most 1/2 at folds and cusps, and no pole has an order above 12."""
+"""Range of p + 1: at folds and cusps it is at most 1/2; no pole has an order above 12."""
 
 LOGARITHM = 13.0 / 12.0
-"""p + 1 of a pole of order 1/12; below, it is a logarithm or an exponential decay."""
+"""The p + 1 of order 1/12; smaller means a logarithm or an exponential decay."""
 
 ABOUT = 0.02
-"""Three points give two digits of an order; one so near to an integer or its inverse is that."""
+"""An order so near an integer or its inverse is that: three points give two digits."""
 
 PRINTED_DIGITS = 9
 """Digits of the parameter's way in messages."""
@@ -61,24 +61,16 @@ def divergence(
 ) -> tuple[Monitor, str]:
     """Update the monitor with a point; also the sentence that names the infinity, if any.
 
-    Parameters
-    ----------
-    monitor : tuple of float
-        The parameter's way so far; the distance to the limit at which predictions began to hold, or 0; parameter and
-        slope at up to three last marks. Empty at the start.
-    point : Linearization
-    origin : Knot
-        The start.
-    evaluator : Evaluator
-    stops : sequence of (component, value)
-        Ends of the path: one on the way excludes infinity.
+    `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
+    parameter and slope at three marks at most. `stops`: ends (component, value) of the path; one on the way excludes
+    infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)
     way = max(way, abs(lam - float(origin.u[-1])))
     slope = largest(point.tangent[:-1]) / abs(moves) if moves else math.inf
     if marks and (slope < marks[-1] or (len(marks) > 2 and (lam - marks[-2]) * (marks[-2] - marks[-4]) < 0.0)):
-        # Slower, or backwards: start again.
+        # Slower or backwards: forget the model.
         return (way, 0.0), ""
     if not 0.0 < slope < math.inf or (marks and slope < DECADE * marks[-1]):
         return (way, began, *marks), ""
@@ -104,10 +96,7 @@ def _met_further(
     way: float,
     stops: Sequence[tuple[int, float]],
 ) -> bool:
-    """Whether the path follows the model by decades until the parameter reaches its limit.
-
-    Newton's method in the path's hyperplane must find a point near each prediction; its slope predicts the next.
-    """
+    """Whether Newton's method finds the path at the model's predictions, decade by decade, up to the limit."""
     enough = ARRIVED * way + LAST_PLACES * float(np.spacing(abs(limit)))
     power, at = order - 1.0, point
     try:
@@ -129,12 +118,12 @@ def _met_further(
 
 
 def beyond_horizon(u: Array) -> str:
-    """The limit of number size that a point has reached, as text."""
+    """The number size that a point has reached, as text."""
     return f"numbers of {largest(u):.0e}" if largest(u) >= HORIZON else ""
 
 
 def words(monitor: Monitor) -> str:
-    """The asymptote as a sentence; "" if none."""
+    """The asymptote in words; "" if none."""
     if not monitor or monitor[1] == 0.0:
         return ""
     way, _, *marks = monitor
@@ -152,7 +141,7 @@ def words(monitor: Monitor) -> str:
 
 
 def _fitted(marks: list[float]) -> tuple[float, float] | None:
-    """The limit and p + 1 of slopes (limit - lam)^-(p + 1) through three marks, or None."""
+    """The limit and p + 1 from three marks, or None."""
     if len(marks) < 6:
         return None
     first, a, second, b, third, c = marks

@@ -1,8 +1,7 @@
 """The limit of a path at a singular target: y ~ y* + c1 t + c2 t^2 + ..., t = |lam - target|^(1/w).
 
 A power-series endgame (Morgan, Sommese and Wampler, Numerische Mathematik 63, 1992): parameter values approach the
-target geometrically, and for each winding number w the Hermite polynomial in t through points and tangents is evaluated
-at t = 0. Newton's method is not used at the target.
+target geometrically, and for each winding number w the Hermite polynomial in t is evaluated at t = 0.
 """
 
 from __future__ import annotations
@@ -26,34 +25,34 @@ from continuation.predictors.polynomial import interpolate
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
-"""Ratio of successive distances to the target: few points, each within Newton's reach."""
+"""Ratio of distances to the target: few points, each within Newton's reach."""
 
 RELATIVE_FLOOR = 1e-13
-"""Relative error estimate that stops the sampling; the estimate is the change by the last sample."""
+"""Relative error that stops the sampling: the change by the last sample."""
 
 RESIDUAL_RATIO = 1e-3
-"""Largest residual at the limit, relative to that of the first sample moved to the target."""
+"""Largest residual at the limit, relative to the first sample moved to the target."""
 
 ULPS = 8.0
-"""Perturbation, in units in the last place, that shows the round-off of H."""
+"""Perturbation, in units in the last place, that shows round-off."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
 SAMPLES_WITHOUT_GAIN = 3
-"""Samples in a row without gain that stop the sampling."""
+"""Samples without gain that stop the sampling."""
 
 ROUND_OFF_SPREAD = 10.0
-"""Allowed ratio of round-off in H at the limit and at the last sample."""
+"""Allowed growth of round-off in H from the last sample to the limit."""
 
 SAMPLE_TOLERANCE = 1e-3
-"""Samples are corrected to this share of the tolerance, as the extrapolation multiplies their errors."""
+"""Accuracy of samples, in tolerances; the extrapolation multiplies their errors."""
 
 AMPLIFICATION = 0.3, 10.0
-"""The extrapolation multiplies errors of samples and slopes by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: the
-rounded sum of magnitudes of Hermite weights at t = 0 for nodes in ratio RATIO^(1/w)."""
+"""The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
+weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w)."""
 
 EQUALLY_GOOD = 10.0
-"""The smallest winding number within this factor of the best error: multiples of the true one fit as well, later."""
+"""The smallest winding number within this factor of the best error wins: multiples fit as well, later."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method converges linearly near a singular end."""
@@ -61,10 +60,10 @@ AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 
 @frozen(eq=False)
 class SingularLimit:
-    """The limit of a path, shape (N + 1,), exactly at the target.
+    """A limit u, shape (N + 1,), exactly at the target.
 
-    `error`: largest absolute error of a component; `length`: in the path's metric. `winding_number`: 1 for an analytic
-    path, 2 for a square root, ...
+    `error`: largest error of a component; `length`: the error's in the metric. `winding_number`: 1 if analytic, 2 for a
+    square root, ...
     """
 
     u: Array
@@ -75,7 +74,7 @@ class SingularLimit:
 
 @frozen(eq=False)
 class Sample:
-    """A point, dy/dlam, and Newton's noise by component."""
+    """A point, dy/dlam, and noise by component."""
 
     u: Array
     slope: Array
@@ -84,17 +83,14 @@ class Sample:
 
 @frozen(eq=False)
 class Endgame:
-    """The search for a path's limit at a target, with at most `samples` points of one or two factorisations each."""
+    """The search for a limit at a target, with at most `samples` points."""
 
     solver: PathSolver
     target: float
     samples: int = 14
 
     def limit(self, point: Linearization) -> SingularLimit | None:
-        """The limit, or None if no winding number fits to within the tolerance.
-
-        `point`: near the target, on the path that moves towards it.
-        """
+        """The limit, or None if no winding number fits to the tolerance."""
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
@@ -107,7 +103,7 @@ class Endgame:
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
-                # The path turns off before the target: the limit belongs to another branch.
+                # The path turns off: the limit is another branch's.
                 return None
             here, noise = tracked
             taken.append(_sample(here, noise))
@@ -127,9 +123,9 @@ class Endgame:
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
         """Whether two samples lie on one branch, as far as known.
 
-        Orientation is constant along a path, and reversed on the other branch where two nearly meet (Allgower and
-        Georg, Section 8.1). Without it the arc between the samples is compared with the path, which shows five of six
-        such ends (seeds in test_endgame.py).
+        Orientation is constant along a path, and differs on the other of two branches that nearly meet (Allgower and
+        Georg, Section 8.1). If it is unknown, the path between the samples is examined, which detects five of six such
+        ends (seeds in test_endgame.py).
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
@@ -137,7 +133,7 @@ class Endgame:
         return arc_on_path(self.solver, arc, arc.length) is not None
 
     def _keeps_orientation(self, end: SingularLimit, last: Linearization) -> bool:
-        """Whether a regular limit has the orientation of the last sample: samples may end where the path turns off."""
+        """Whether a regular limit has the last sample's orientation."""
         if end.winding_number > 1 or last.orientation == 0:
             return True
         try:
@@ -150,7 +146,7 @@ class Endgame:
         return end.length <= self.solver.tolerance.relative
 
     def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
-        """Whether the equations hold at the limit: to round-off, or far better than at the first sample moved there."""
+        """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
         residual_norm = self.solver.evaluator.residual_norm
         residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
         moved = residual_norm(np.append(taken[0].u[:-1], self.target))
@@ -158,10 +154,10 @@ class Endgame:
         return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
-        """The point at a parameter value by Newton's method, and its noise.
+        """The point at a parameter value, and its noise.
 
-        If round-off in H prevents an accurate point and `noisy` allows it, an increment below the tolerance is accepted
-        and gives the noise.
+        If round-off prevents an accurate point and `noisy` allows it, an increment below the tolerance is accepted as
+        the noise.
         """
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
@@ -207,12 +203,12 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[f
 
 
 def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
-    """The best limit over winding numbers; its error is the change by one sample plus noise."""
+    """The best limit over winding numbers; the error is the change by a sample, and noise."""
     ends = []
     noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)[0](0.0)
-        # Without the last (most accurate) and the first sample: one small change may be chance.
+        # Without the last and the first sample: one small change may be chance.
         others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
@@ -226,7 +222,6 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
 
 
 def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
-    """The last samples' interpolant at the next parameter value, or the tangent at first."""
     if best is None:
         last = taken[-1]
         guess: Array = last.u + (lam - last.u[-1]) * last.slope
@@ -240,13 +235,13 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
-    """How far round-off in H moves the point, measured as H at a few units in the last place less its linear part."""
+    """How far round-off in H moves the point: H at a few units in the last place, less its linear part."""
     apply = evaluator.differential(at.u)
     if apply is None:
         return np.zeros_like(at.u)
     nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
     nearby[-1] = at.u[-1]
     left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
-    # One sample; the largest of many is larger.
+    # The largest of many samples is larger.
     seen: Array = 2.0 * np.abs(at.solve(left, 0.0, unit))
     return seen

@@ -1,4 +1,4 @@
-"""Landing on the target, by a step of its own or where an accepted arc crosses or touches it."""
+"""Landing on the target by its own step, or where an arc crosses or touches it."""
 
 from __future__ import annotations
 
@@ -20,28 +20,26 @@ from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
 RESOLUTION = 1e-9
-"""Relative accuracy of the step; Newton's method at the target does the rest."""
+"""Relative accuracy of the step to the target, before Newton's method."""
 
 SINGULAR_SHARE = 1e-10
-"""Parameter's share of the tangent below which an end is singular in the parameter."""
+"""Parameter's share of the tangent at which an end is singular."""
 
 DISTANCE, ANGLE = 0.3, 1.0
-"""A landing has reached another branch if it corrects the prediction by more than this share of the step, or turns the
-tangent by more (radians)."""
+"""A larger correction, in steps, or angle (radians) means another branch."""
 
 RETRY, LEAP = 0.3, 10.0
-"""Interior paths creep towards a target on the boundary: landing is tried from so many steps away, and again when this
-share of the way is left."""
+"""Paths creep towards a boundary: landing is tried from so many steps away, and again when this share of the way is
+left."""
 
 STRETCH = 1.01
-"""A step that would end this near to the target lands on it; the rest would be round-off."""
+"""A target just beyond the step is landed on: a step of round-off would be left."""
 
 ROOM, EDGE = 0.9, 1e-6
-"""Least distance to the boundary, in ways to the predicted end; the end itself may lie on the boundary to within
-EDGE."""
+"""ROOM: least distance to the boundary, in ways to the predicted end. EDGE: tolerance for an end on the boundary."""
 
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
-"""Strict contraction: at a fixed parameter a far solution is as good as the path's."""
+"""It must contract well: at a fixed parameter far solutions look as good."""
 
 
 @frozen(eq=False)
@@ -59,9 +57,9 @@ class Landing:
     def attempt(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> Attempt | None:
-        """A step to the target, if the prediction reaches it; otherwise None.
+        """A step to the target if the prediction reaches it, else None.
 
-        `h`, `longest`: the controller's step and its bound. `last_failed`: parameter of the last failed landing.
+        `h`, `longest`: the controller's. `last_failed`: parameter of the last failed landing.
         """
         guess = self._guess(point, prediction, h, longest, last_failed)
         if guess is None:
@@ -77,7 +75,7 @@ class Landing:
     def _guess(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> tuple[Array, float] | None:
-        """The predicted point at the target and its step, if within reach."""
+        """The predicted point at the target and its step."""
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
@@ -102,7 +100,6 @@ class Landing:
         return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
-        """Correct with the parameter of `guess` fixed."""
         solver = self.stepper.solver
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
@@ -114,7 +111,7 @@ class Landing:
         along = dot(border, correction.u - point.u)
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
-        # The end may lie on the boundary, so the ratio test does not apply.
+        # The end itself may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
@@ -122,7 +119,7 @@ class Landing:
 
 
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
-    """The first point of the arc with a parameter value that its ends enclose, or that a fold touches."""
+    """The first point of an arc with a parameter value that its ends enclose, or that a fold touches."""
 
     def gap(u: Array, v: Array) -> float:
         return float(u[-1]) - value
@@ -131,13 +128,13 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before == 0.0 or not may_vanish(gap, arc, before, after):
         return None
     if before * after > 0.0:
-        # Asymptotes come as near as 1e-250; minima between such ends are noise.
+        # Asymptotes come within 1e-250; then minima are noise.
         if max(abs(before), abs(after)) <= solver.noise_by_component(arc.a)[-1]:
             return None
         ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
         if ends[0] * ends[1] < 0.0 and before * ends[0] < 0.0:
-            # A fold: it is the end if it lies on the target to round-off; a path that crosses the target just before it
-            # ends there.
+            # A fold on the target, to round-off, is the end; a path that crosses the target just before the fold ends
+            # there.
             fold = next(zeros(solver, TurningPoint().monitor, arc, *ends), None)
             if fold is None:
                 return None
@@ -153,10 +150,10 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
 
 
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
-    """Whether H' has full rank at a point corrected with the factorisation of `near`; otherwise it is no end.
+    """Whether H' has full rank at a point corrected with the factorisation of `near`; if not, it is no end.
 
     If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
-    contracts if H' is near that of `near`; otherwise H' is factored.
+    contracts if H' is near `near`'s; otherwise H' is factored.
     """
     evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
     z = near.solve(r)

@@ -1,4 +1,4 @@
-"""Ends of a path on an arc or ahead of it: target, singular ends, start; `continuation.step.verdict` decides."""
+"""Where a path may end; `continuation.step.verdict` decides."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ from continuation.status import Kind
 from continuation.step.state import State
 
 ENDGAME = 1e-2
-"""Distance to the target, relative to the whole way, at which a singular end is sought."""
+"""Relative distance to the target at which a singular end is sought."""
 
 RETRY_ENDGAME = 0.05
-"""Share of the distance left, since the last failed endgame, that allows another: two samples."""
+"""Share of the distance since the last failed endgame that allows another: two samples."""
 
 CONDITIONED = 0.1
-"""An end that round-off may move by this share of the path is rejected: an asymptote satisfies any equation."""
+"""Ends that round-off may move by this share of the path are rejected: asymptotes satisfy any equation."""
 
 NEAR_ENOUGH = 30.0
-"""Error bounds within so many tolerances need no limit: noise decides the components' scales."""
+"""Error bound, in tolerances, that needs no limit: noise decides the components' scales."""
 
 VANISHING_SHARE = 1e-18
-"""Parameter's share of the tangent that is zero to the square of round-off."""
+"""Parameter's share of the tangent that is zero, the square of round-off."""
 
 END_CORRECTIONS = 4
-"""Newton's increments at the target; convergence is quadratic from a located point."""
+"""Newton's increments at the target, which converge quadratically."""
 
 
 class EndsAt(Enum):
-    """What a path may end on."""
+    """Ways to end."""
 
     NOTHING = "it goes on"
     TARGET = "the target"
@@ -55,8 +55,7 @@ class EndsAt(Enum):
 class ArcEnd:
     """An accepted arc, cut where the path ends.
 
-    `kind`: of the last point (`Kind`). `whole`: whether the arc is uncut. `limit`: of a singular end. `error`: bound of
-    the end's components.
+    `kind`: of its last point. `whole`: not cut. `limit`: of a singular end. `error`: bound of the end's components.
     """
 
     arc: Arc
@@ -69,22 +68,22 @@ class ArcEnd:
 
 @frozen(eq=False)
 class Target:
-    """The target of a trace, and ways to end on it or the start without a step of its own."""
+    """The target of a trace, and ends without a step of their own."""
 
     solver: PathSolver
     target: float | None
 
-    # Homotopies with `max_step` have a domain, mostly with the target on its boundary: hence these two properties and
+    # A homotopy with `max_step` has a domain, its target mostly on the boundary: hence these two and
     # `Landing.lands_from_afar`.
 
     @property
     def expects_singular_end(self) -> bool:
-        """Whether the endgame is tried before a landing has failed: H' may lose rank on the boundary."""
+        """Whether the endgame precedes landing: H' may lose rank on the boundary."""
         return self.solver.max_step is not None
 
     @property
     def may_turn_back(self) -> bool:
-        """Whether the start's parameter value is an end: beyond it the homotopy has no meaning."""
+        """Whether the start's parameter is an end: beyond it the homotopy has no meaning."""
         return self.solver.max_step is not None
 
     # -- before a step --
@@ -92,7 +91,7 @@ class Target:
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
         """Whether to seek a singular end: the target is near, and a landing failed or the path is interior.
 
-        The next attempt waits until the parameter is much nearer.
+        After a failure the endgame waits until the target is much nearer.
         """
         if self.target is None or state.index == 0:
             return False
@@ -112,10 +111,7 @@ class Target:
     # -- after a step --
 
     def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
-        """Where the path ends on an accepted arc, if at all: target, start, or the start's parameter.
-
-        `landed`: the arc was made to end on the target.
-        """
+        """Where the path ends on an arc, if at all; `landed`: the arc was made to end on the target."""
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
@@ -137,10 +133,10 @@ class Target:
         return ArcEnd(arc)
 
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
-        """The arc's end at a parameter value, an error bound, and the limit if singular.
+        """The end at a parameter value, an error bound, and the limit if singular.
 
-        Newton's method brings a point near a fold to round-off; `off_by` bounds the rest. If that exceeds the
-        tolerance, the endgame is tried; `EvaluationError` if neither gives an end.
+        Newton's method brings points near a fold to round-off, which `off_by` measures; if it exceeds the tolerance,
+        the endgame is tried. `EvaluationError` if both fail.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)
@@ -157,7 +153,7 @@ class Target:
         return u, largest(off), None
 
     def _at_value(self, end: Linearization, value: float) -> Array:
-        """The point at the value, by Newton's increments while they reduce the residual."""
+        """The end after Newton's increments at the value, while the residual falls."""
         evaluator = self.solver.evaluator
         unit = np.zeros_like(end.u)
         unit[-1] = 1.0
@@ -177,9 +173,9 @@ class Target:
         return u
 
     def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
-        """Add to a limit's error: the singular point may lie beside the target, as far as H can tell.
+        """Add to a limit's error that the singular point may lie beside the target, as far as H can tell.
 
-        `point`: on the path before it, where y differs by c |lam - target|^(1/w).
+        Between `point` and the limit y changes like c |lam - target|^(1/w).
         """
         if limit is None or limit.winding_number == 1:
             return limit
@@ -195,10 +191,10 @@ class Target:
 
 
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
-    """How far each component of an end may move, at its parameter, while H stays within round-off of its terms.
+    """How far components of an end may move while H stays round-off.
 
-    Directions: two sign samples of round-off through the factorisation of `near`, and the tangent. Twice the allowed H
-    ends each. This also holds near folds and lower ranks; without an end it exceeds any path.
+    The end moves along the tangent, and along two sign samples of round-off through the factorisation of `near`, until
+    H is twice what is allowed. This holds near folds and at lower ranks.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

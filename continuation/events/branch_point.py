@@ -14,7 +14,6 @@ class BranchPoint:
     """Two branches cross: H' loses one rank.
 
     The tracer always watches for it, to flip its orientation; list it among the events to stop there.
-    `continuation.step.crossing` finds it, `continuation.events.singularity` polishes it.
     """
 
     terminal: int = field(default=1, validator=integer(0))
@@ -23,5 +22,5 @@ class BranchPoint:
     name: str = field(default="branch point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: no monitor changes sign at a crossing."""
+        """A constant: the tracer itself watches."""
         return 1.0

@@ -1,8 +1,8 @@
 """Which branches cross an arc, and about where, by one factorisation at its beginning.
 
-With M_a and M_c the bordered matrices of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C
-= I - M_a^{-1} M_c. A real eigenvalue above one means that a branch crosses the arc; a determinant's sign shows parity
-only. Scaling the equations changes nothing. The places are exact on a straight branch if H is affine in the parameter.
+With bordered matrices M_a and M_c of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C = I
+- M_a^{-1} M_c. A real eigenvalue above one means a crossing; a determinant shows parity only. Scaling changes nothing.
+Places are exact on a straight branch if H is affine in the parameter.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40
-"""Largest Krylov dimension; two usually do if nothing crosses."""
+"""Largest Krylov dimension; two usually suffice."""
 
 EIGENVALUE_ACCURACY = 0.05
 """Relative; Newton's method refines the crossing."""
 
 OUTSIDE_SPACE = 0.1
-"""Relative to the least eigenvalue asked for: if the last dimension leads out of the space by more, the next must
-confirm. Otherwise a tenth of the crossings just behind an arc is missed (400 crossings)."""
+"""If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
+Otherwise a tenth of the crossings just behind an arc is missed (400 crossings)."""
 
 EXHAUSTED = 1e-10
-"""A vector left with less after orthogonalisation depends on the others."""
+"""A vector left with a smaller share after orthogonalisation depends on the others."""
 
 ROUNDING = float(np.finfo(float).eps) ** 0.5
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
@@ -48,26 +48,12 @@ def changes(
     start: Array,
     accuracy: float = EIGENVALUE_ACCURACY,
 ) -> tuple[list[float], Array]:
-    """The real eigenvalues of C above `most` or below `least`, ascending, with eigenvectors, by Arnoldi's method.
+    """The real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors in the metric, as
+    columns.
 
-    Parameters
-    ----------
-    a : Linearization
-    apply : callable
-        v -> H' v at the other point.
-    border : ndarray, shape (N + 1,)
-        M's last row: the tangent in the dual metric, so that turns give complex eigenvalues.
-    most, least : float
-    start : ndarray, shape (N + 1,)
-        First vector; eigenvectors orthogonal to it are not found.
-    accuracy : float
-        Relative.
-
-    Returns
-    -------
-    values : list of float
-    vectors : ndarray, shape (N + 1, number of values)
-        Unit columns in the metric.
+    By Arnoldi's method. `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent
+    there in the dual metric, so that turns give complex eigenvalues. `start`, shape (N + 1,): first vector;
+    eigenvectors orthogonal to it are not found. `accuracy`: relative.
     """
     values, vectors = _eigenvalues(a, apply, border, most, least, start, accuracy)
     order = np.argsort(values)
@@ -75,9 +61,7 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """Lost ranks at a singular `place` of `changes`: eigenvectors from several starts, as a Krylov space holds one
-    each.
-    """
+    """Ranks lost at a `place` of `changes`, from several starts: a Krylov space holds one vector of each eigenspace."""
     found: list[Array] = []
     for k in range(RANKS):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)

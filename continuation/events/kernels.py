@@ -19,7 +19,7 @@ BORDERS = 5
 """Lost ranks that can be counted: two more than `continuation.events.multiple` resolves, for its message."""
 
 RANK = 1e-6
-"""Smaller singular values, relative to H', count as zero; above the root of POLISHED."""
+"""Smaller singular values, relative to H', count as zero; the root of POLISHED is below."""
 
 
 @frozen(eq=False)
@@ -56,14 +56,14 @@ class Bordered:
 
     @cached_property
     def left(self) -> tuple[Array, Array]:
-        """Columns spanning the left null space; defects (k + 1 each)."""
+        """Columns that span the left null space, and their defects (k + 1 numbers each)."""
         n, k = self.columns.shape
         found = self.solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), transposed=True)
         return found[:n], found[n:]
 
     @cached_property
     def right(self) -> tuple[Array, Array]:
-        """Columns spanning the right null space; defects (k each)."""
+        """Columns that span the right null space, and their defects (k numbers each)."""
         n, k = self.columns.shape
         found = self.solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]))
         return found[: n + 1], found[n + 1 :]

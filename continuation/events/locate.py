@@ -28,7 +28,7 @@ Function = Callable[[Array, Array], float]
 """Of point and tangent; continuous along the path."""
 
 JUMP = 1e-3
-"""A closed bracket with a larger value, relative to its first ones, holds a jump."""
+"""A bracket that closes on a larger value, relative to its first ones, holds a jump."""
 
 MONITOR_PLACES = 17
 """Samples of the model; a cubic turns at most twice."""
@@ -37,21 +37,18 @@ DIVISIONS, INSIDE_ARC = 8, 1e-6
 """Most divisions of an arc; least relative distance from its ends."""
 
 PASSES, NEARLY_ZERO = 60, 1e-10
-"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: such a value, relative to the ends', is accepted if
-two passes did not halve it."""
+"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if two passes did
+not halve it."""
 
 SLOPE = 1e-3
-"""Step of difference quotients, in parts: three digits, as the model has."""
+"""Step of the difference quotient, in parts: three digits, as the model has."""
 
 TRANSVERSAL = 1e-6
-"""Least relative component of a tangent transversal to a value."""
+"""Least tangent component, relative to the largest, along which a point is put exactly on a value."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
-    """A zero of a cheap function that changes sign, by Brent's method; None if it is NaN on the way.
-
-    `options`: those of `scipy.optimize.brentq`.
-    """
+    """A zero of a cheap function that changes sign, by `scipy.optimize.brentq`; None for NaN."""
     try:
         return float(brentq(function, low, high, disp=False, **options))
     except ValueError:
@@ -59,7 +56,7 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether a function may vanish on an arc: it changes sign, or falls below half of both ends inside."""
+    """Whether a function changes sign on an arc, or falls below half of both ends inside."""
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign = math.copysign(1.0, ga)
@@ -68,7 +65,7 @@ def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
 
 
 def _least(places: Sequence[float], values: Sequence[float]) -> float:
-    """Least of the values and of parabolas through three neighbours: exact for a component of a cubic's tangent."""
+    """Least of values and of parabolas through neighbours: exact for a component of a cubic's tangent."""
     least = min(values)
     slopes = [(b - a) / (q - p) for p, q, a, b in zip(places, places[1:], values, values[1:])]
     for p, q, r, a, left, right in zip(places, places[1:], places[2:], values, slopes, slopes[1:]):
@@ -128,20 +125,10 @@ class _Part:
 def zeros(
     solver: PathSolver, function: Function, arc: Arc, ga: float, gb: float, noise: float = 0.0, direction: int = 0
 ) -> Iterator[Linearization]:
-    """Zeros of a function on the arc, in order, to round-off.
+    """Zeros of a function of (u, v) on the arc, in order, to round-off.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    function : callable
-        (u, v) -> float
-    arc : Arc
-    ga, gb : float
-        Values at the ends; ga is not zero.
-    noise : float
-        Round-off of values inside.
-    direction : int
-        +1: rising only; -1: falling only.
+    `ga`, `gb`: values at the ends; ga is not zero. `noise`: round-off of values. `direction`: +1 rising only, -1
+    falling only.
     """
 
     def along(part: _Part, t: float) -> float:
@@ -189,7 +176,7 @@ def root(
 ) -> float | None:
     """A zero between a and b = (place, value) of different signs; None if the function jumps.
 
-    `function`: the zero is one of its last arguments. `enough`: accuracy of places. `guess`, `slope`: a model's.
+    `enough`: accuracy of places. `guess`, `slope`: a model's zero and slope.
     """
     scale, best = max(abs(a[1]), abs(b[1])), min(a, b, key=lambda place: abs(place[1]))
     if best[1] == 0.0:

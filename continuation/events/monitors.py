@@ -29,12 +29,12 @@ class Event(Protocol):
 
     @property
     def name(self) -> str:
-        """In path and archive."""
+        """Name in path and archive."""
         ...
 
     @property
     def kind(self) -> int:
-        """Kind of point."""
+        """Kind of the point."""
         ...
 
     @property
@@ -75,7 +75,7 @@ class TurningPoint:
 
     @property
     def name(self) -> str:
-        """``turning point``, with any component but the parameter."""
+        """``turning point``, with the component unless it is the parameter."""
         return "turning point" if self.component == -1 else f"turning point of component {self.component}"
 
     def monitor(self, u: Array, v: Array) -> float:
@@ -83,7 +83,7 @@ class TurningPoint:
         return float(v[self.component])
 
     def resolution(self, noise: Array, length: float) -> float:
-        """Component too small to move the point beyond round-off.
+        """Tangent component that moves the point by its round-off over the arc.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
 """All branches that leave a multiple branch point, where H' loses several ranks.
 
-Lyapunov-Schmidt: with E a basis of the kernel of H', every zero nearby is u0 + E a + z, z orthogonal to E, where g(a) =
-0. The lowest terms of g are the branching equations (Keller 1977; Allgower and Georg, Section 8.1); solving g itself on
-a small sphere finds branches of any order.
+Lyapunov-Schmidt: every zero nearby is u0 + E a + z, E a basis of the kernel of H', z orthogonal to E, g(a) = 0. The
+lowest terms of g are the branching equations (Keller 1977; Allgower and Georg, Section 8.1); g itself is solved on a
+small sphere, which finds branches of any order.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ LOST_RANKS = 3
 """Lost ranks that are resolved: a sphere in four dimensions."""
 
 CHORD, LAST_INCREMENT = 30, 1e-13
-"""Most chord steps onto the graph of z; last increment, relative to the sphere."""
+"""Chord steps onto the graph of z; last increment, relative to the sphere."""
 
 STARTS = 600
 """Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
@@ -39,19 +39,19 @@ SAME_ZERO = 1e-3
 """Nearer zeros, relative to the sphere, are one."""
 
 NOISE, ZERO = 1e-11, 1e-14
-"""Round-off of a direction (relative to its largest component in extents) and of a point."""
+"""Round-off of a direction, relative to its largest component, and of a point, in extents."""
 
 ISOLATED = 1e-7
 """Least singular value of the scaled equations at an isolated zero."""
 
 
 class Unresolved(ArithmeticError):
-    """The branches at a multiple branch point were not found; the message says why."""
+    """Branches at a multiple branch point were not found; the message says why."""
 
 
 @frozen(eq=False)
 class Leaving:
-    """A branch that leaves a point: a nearby point `u`, its `tangent`, and the unit `ray` at the branch point."""
+    """A branch: a nearby point `u`, its `tangent`, the unit `ray` at the branch point."""
 
     u: Array
     ray: Array
@@ -177,7 +177,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
     Raises
     ------
     Unresolved
-        If the kernel is too large, or the branches do not leave one by one.
+        If the kernel is too large, or branches do not leave one by one.
     """
     extent = 1.0 / np.sqrt(weights)
     sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
@@ -227,7 +227,7 @@ def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leavin
     ray = w / np.linalg.norm(w)
     if nearer is not None:
         half = reduced.at(nearer)[0]
-        # Extrapolated, as branches curve.
+        # Extrapolated, as branches may curve.
         ray = 2.0 * half / np.linalg.norm(half) - ray
     ray = still(reduced.extent * ray, weights)
     u = without_noise(reduced.u, reduced.extent * w, weights)
@@ -236,7 +236,7 @@ def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leavin
 
 
 def still(v: Array, weights: Array) -> Array:
-    """A direction without round-off, which a path would take as scale."""
+    """A direction without round-off, which a path would take for scale."""
     size = np.abs(v) * np.sqrt(weights)
     return np.where(size > NOISE * size.max(), v, 0.0)
 

@@ -43,9 +43,9 @@ def monitored(event: Event, point: Linearization) -> float:
 def scan_events(
     solver: PathSolver, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
-    """Events on the arc, in order, without those of `found_on`, and the monitors' values at its end.
+    """Events on the arc in order, without those of `found_on`, and the monitors' values at its end.
 
-    A zero at the beginning belongs to the arc before; the sign just behind it counts.
+    A zero at the beginning was counted before; the sign just behind it replaces it.
     """
     found: list[tuple[int, Linearization]] = []
     values = []
@@ -84,7 +84,7 @@ def scan_events(
 def first_terminal(
     events: tuple[Event, ...], counted: tuple[int, ...], found: list[tuple[int, Linearization]]
 ) -> tuple[int | None, tuple[int, ...]]:
-    """Index of the event that stops the path, or None, and counts up to there."""
+    """Index of the event that stops the path, or None, and counts up to it."""
     counts = list(counted)
     for k, (i, _) in enumerate(found):
         counts[i] += 1

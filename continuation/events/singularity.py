@@ -1,6 +1,6 @@
 """Simple branch points and their directions, by Newton's method on a minimally augmented system.
 
-Columns are multiplied by extents, rows divided by their sizes: neither units nor the origin matter.
+Columns are multiplied by extents and rows divided by their sizes.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ DISTINCT_DIRECTIONS = 1e-9
 """Least relative discriminant of two directions: the digits of SECOND."""
 
 HALTED = 1e-9, 100.0
-"""A simple branch point is a regular zero: increments reach round-off, below the first, even a million extents from the
-origin. Linear convergence means several lost ranks: the next singular value was two to four last increments (Bratu's
-problem on a square)."""
+"""At a simple branch point increments reach round-off, below HALTED[0], even a million extents from the origin. Linear
+convergence means several lost ranks: the next singular value was two to four last increments (Bratu's problem on a
+square)."""
 
 IMPERFECT = 1e-8
-"""Largest relative term that the system adds to H; beyond, H has no zero there."""
+"""Largest relative term that the system adds to H; beyond, H has no zero where H' loses rank."""
 
 
 @frozen(eq=False)
@@ -110,20 +110,10 @@ def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) ->
 def branch_point_near(
     evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
 ) -> SimpleBranchPoint | None:
-    """The zero of H(u) + beta b, gamma(u) by Newton's method; None if no simple branch point is found.
+    """Solve H(u) + beta b = 0, gamma(u) = 0 by Newton's method; None if that finds no simple branch point.
 
-    The system is regular there, and beta = 0 (Govaerts, Section 8.1, with beta unknown). An increment takes one
-    factorisation and five H'.
-
-    Parameters
-    ----------
-    evaluator : Evaluator
-    guess, heading : ndarray, shape (N + 1,)
-        Approximate point and direction; |heading| bounds the correction.
-    weights : ndarray, shape (N + 1,)
-        Metric.
-    rows : ndarray, shape (N,)
-        See `row_sizes`.
+    The system is regular at one, with beta = 0 (Govaerts, Section 8.1). An increment takes one factorisation and five
+    H'. `guess`, `heading`: approximate point and direction; |heading| bounds the correction. `rows`: see `row_sizes`.
     """
     extent, n = 1.0 / np.sqrt(weights), guess.size - 1
     scaled = ScaledDerivative(evaluator, extent, rows)
@@ -170,10 +160,10 @@ def branch_point_near(
                 return None
             # After an early halt H' is known only to the last increment.
             if kernels(here.matrix, max(RANK, HALTED[1] * newton.size))[0].shape[1] > 2:
-                # Several ranks are lost.
+                # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
             if newton.size > HALTED[0]:
-                # At a regular zero one more increment is round-off. At a multiple one branches touch, or more than two
+                # At a regular zero one more increment is round-off; at a multiple one branches touch, or more than two
                 # cross.
                 newton.run(increment, measure, lambda size: True)
                 if newton.size > HALTED[0]:
@@ -190,10 +180,9 @@ def branch_point_near(
 
 
 def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Array) -> tuple[Array, Array] | None:
-    """Directions of the two branches, in units of the path; None unless they cross transversally.
+    """Directions of two branches, in units of the path; None unless they cross transversally.
 
-    The roots of sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel (Keller 1977; Allgower and Georg, Section
-    8.1).
+    The roots of sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 (Keller 1977; Allgower and Georg, Section 8.1).
     """
     # The path's direction, nearly a root, comes first to avoid cancellation.
     kernel = np.linalg.qr(here.right[0])[0]

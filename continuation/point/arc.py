@@ -17,7 +17,7 @@ from continuation.predictors import Prediction
 class Arc:
     """The path from a to b, in the pseudo-arclength border . (u - a.u).
 
-    `length`: pseudo-arclength of b. `guide`: a better model than the segment if known; events are sought on it.
+    `length`: pseudo-arclength of b. `guide`: the segment or a better model, on which events are sought.
     """
 
     a: Linearization
@@ -30,7 +30,7 @@ class Arc:
 
     @property
     def samples(self) -> list[tuple[Array, Array]]:
-        """Points inside the arc with tangents of about unit length, without evaluating H."""
+        """Points inside the arc with tangents of about unit length, from the guide."""
         if not self._samples:
             guide = self.guide
             if isinstance(guide, PolynomialSegment):
@@ -42,12 +42,12 @@ class Arc:
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:
-        """A point just behind the beginning, with tangent."""
+        """A point just behind the beginning."""
         return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
-    """The arc up to a point on it."""
+    """The arc up to a point."""
     if isinstance(arc.segment, SeriesSegment):
         return Arc(arc.a, end, arc.border, arc.segment.until(position(arc, end.u), end.u))
     return cubic_between(arc.a, end, arc.border)
@@ -59,7 +59,7 @@ def position(arc: Arc, u: Array) -> float:
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
-    """The arc between two points: the prediction's segment if it has one, else the Hermite cubic."""
+    """The prediction's own segment, else the Hermite cubic."""
     border = a.border
     # hasattr is faster than isinstance of a Protocol.
     if hasattr(prediction, "segment"):

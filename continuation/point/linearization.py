@@ -1,4 +1,4 @@
-"""A point of the path with its factored derivative, which gives tangent, orientation and solves."""
+"""A point of the path with its factored derivative."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ REFINED = 1e-14
 """Relative last increment of a fully refined tangent: 50 units of round-off."""
 
 ROUND_OFF_LEFT = 1e3
-"""If round-off stops the contraction, a last increment within this factor is accepted."""
+"""A last increment within this factor is accepted if round-off ends the contraction."""
 
 TANGENT_LEAVES = 1e-6
-"""Allowed defect, by an exact solve, of a tangent refined with an approximate one: six digits, as a tangent needs."""
+"""Allowed defect, by an exact solve, of a tangent refined by an approximate solver: six digits."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
-"""Relative last increment of a refined solve; the second is accepted if round-off stops it: a series of order 30 keeps
-nine digits at half its range."""
+"""Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
+at half its range."""
 
 NEAR_SINGULAR = 1e10
-"""Growth of a solution at which the matrix counts as singular: six digits remain."""
+"""Growth of a solution that means a singular matrix; six digits remain."""
 
 TANGENT_REFINEMENT = Contraction(iterations=20, ratio=RELIABLE, first=MONOTONE)
-"""The first ratio need only be below one: a general error becomes what the factorisation leaves of it."""
+"""The first increment is of a general error, the second of what the factorisation leaves: their ratio need only be
+below one."""
 
 SOLVE_REFINEMENT = Contraction(iterations=8, ratio=RELIABLE)
 
 
 @frozen(eq=False)
 class Anchor:
-    """A factorisation with its point and border, from which it can be remade."""
+    """A factorisation, and what it can be remade from."""
 
     u: Array
     border: Array
@@ -49,10 +50,10 @@ class Anchor:
 
 @frozen(eq=False)
 class Linearization:
-    """A point u = (y, lam), its tangent, and a factorisation of [H_y, H_lam] made there (`exact`) or nearby.
+    """A point u = (y, lam), tangent, and a factorisation of [H_y, H_lam] made there (`exact`) or nearby.
 
-    `weights`: metric, shape (N + 1,). `tangent`: unit length in the metric, H' tangent = 0, oriented. `orientation`:
-    sign of det [[H'], [(W tangent)']], 0 if unknown. Series need an exact factorisation, corrections do not.
+    `weights`: metric, shape (N + 1,). `tangent`: unit, H' tangent = 0, oriented. `orientation`: sign of det [[H'], [(W
+    tangent)']], 0 if unknown. Series need `exact`.
     """
 
     u: Array
@@ -86,17 +87,17 @@ class Linearization:
     def solve(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
         """Solve ``H' z = r, border . z = rho`` for any border.
 
-        Solutions of H' z = r differ by multiples of the tangent, so a border costs one inner product. Default: W
-        tangent, which for rho = 0 gives the shortest solution (Moore-Penrose).
+        Solutions of H' z = r differ by multiples of the tangent. By default z with rho = 0 is the shortest
+        (Moore-Penrose).
         """
         return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
 
     def approximate(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
-        """`solve` for iterations that measure their own residual: see `CountedSystem`."""
+        """`solve` for iterations that measure their residual: see `CountedSystem`."""
         return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
 
     def blur(self, noise: Array) -> float:
-        """Length of the correction by noise of the equations, shape (N,): the larger of two samples of signs."""
+        """Length of a correction by noise of the equations, shape (N,): two samples of signs."""
         samples = (self.approximate(signs * noise) for signs in (1.0, np.sign(generic_vector(noise.size))))
         return max(norm(self.weights, sample) for sample in samples)
 
@@ -116,9 +117,9 @@ class Linearization:
 
 
 def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array) -> Linearization:
-    """Factor at u; the tangent makes an acute angle with `reference`, the border.
+    """Factor at u; the tangent makes an acute angle with the border `reference`.
 
-    With M = [[H'], [reference']] and M v = e_{N+1}, det [[H'], [v']] = det(M) |v|^2: the factorisation's sign is the
+    With M = [[H'], [reference']] and M v = e_{N+1}, det [[H'], [v']] = det(M) |v|^2: one factorisation gives the
     orientation (Allgower and Georg, Section 2.1).
     """
     system = evaluator.factor(u, reference)
@@ -136,13 +137,13 @@ def relinearize(
     accuracy: float = REFINED,
     guess: Array | None = None,
 ) -> Linearization:
-    """Linearize at u with a factorisation from nearby; the tangent is refined to `accuracy`, and along . v > 0.
+    """Linearize at u with a nearby factorisation; the tangent v is refined to `accuracy`, with along . v > 0.
 
-    `guess`: a multiple of the tangent, to begin with.
+    `guess`: about a multiple of the tangent.
 
-    Iterative refinement of M v = e_{N+1} with factors of M~ multiplies the error by I - M~^{-1} M; without reliable
-    contraction u is factored. If `signed`, refinement begins with a general error: with a negative eigenvalue of
-    M~^{-1} M it would not shrink, so det M~ and det M have one sign.
+    Refinement of M v = e_{N+1} with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is
+    factored. If `signed`, refinement begins with a general error, which does not shrink if M~^{-1} M has a negative
+    eigenvalue: so det M~ and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
@@ -157,7 +158,7 @@ def relinearize(
         tangent = _refined(apply, anchor, begin, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
-    # The refined tangent follows the anchor's border, not `along`.
+    # The anchor's border may differ from `along`.
     flip = dot(along, tangent) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
@@ -166,10 +167,7 @@ def relinearize(
 def _refined(
     apply: Callable[[Array], Array], anchor: Anchor, guess: Array, weights: Array, accuracy: float
 ) -> Array | None:
-    """The solution v of M v = e_{N+1} at the point of `apply`; None if refinement fails.
-
-    Measured in the metric: the largest component depends on units.
-    """
+    """The solution of M v = e_{N+1}, or None; measured in the metric, as the largest component depends on units."""
     refinement = Iteration(guess, TANGENT_REFINEMENT)
     solve, border = anchor.system.approximate, anchor.border
     v, longest = guess, norm(weights, guess)
@@ -181,7 +179,7 @@ def _refined(
                 break
             return None
         v = refinement.x
-        # Cheap upper bound of the norm, checked first.
+        # A cheap bound of the norm comes first.
         longest += size
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
             break
@@ -197,7 +195,7 @@ def _refined(
 
 @frozen(eq=False)
 class RefinedSystem:
-    """Iterative refinement with a nearby factorisation, for the matrix of the point itself."""
+    """Refinement of a nearby factorisation for the point's own matrix."""
 
     near: CountedSystem
     apply: Callable[[Array], Array]
@@ -223,9 +221,9 @@ class RefinedSystem:
 
 
 def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The point with solves for its own matrix, by refinement or a new factorisation.
+    """The point with exact solves for its own matrix.
 
-    Series need them: an error in one coefficient enters all later ones.
+    Series need them: an error in a coefficient enters later ones.
     """
     if point.exact:
         return point
@@ -244,7 +242,7 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
 
 
 def factored(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The point with its own factorisation; tangent and orientation stay."""
+    """The point with its own factorisation."""
     return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border).anchor)
 
 

@@ -21,54 +21,53 @@ from continuation.tolerance import Tolerance
 MaxStep = Callable[[Array, Array], float]
 
 ARC_PLACES = 0.31, 0.77
-"""Where an arc is compared with the path: no symmetry of an S-bend or cubic aligns these."""
+"""Where arc and path are compared: no symmetry of an S-bend or cubic aligns these."""
 
 LATE = 0.93
 """A series is also compared here: its end correction, a power of t, is nearly zero at the other places and hides an S
-behind them (2 of 1,500 S-bends were missed)."""
+behind them (2 of 1,500 S-bends)."""
 
 SLACK = 0.004
-"""Allowed distance of arc and path, in arc lengths: a cubic that turns by one radian errs as much."""
+"""Allowed distance, in arc lengths: that of a cubic that turns by one radian."""
 
 MISSED, EVEN = 0.07, 1.5e-4
-"""MISSED: on a smooth path the arc's error is a small share of the prediction's (1/64 for a cubic extrapolated by its
-length); an S inside makes them alike. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of the
-path are still seen with steps of a third (900 measured)."""
+"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for a cubic extrapolated by its length);
+with an S inside both errors are alike. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of
+the path still show in steps of a third (900 measured)."""
 
 ARC_NOISE = 1e2
-"""Least allowed distance, in tolerances: noise in the residual limits short arcs."""
+"""Least allowed distance, in tolerances, for noise on short arcs."""
 
 EPS = float(np.finfo(float).eps)
 
 NOISE_LOOKS = 4.0
-"""The largest of many random samples exceeds one by this factor."""
+"""Factor from one random sample to the largest of many."""
 
 CHORD_STEPS = Contraction(iterations=20)
 
 NO_CHANGE = 1e-6
-"""Last increment, in tolerances; the next is at most half."""
+"""Last increment, in tolerances; the next is negligible."""
 
 SMALL_INCREMENT, WITHIN_TOLERANCE = 1e-4, 1.0
-"""Accepted increment, in tolerances, if round-off stalls the iteration; the second applies after three
+"""Increment, in tolerances, that is accepted if round-off stops the iteration; the second after three
 factorisations."""
 
 
 @define(eq=False)
 class PathSolver:
-    """Puts points of one homotopy on its path to one tolerance.
-
-    The start may raise the tolerance for noise in H (`continuation.step.start`).
+    """Puts points of one homotopy on its path.
 
     Attributes
     ----------
     evaluator : Evaluator
     tolerance : Tolerance
+        The start may raise it for noise in H (`continuation.step.start`).
     max_step : callable or None
         How far an interior path may go in a direction (`continuation.homotopy.SupportsMaxStep`).
     straight : callable or None
-        About how far a path of straight pieces goes before it bends; its only scale.
+        About how far a path of straight pieces goes before it bends.
     room : callable or None
-        How far a straight path without a target goes to its end; likewise.
+        How far a straight path without a target goes to its end.
     """
 
     evaluator: Evaluator
@@ -79,7 +78,7 @@ class PathSolver:
     asked: float = field(default=Factory(lambda solver: solver.tolerance.relative, takes_self=True), init=False)
 
     def noisy(self, least: float) -> None:
-        """Raise the requested tolerance to the `least` that noise allows."""
+        """Raise the tolerance to the `least` that noise allows."""
         self.tolerance = evolve(self.tolerance, relative=max(self.asked, least))
 
     @property
@@ -89,9 +88,9 @@ class PathSolver:
         return f" The residual is noisy: the tolerance was raised to {least:.0e}." if least > self.asked else ""
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
-        """Bring a guess onto the path, to round-off, in the hyperplane orthogonal to `border`.
+        """Bring a guess onto the path in the hyperplane orthogonal to `border`.
 
-        Chord steps use a nearby factorisation while increments halve, then one made at the guess and remade if needed.
+        A nearby factorisation serves while increments halve, then new ones.
 
         Returns
         -------
@@ -124,7 +123,7 @@ class PathSolver:
     def _chord_steps(
         self, guess: Array, solve: Callable[[Array], Array], near: Linearization, enough: float
     ) -> Array | None:
-        """Chord steps while increments halve; the point if it is then within `enough`, or within measured round-off."""
+        """Chord steps while increments halve; the point if the last is within `enough`, or round-off."""
         chord, residual, measure = Iteration(guess, CHORD_STEPS), self.evaluator.residual, self.tolerance.measure
         while chord.count < CHORD_STEPS.iterations:
             step = solve(-residual(chord.x))
@@ -133,7 +132,7 @@ class PathSolver:
                 break
             if size <= NO_CHANGE:
                 return chord.x
-        # The stalled increment leads between two points of round-off.
+        # The stalled increment joins two points of round-off.
         last = chord.size * min(chord.ratio, 1.0)
         if chord.size <= enough or (
             last <= WITHIN_TOLERANCE and last <= 2.0 * self.noise(near) / self.tolerance.relative
@@ -142,14 +141,14 @@ class PathSolver:
         return None
 
     def noise(self, near: Linearization) -> float:
-        """How far round-off in H and the point moves a correction, in the metric."""
+        """Round-off of a correction, in the metric."""
         return norm(near.weights, self.noise_by_component(near))
 
     def noise_by_component(self, near: Linearization) -> Array:
         """Round-off of a correction by component, shape (N + 1,).
 
-        The point moves by a few units in the last place (of the path's size, if larger); round-off is the correction
-        beyond moving it back. It takes two residuals and one solve.
+        The point is moved by a few units in the last place (of the path's size, if larger); the correction beyond
+        moving it back is round-off.
         """
         evaluator, u = self.evaluator, near.u
         last_place = np.maximum(np.spacing(np.abs(u)), EPS / np.sqrt(near.weights * u.size))
@@ -165,9 +164,9 @@ class PathSolver:
     def project_and_linearize(
         self, near: Linearization, guess: Array, border: Array, along: Array | None = None
     ) -> Linearization:
-        """Project `guess`, then linearise; the tangent makes an acute angle with the border.
+        """Project `guess` and linearise; the tangent makes an acute angle with the border.
 
-        `along`: approximate direction of the path, any length; it saves solves.
+        `along`: approximate direction; it saves solves.
         """
         u, anchor = self.project(near, guess, border)
         return relinearize(self.evaluator, u, near.weights, anchor, border, guess=along)
@@ -178,10 +177,10 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
 
 
 def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
-    """The arc, if it lies near the path; None if it joins branches or misses an S.
+    """The arc if it is near the path; None if it joins branches or misses an S.
 
-    One residual and one solve estimate the segment's error at each place; a cubic with these errors becomes the guide.
-    `distance`: error of the predicted end, in the metric.
+    One residual and one solve estimate the error at each place; a cubic with these errors is the guide. `distance`:
+    error of the prediction, in the metric.
     """
     a, segment, weights = arc.a, arc.segment, arc.a.weights
     length = norm(weights, arc.b.u - a.u)
@@ -201,7 +200,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     c = first - p * d
     even = max(EVEN * length, noise)
     if max(distance, *(norm(weights, one) for one in off)) > even:
-        # An S shows in the middle; errors of the factorisation cancel if all are measured from the cubic.
+        # An S shows in the middle. Measured from the cubic, all errors share the factorisation's.
         middle = a.approximate(-solver.evaluator.residual(segment.at(0.5)))
         if not norm(weights, middle - (c + 0.5 * d) / 16.0) <= even:
             return None

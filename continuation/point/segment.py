@@ -1,4 +1,4 @@
-"""The path between two accepted points as a function of t in [0, 1]: a polynomial, or the predictor's series."""
+"""The path between two accepted points as a function of t in [0, 1]."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Segment(Protocol):
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Where in (0, 1) to sample it so that no oscillation is missed."""
+        """Places in (0, 1) that miss no oscillation."""
         ...
 
     def at(self, t: float) -> Array:
@@ -40,7 +40,7 @@ _SAMPLED = np.array(_QUARTERS)[:, None] ** _POWERS, _POWERS * np.array(_QUARTERS
 
 @frozen(eq=False)
 class PolynomialSegment:
-    """``begin + c_1 t + c_2 t^2 + ...``, cubic or quintic; rows of `coefficients` are terms.
+    """``begin + c_1 t + c_2 t^2 + ...``; rows of `coefficients` are terms.
 
     Relative to the beginning, so that round-off is that of the way.
     """
@@ -65,7 +65,7 @@ class PolynomialSegment:
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """Points and derivatives inside; one matrix product costs less than one point."""
+        """Points and derivatives inside, by one matrix product."""
         points, slopes = (list(table[:, : len(self.coefficients)] @ self.coefficients) for table in _SAMPLED)
         return [self.begin + point for point in points], slopes
 
@@ -76,7 +76,7 @@ class PolynomialSegment:
 
 
 def cubic(u0: Array, u1: Array, d0: Array, d1: Array) -> PolynomialSegment:
-    """The cubic with two points and derivatives in t."""
+    """The cubic through two points with given derivatives in t."""
     way = u1 - u0
     return PolynomialSegment(u0, np.array([d0, 3.0 * way - 2.0 * d0 - d1, d0 + d1 - 2.0 * way]))
 
@@ -105,7 +105,7 @@ class Curve(Protocol):
 class SeriesSegment:
     """A series at the first point, made to end on the second.
 
-    The gap at the end is the first neglected term; adding t^power times it gains one order inside.
+    Its gap there is the first neglected term; t^power times the gap gains an order.
     """
 
     curve: Curve
@@ -147,7 +147,7 @@ _NODES, _WEIGHTS = (tuple(map(float, values)) for values in np.polynomial.legend
 
 
 def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
-    """The t at a fraction of the segment's arclength, by Newton's method on Gauss quadrature of the speed."""
+    """The t at a fraction of the arclength, by Newton's method on Gauss quadrature."""
     if fraction <= 0.0 or fraction >= 1.0:
         return min(max(fraction, 0.0), 1.0)
 
