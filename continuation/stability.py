@@ -28,7 +28,7 @@ from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
 """Up to 30 unknowns eigenvalues cost less than a step, and arcs are examined inside: a pair may cross, become real, and
-one return at a turning point (MatCont's catalyst)."""
+one return (MatCont's catalyst)."""
 
 EVENT_MARGIN = 0.02
 """Distance, in arcs, at which an event may explain a change."""

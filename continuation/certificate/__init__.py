@@ -1,8 +1,8 @@
 """Proofs that a traced path is one curve, in interval arithmetic.
 
-Krawczyk's test (`certificate.krawczyk`) gives tubes around the cubics between points, each with exactly one smooth
-curve of zeros. The test at single parameters links tubes, proves points and events, and joins the arcs of kinked paths.
-Signs along the curve count turning points and kinks.
+Krawczyk's test (`certificate.krawczyk`) gives tubes around the cubics between points, each with exactly one curve of
+zeros. Tests at single parameters link tubes, prove points and events, and join the arcs of kinked paths. Signs along
+the curve count turning points and kinks.
 """
 
 from continuation.certificate.certifying import certify

@@ -1,8 +1,8 @@
 """Kinked paths: each smooth arc is proved on its piece and joined to the next.
 
-On boxes just before and behind an arc's end the switch has different signs, so the arc's curve has a zero z in between.
-Both pieces equal the map at z, and the next arc's tube must hold z. The switch's derivative has one sign along either
-curve, so z is unique.
+The switch has different signs just before and behind an arc's end, so the arc's curve has a zero z between. Both pieces
+equal the map at z, and the next arc's tube must hold z. The switch's derivative along either curve has one sign, so z
+is unique.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
 
 
 def _look_at(switches: ByIntervals) -> Look:
-    """Look at the parameter's rate, at switches, and at their derivatives (gradient times tangent)."""
+    """Look at the parameter's rate, at switches, and at their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
         owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
@@ -181,7 +181,7 @@ def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
 
 
 def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
-    """Why a switch is not proved to keep its sign on an arc; `at`: whether it should vanish at either end."""
+    """Why a switch is not proved to keep its sign on an arc. `at`: whether it should vanish at either end."""
     begin, *inner, end = found
     # A switch that should vanish at an end is round-off there.
     found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]

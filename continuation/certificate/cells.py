@@ -72,7 +72,7 @@ def between(
 ) -> Cells:
     """The cell between two nodes, without a tube; the chart is orthogonal to the chord in the metric.
 
-    Tangents may have any length; `place`: arclengths.
+    `place`: arclengths.
     """
     chart = weights * (end - begin)
     chart = chart / (float(np.abs(chart).max()) or 1.0)
@@ -90,7 +90,7 @@ def between(
 def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
     """Extent by component, at least 1e-6 of the chord in the metric.
 
-    `still`, shape (cells, N + 1): unit lengths where components stand still.
+    `still`: unit lengths where components stand still.
     """
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
@@ -107,7 +107,7 @@ def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
 
 @frozen(eq=False, slots=False)
 class Slabs:
-    """Parameter ranges within `half` of `middle`, shape (slabs,), and their cells."""
+    """Parameter ranges within `half` of `middle`, and their cells."""
 
     owner: Index
     middle: Array

@@ -60,9 +60,8 @@ class Node:
 def certify(path: Path, homotopy: Any) -> Proof:
     """Prove that a traced path is one curve; parts without a proof are returned as gaps.
 
-    If Krawczyk's test holds around the Hermite cubic between two points, the tube holds exactly one curve, perhaps with
-    folds. Cells that fail are halved at a new point. Tubes are linked, turning points compared with the path's, and the
-    end joined to the target.
+    If Krawczyk's test holds around the cubic between two points, the tube there holds exactly one curve, perhaps with
+    folds. Cells that fail are halved. Turning points are compared with the path's, and the end is joined to the target.
 
     Parameters
     ----------
@@ -70,7 +69,7 @@ def certify(path: Path, homotopy: Any) -> Proof:
         Traced, or read from an archive.
     homotopy : Homotopy
         The homotopy that was traced. Its residual must run on interval arrays, unless it has bounds of its own
-        (`SupportsProofEngine`). LCP homotopies have these; proofs cost a fraction of their traces.
+        (`SupportsProofEngine`), as LCP homotopies have.
 
     Returns
     -------
@@ -191,8 +190,8 @@ class TubeSearch:
 def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
     """A point of the path between two nodes, at a share of their distance from b, or why there is none.
 
-    A slope in the chart is huge if the tangent is nearly orthogonal to the chord, so slopes as long as the chord give
-    the midpoint guess. Next to a singular end a parabola gives it.
+    The midpoint guess uses slopes as long as the chord: if a tangent is nearly orthogonal to the chord, its slope in
+    the chart is huge. Next to a singular end a parabola gives the guess.
     """
     cell, x = _cell(a, b), 1.0 - share
     first, last = (v[0] / (norm(a.weights, v[0]) or 1.0) for v in (cell.slope_begin, cell.slope_end))

@@ -38,9 +38,8 @@ class Piece:
 
 @frozen(eq=False)
 class Turn:
-    """A range, in cells, with exactly one zero and a derivative of sign `bend`.
-
-    If not `certain`, the zero may lie beyond the path's end.
+    """A range, in cells, with exactly one zero and a derivative of sign `bend`; if not `certain`, the zero may lie
+    beyond the path's end.
     """
 
     lo: float
@@ -77,8 +76,8 @@ def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) 
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
     """Zeros in order, and ranges with an unknown number of zeros.
 
-    A run of pieces without a sign, but with one sign of the derivative, holds exactly one zero if the signs around it
-    differ; equal signs are impossible.
+    A run of pieces without a sign holds exactly one zero if the derivative has one sign and the signs around the run
+    differ.
     """
     out: list[Turn] = []
     unknown: list[tuple[float, float]] = []
@@ -100,9 +99,9 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
 
 
 def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
-    """Shorten the turning points' ranges above `RANGE`.
+    """Shorten the turning points' ranges above `RANGE`, by signs of the monotone number.
 
-    The number is monotone there: its sign tells the side of the zero. Away from nodes parameters follow the curve.
+    Away from nodes parameters have the curve's order.
     """
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]

@@ -1,7 +1,7 @@
 """Links between tubes at their nodes.
 
 At a node u Krawczyk's test on a box of length zero proves a point z of the left curve, |z - u| <= r_t. If the right
-tube holds z, both curves pass through z. If the tangent there advances in both charts, one curve continues the other.
+tube holds z and the tangent advances in both charts, one curve continues the other.
 """
 
 from __future__ import annotations

@@ -51,13 +51,12 @@ class Proof:
     """A proof that a traced path is one curve, or the proved parts.
 
     If complete, the tubes hold one smooth curve of zeros of the residual, round-off included. It passes the boxes of
-    all points in order and in one direction, has no branch point, and turns exactly where the path says. Other curves
+    all points in order and in one direction, without branch points, and turns exactly where the path says. Other curves
     may exist outside the tubes.
 
     Attributes
     ----------
     cells : Cells
-        Cubics, charts, radii.
     node_radius : ndarray, shape (cells, N + 1)
         Largest distance of the curve from each cell's end.
     gaps : tuple of Gap

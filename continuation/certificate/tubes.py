@@ -13,8 +13,7 @@ from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
-"""Least radius, in sizes of the cell: a tube thinner than round-off misses its neighbour's curve. The misfit bounds the
-curve's position."""
+"""Least radius, in sizes of the cell: a tube thinner than round-off misses its neighbour's curve."""
 
 STILL_ULPS = 1024.0
 """Least radius of components that stand still, in units in the last place."""

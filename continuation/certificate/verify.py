@@ -101,9 +101,9 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 
 
 def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
-    """Check that the curve is near each node: wide tubes also hold a moved start.
+    """Check that the curve is near each node: wide tubes also hold a start that was moved.
 
-    Sound paths are within 2e-8 of a step (twelve acceptance problems, two presets, ten examples).
+    Nodes of sound paths are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
     own, u = cells.take(np.append(0, np.arange(len(cells)))), np.vstack([cells.begin[:1], cells.end])
     place = np.append(cells.place[0, 0], cells.place[:, 1])

@@ -10,8 +10,8 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
 SAME_POINT = 1e3
-"""Distance, in tolerances, of equal points: each is corrected in its own plane and metric, and condition numbers of a
-thousand are ordinary."""
+"""Distance, in tolerances, of equal points: their planes and metrics differ, and condition numbers of a thousand are
+ordinary."""
 
 SAME_TANGENT = 1e-3
 """Distance of equal unit tangents."""
@@ -32,7 +32,7 @@ def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes the start in the start's direction.
 
     It must cross the plane orthogonal to the start's tangent from behind, and the corrected crossing must be the start.
-    In the start's own metric a path crosses that plane once more near a turning point.
+    The metric is the arc's: in the start's own a path crosses once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

@@ -30,7 +30,7 @@ MET_OVER = 1e-2
 
 ARRIVED, LAST_PLACES = 1e-11, 8.0
 """The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
-Imperfect pitchforks turn off at the power 2/3 of the imperfection: only those below 1e-16 come so near."""
+Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
 
 ASYMPTOTE_STEPS = 5
 """From an error of a tenth, four quadratic steps give all digits."""

@@ -124,8 +124,8 @@ class Endgame:
         """Whether two samples lie on one branch, as far as known.
 
         Orientation is constant along a path, and differs on the other of two branches that nearly meet (Allgower and
-        Georg, Section 8.1). If it is unknown, the path between the samples is examined, which detects five of six such
-        ends (seeds in test_endgame.py).
+        Georg, Section 8.1). If unknown, the path between is examined, which detects five of six such ends (seeds in
+        test_endgame.py).
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation

@@ -150,7 +150,7 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
 
 
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
-    """Whether H' has full rank at a point corrected with the factorisation of `near`; if not, it is no end.
+    """Whether H' has full rank at a point corrected with the factorisation of `near`.
 
     If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
     contracts if H' is near `near`'s; otherwise H' is factored.

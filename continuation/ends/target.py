@@ -135,8 +135,8 @@ class Target:
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
         """The end at a parameter value, an error bound, and the limit if singular.
 
-        Newton's method brings points near a fold to round-off, which `off_by` measures; if it exceeds the tolerance,
-        the endgame is tried. `EvaluationError` if both fail.
+        Newton's method brings points near a fold to round-off (`off_by`); if that exceeds the tolerance, the endgame is
+        tried. `EvaluationError` if both fail.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)
@@ -193,8 +193,8 @@ class Target:
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
     """How far components of an end may move while H stays round-off.
 
-    The end moves along the tangent, and along two sign samples of round-off through the factorisation of `near`, until
-    H is twice what is allowed. This holds near folds and at lower ranks.
+    The end moves along the tangent, and along two sign samples of round-off through `near`, until H is twice what is
+    allowed. This also holds near folds and at lower ranks.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

@@ -1,8 +1,8 @@
 """Which branches cross an arc, and about where, by one factorisation at its beginning.
 
 With bordered matrices M_a and M_c of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C = I
-- M_a^{-1} M_c. A real eigenvalue above one means a crossing; a determinant shows parity only. Scaling changes nothing.
-Places are exact on a straight branch if H is affine in the parameter.
+- M_a^{-1} M_c: a real eigenvalue above one means a crossing. A determinant shows parity only. Places are exact on a
+straight branch if H is affine in the parameter.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ EIGENVALUE_ACCURACY = 0.05
 
 OUTSIDE_SPACE = 0.1
 """If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
-Otherwise a tenth of the crossings just behind an arc is missed (400 crossings)."""
+Otherwise a tenth of 400 crossings just behind an arc is missed."""
 
 EXHAUSTED = 1e-10
 """A vector left with a smaller share after orthogonalisation depends on the others."""
@@ -61,7 +61,9 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """Ranks lost at a `place` of `changes`, from several starts: a Krylov space holds one vector of each eigenspace."""
+    """Ranks lost at a `place` of `changes`: one Krylov space holds one vector of each eigenspace, so several starts
+    serve.
+    """
     found: list[Array] = []
     for k in range(RANKS):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)

@@ -1,8 +1,8 @@
 """Zeros of a function on an accepted arc, for events, targets, faces and switches.
 
 The arc's guide models the function without evaluating H. An arc has no zero if the model keeps the ends' sign and at
-least half of the smaller end value; it has one if the ends differ in sign and the model changes sign once. Then secants
-converge on points of the path. Other arcs are divided at a point of the path.
+least half of the smaller end value, one zero if the ends differ in sign and the model changes sign once: secants then
+find it on the path. Other arcs are divided.
 """
 
 from __future__ import annotations

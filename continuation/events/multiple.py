@@ -1,8 +1,8 @@
 """All branches that leave a multiple branch point, where H' loses several ranks.
 
 Lyapunov-Schmidt: every zero nearby is u0 + E a + z, E a basis of the kernel of H', z orthogonal to E, g(a) = 0. The
-lowest terms of g are the branching equations (Keller 1977; Allgower and Georg, Section 8.1); g itself is solved on a
-small sphere, which finds branches of any order.
+branching equations (Keller 1977; Allgower and Georg, Section 8.1) are the lowest terms of g; g itself, solved on a
+small sphere, gives branches of any order.
 """
 
 from __future__ import annotations

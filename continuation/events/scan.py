@@ -22,10 +22,7 @@ SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points found by events with `found_on`, and whether these explain the arc (`accounts_for`).
-
-    `found`: points from monitors.
-    """
+    """Points found by events with `found_on`, and whether these and `found`, from monitors, explain the arc."""
     watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]

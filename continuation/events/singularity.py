@@ -31,9 +31,8 @@ DISTINCT_DIRECTIONS = 1e-9
 """Least relative discriminant of two directions: the digits of SECOND."""
 
 HALTED = 1e-9, 100.0
-"""At a simple branch point increments reach round-off, below HALTED[0], even a million extents from the origin. Linear
-convergence means several lost ranks: the next singular value was two to four last increments (Bratu's problem on a
-square)."""
+"""At a simple branch point increments fall below HALTED[0], even a million extents from the origin. Linear convergence
+means several lost ranks: the next singular value was two to four last increments (Bratu's problem on a square)."""
 
 IMPERFECT = 1e-8
 """Largest relative term that the system adds to H; beyond, H has no zero where H' loses rank."""

@@ -50,10 +50,10 @@ class Anchor:
 
 @frozen(eq=False)
 class Linearization:
-    """A point u = (y, lam), tangent, and a factorisation of [H_y, H_lam] made there (`exact`) or nearby.
+    """A point u = (y, lam), its tangent, and a factorisation of [H_y, H_lam] made there (`exact`) or nearby.
 
-    `weights`: metric, shape (N + 1,). `tangent`: unit, H' tangent = 0, oriented. `orientation`: sign of det [[H'], [(W
-    tangent)']], 0 if unknown. Series need `exact`.
+    `weights`: metric. `tangent`: unit, H' tangent = 0, oriented. `orientation`: sign of det [[H'], [(W tangent)']], 0
+    if unknown. Series need `exact`.
     """
 
     u: Array
@@ -141,9 +141,9 @@ def relinearize(
 
     `guess`: about a multiple of the tangent.
 
-    Refinement of M v = e_{N+1} with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is
-    factored. If `signed`, refinement begins with a general error, which does not shrink if M~^{-1} M has a negative
-    eigenvalue: so det M~ and det M have one sign.
+    Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. If
+    `signed`, it begins with a general error, which does not shrink if M~^{-1} M has a negative eigenvalue: so det M~
+    and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None

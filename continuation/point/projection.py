@@ -24,16 +24,16 @@ ARC_PLACES = 0.31, 0.77
 """Where arc and path are compared: no symmetry of an S-bend or cubic aligns these."""
 
 LATE = 0.93
-"""A series is also compared here: its end correction, a power of t, is nearly zero at the other places and hides an S
-behind them (2 of 1,500 S-bends)."""
+"""A series is also compared here: its end correction, a power of t, hides an S behind the other places (2 of 1,500
+S-bends)."""
 
 SLACK = 0.004
 """Allowed distance, in arc lengths: that of a cubic that turns by one radian."""
 
 MISSED, EVEN = 0.07, 1.5e-4
-"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for a cubic extrapolated by its length);
-with an S inside both errors are alike. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of
-the path still show in steps of a third (900 measured)."""
+"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for a cubic extrapolated by its length),
+an arc over an S by as much. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of the path
+still show in steps of a third (900 measured)."""
 
 ARC_NOISE = 1e2
 """Least allowed distance, in tolerances, for noise on short arcs."""
@@ -179,8 +179,8 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
 def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     """The arc if it is near the path; None if it joins branches or misses an S.
 
-    One residual and one solve estimate the error at each place; a cubic with these errors is the guide. `distance`:
-    error of the prediction, in the metric.
+    One residual and one solve estimate the error at each place; a cubic with these becomes the guide. `distance`: the
+    prediction's error, in the metric.
     """
     a, segment, weights = arc.a, arc.segment, arc.a.weights
     length = norm(weights, arc.b.u - a.u)
