@@ -192,7 +192,7 @@ class BoundHopf:
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """Where a pair's real part vanishes, or None."""
+        """The zero of a pair's real part on the path, or None."""
         ends = {0.0: arc.a.u, 1.0: arc.b.u}
 
         def real_part(t: float) -> float:

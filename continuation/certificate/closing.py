@@ -1,4 +1,4 @@
-"""What is proved of a path's end."""
+"""Proofs of a path's end."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class SupportsEndCertificate(Protocol):
     """A homotopy that proves its ends to be solutions in another way."""
 
     def certify_end(self, y: Array) -> str:
-        """What is proved of the end, as a sentence; empty if nothing.
+        """A sentence on the end that is proved; empty if nothing is.
 
         Parameters
         ----------
@@ -39,7 +39,7 @@ class SupportsEndCertificate(Protocol):
 
 
 def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> tuple[str, Array | None, str]:
-    """What is proved of the end, the curve's distance from it, and what is missing."""
+    """The proved sentence on the end, the curve's distance from the end, and the missing condition."""
     end, last = path.steps[-1], float(cells.end[-1, -1])
     if path.status is not Status.REACHED_TARGET:
         return ("The end is a point of the curve.", None, "") if at.proved[-1] else ("", None, NO_CURVE)

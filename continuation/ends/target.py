@@ -1,4 +1,4 @@
-"""Where a path may end; `continuation.step.verdict` decides."""
+"""Possible ends of a path; `continuation.step.verdict` decides."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class Target:
     # -- after a step --
 
     def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
-        """Where the path ends on an arc, if at all; `landed`: the arc was made to end on the target."""
+        """The arc, cut at the path's end if there is one; `landed`: the arc was made to end on the target."""
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))

@@ -25,7 +25,7 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, Segment, hermite
 
 Function = Callable[[Array, Array], float]
-"""Of point and tangent; continuous along the path."""
+"""A function of point and tangent, continuous along the path."""
 
 JUMP = 1e-3
 """A bracket that closes on a larger value, relative to its first ones, holds a jump."""
@@ -103,7 +103,7 @@ class _Part:
         return parts[0], parts[1]
 
     def undecided(self, along: Callable[[float], float]) -> float | None:
-        """Where to divide, given the model `along`; None if the ends decide."""
+        """The place of a division, given the model `along`; None if the ends decide."""
         sign = math.copysign(1.0, self.ga)
         places = np.linspace(self.low, self.high, MONITOR_PLACES).tolist()
         values = [sign * self.ga, *(sign * along(t) for t in places[1:-1]), sign * self.gb]

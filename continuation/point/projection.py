@@ -21,7 +21,7 @@ from continuation.tolerance import Tolerance
 MaxStep = Callable[[Array, Array], float]
 
 ARC_PLACES = 0.31, 0.77
-"""Where arc and path are compared: no symmetry of an S-bend or cubic aligns these."""
+"""Places where arc and path are compared: no symmetry of an S-bend or cubic aligns these."""
 
 LATE = 0.93
 """A series is also compared here: its end correction, a power of t, hides an S behind the other places (2 of 1,500
