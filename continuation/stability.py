@@ -44,7 +44,7 @@ ON_AXIS = 1e-6
 """Largest relative real part of a Hopf pair; otherwise a pair appeared or vanished."""
 
 ZERO_RESOLVED = 1e-14
-"""The real part of a pair, relative to its modulus, that is zero: what is left is round-off of the eigenvalues."""
+"""Relative real part that is round-off."""
 
 
 @frozen
@@ -193,7 +193,7 @@ class BoundHopf:
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """Where on the path the real part of the pair of a rank vanishes, if it does and that pair is on the axis."""
+        """The zero of a pair's real part on the path, or None."""
         ends = {0.0: arc.a.u, 1.0: arc.b.u}
 
         def real_part(t: float) -> float:
@@ -202,7 +202,7 @@ class BoundHopf:
             )
 
         a, b = (left, real_part(left)), (right, real_part(right))
-        # What the segment shows may not be so on the path itself.
+        # The segment may differ from the path.
         t = None if a[1] * b[1] > 0.0 else root(real_part, a, b, solver.noise(arc.a) / arc.length)
         if t is None:
             return None

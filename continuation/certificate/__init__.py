@@ -1,13 +1,8 @@
-"""Proofs that traced paths are one path: one inequality, in intervals, on the cubics between a path's points.
+"""Proofs that a traced path is one curve, in interval arithmetic.
 
-In the chart c . (u - p(s)) = 0 across a cubic p let G(s, u) = (H(u), c . (u - p(s))), and Y any matrix. Where
-
-    |Y G(s, p(s))| + |I - Y G'(p(s) + [-r, r])| r < r        for all s of a cell,
-
-the tube p(s) + [-r, r] holds one smooth curve of zeros of H (Krawczyk). The same inequality on a cell of no length
-links two tubes at a node, puts the curve next to each stored point and event, and joins the arcs of a kinked path. What
-is left is signs along the curve: of the parameter's component of the tangent, whose zeros are turning points, and of
-switches. Cells and radii are searched for by any means; `verify` says what of them is a proof.
+Krawczyk's test (`certificate.krawczyk`) gives tubes around the cubics between points, each with exactly one curve of
+zeros. Tests at single parameters link tubes, prove points and events, and join the arcs of kinked paths. Signs along
+the curve count turning points and kinks.
 """
 
 from continuation.certificate.certifying import certify

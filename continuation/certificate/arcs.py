@@ -1,9 +1,8 @@
-"""Kinked paths: each smooth arc proved with the equations of its piece, and joined to the next at a zero of a switch.
+"""Kinked paths: each smooth arc is proved on its piece and joined to the next.
 
-Near its end the curve of an arc lies in boxes p(1 - delta) and p(1 + delta) + [-r, r], on which the switch that
-vanishes at the kink has different signs: it has a zero z in between. There both pieces are the map, so that z is a zero
-of the next piece's equations as well; where the next arc's tube holds z, it lies on that arc's curve. Either curve has
-one zero of the switch there, its derivative along the curve having a sign: the one begins where the other ends.
+The switch has different signs just before and behind an arc's end, so the arc's curve has a zero z between. Both pieces
+equal the map at z, and the next arc's tube must hold z. The switch's derivative along either curve has one sign, so z
+is unique.
 """
 
 from __future__ import annotations
@@ -28,10 +27,10 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
-"""How far from its end the signs of a switch are asked, in lengths of the last cell: the first that will do."""
+"""Distances from an arc's end, in lengths of the last cell, at which the signs of a switch are tried."""
 
 ARC_PARTS = 4
-"""Parts of a slab on which switches are looked at: one that vanishes at both ends of an arc has its sign in between."""
+"""Parts of a slab: a switch that vanishes at both ends has a sign in between."""
 
 NO_KINK = "a kink is listed where there is none"
 NOT_LISTED = "a kink that the path does not list"
@@ -41,7 +40,7 @@ Prove = Callable[[Any, Path, Cells | None, Look], tuple[Proof, Engine, list[list
 
 @frozen(eq=False)
 class SmoothPart:
-    """What is between two kinks: the signs of the switches, the proof, and what it was found by."""
+    """An arc between two kinks, with the signs of the switches."""
 
     signs: Array
     proof: Proof
@@ -49,17 +48,7 @@ class SmoothPart:
 
 
 def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
-    """The proof of a path of a homotopy in pieces.
-
-    Parameters
-    ----------
-    homotopy : SupportsPieces
-    path : Path
-    cells : Cells or None
-        Of a proof that is checked again.
-    prove : callable
-        Proves a smooth path, or checks the cells of a proof of it.
-    """
+    """Prove a path in pieces, or check `cells`; `prove` does so for one arc."""
     switches = ByIntervals(homotopy.switches, path.u.shape[1] - 1)
     kinks, gaps = _listed(path)
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
@@ -68,7 +57,7 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     arcs: list[SmoothPart | None] = []
     before = None
     for k, (first, last) in enumerate(pairwise(places)):
-        if first == last:  # a kink in which the path ends
+        if first == last:  # the path ends here
             arcs.append(None)
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
@@ -115,12 +104,11 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
 
 
 def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
-    """The kinks at points of the path, one a point."""
     out: list[LocatedEvent] = []
     gaps = []
     for kink in sorted(path.kinks, key=lambda event: event.step):
         step, s = path.steps[min(max(kink.step, 1), len(path) - 1)], kink.arclength
-        # In a kink in which a path begins it has come from nowhere.
+        # No arc leads to a first kink.
         if kink.step != step.index or s != step.arclength or not (kink.u == step.u).all():
             gaps.append(Gap(s, s, NO_KINK))
         elif out and out[-1].step == kink.step:
@@ -133,13 +121,13 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
 def _signs(
     homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
 ) -> tuple[tuple[float, float], Array | None]:
-    """Where the points are not on one piece, and the signs of the switches, given those before: None in that case."""
+    """The last step examined, and the signs of the switches (None: not on one piece)."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
         found = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
     if before is not None:
-        # What vanishes at both ends of a step is zero in the middle of its chord, too.
+        # A switch zero at both ends of a step is zero in the middle of its chord.
         crossed = [j for j in ends[0] if 0 <= j < len(found)]
         found[crossed] = -before[crossed]
     for row, end in zip((0, -1), ends):
@@ -151,21 +139,18 @@ def _signs(
 
 
 def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
-    """The points of an arc. That of a kink has the tangent with which the path came: here it is to have the other."""
+    """The points of an arc, with a kink's outgoing tangent."""
     if kink is None:
         return steps
     away = np.full_like(kink.u, np.nan) if kink.rays is None or len(kink.rays) < 2 else kink.rays[1]
     return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
-# --- the switches along an arc ----------------------------------------------------------------------------
+# --- the switches along an arc ---
 
 
 def _look_at(switches: ByIntervals) -> Look:
-    """The look at the parameter's rate and at switches: the curve lies in the tube, where their range is bounded.
-
-    Where that has no sign, the derivative along the curve has one perhaps, gradient times tangent.
-    """
+    """Look at the parameter's rate, at switches, and at their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
         owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
@@ -180,7 +165,7 @@ def _look_at(switches: ByIntervals) -> Look:
 
 
 def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[Piece], list[Piece]]:
-    """Pieces of each switch at the first and the last point of an arc."""
+    """Signs of each switch at the ends of an arc."""
     s, sides = np.array([0.0, 1.0]), cells.take([0, -1])
     radius = nodes(engine, sides, s).radius
     radius = np.where((radius <= sides.radius).all(axis=1, keepdims=True), radius, np.nan)
@@ -190,18 +175,15 @@ def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[
 
 
 def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
-    """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
+    """Signs of the switches within radii of slab middles."""
     box = slabs.cubic[:, 0] + Ends(-radius, radius)
     return signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
 
 
 def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
-    """Why a switch is not proved to have its sign on an arc of so many cells; empty where it is.
-
-    `at`: Whether it should vanish at the beginning, and at the end.
-    """
+    """Why a switch is not proved to keep its sign on an arc. `at`: whether it should vanish at either end."""
     begin, *inner, end = found
-    # What vanishes there is zero but for rounding.
+    # A switch that should vanish at an end is round-off there.
     found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
     understood, unknown = turns(found)
     first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
@@ -215,13 +197,13 @@ def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> s
     return NO_KINK if (len(first), len(last)) != at else ""
 
 
-# --- from one arc to the next -----------------------------------------------------------------------------
+# --- from one arc to the next ---
 
 
 def _joined(
     homotopy: Any, before: SmoothPart | None, after: SmoothPart | None, kink: LocatedEvent
 ) -> tuple[float, float] | str:
-    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to."""
+    """A range of arclength that holds the kink, or why the arcs are not joined."""
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else NO_KINK
     (j,), s = kink.switches, kink.arclength
@@ -236,7 +218,7 @@ def _joined(
     switches, sides = ByIntervals(homotopy.switches, kink.u.size - 1), joined([left, left])
     for delta in NEXT_TO.tolist():
         window = nodes(before.engine, left, np.ones(1), delta)
-        # Within the tube it is the tube's curve; a nan, where nothing is proved, is not.
+        # False for nan (not proved).
         if not (window.radius <= left.radius).all():
             continue
         slabs = Slabs(np.arange(2), np.array([1.0 - delta, 1.0 + delta]), np.zeros(2), sides)
@@ -257,6 +239,6 @@ def _joined(
 
 
 def _rate(engine: Engine, cell: Cells, s: float, off: Array) -> int:
-    """The sign with which the parameter moves along the curve at a point within `off` of a node; 0 for none."""
+    """Sign of the parameter's rate within `off` of a node."""
     t = engine.judge(at_node(cell, np.array([s])), off).tangent(off, off)
     return int(signs(t[0, -1]))

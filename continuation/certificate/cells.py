@@ -1,4 +1,4 @@
-"""Pieces of a path that are proved one by one: a cubic, a chart across it, and the radii of a tube around it."""
+"""Cells: pieces of a path with a cubic, a chart across it, and the radii of a tube."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from continuation.numbers.ends import EPS, Ends, bilinear, thin
 Index = NDArray[np.intp]
 
 OVERHANG = 1e-3
-"""How far a tube goes beyond both ends of its cell, in lengths of it, so that neighbours overlap."""
+"""Share of its length by which a tube overlaps its neighbours."""
 
 
 @frozen(eq=False)
 class Cells:
-    """Pieces in order, each from the node where the one before ends; arrays of shape (cells, N + 1) but for two.
+    """Consecutive pieces of a path; arrays of shape (cells, N + 1) unless stated.
 
     Attributes
     ----------
     begin, end : ndarray
-        The nodes: p(0) and p(1) of the Hermite cubic p.
+        Nodes p(0), p(1) of the Hermite cubic p.
     slope_begin, slope_end : ndarray
-        p'(0) and p'(1).
+        p'(0), p'(1).
     chart : ndarray
-        The vector c: a point u belongs to the parameter s with c . (u - p(s)) = 0.
+        The vector c: u has the parameter s with c . (u - p(s)) = 0.
     radius : ndarray
-        The tube: |u - p(s)| <= radius, component by component.
+        Tube: |u - p(s)| <= radius by component.
     slabs : ndarray of int, shape (cells,)
-        Into how many parts of equal length the parameter is cut for the test.
+        Equal parts in the test.
     place : ndarray, shape (cells, 2)
-        Arclengths of the path at either end.
+        Arclengths of the ends.
     """
 
     begin: Array
@@ -51,17 +51,11 @@ class Cells:
         return len(self.begin)
 
     def take(self, index: Any) -> Cells:
-        """Some of them.
-
-        Parameters
-        ----------
-        index : ndarray
-            Of numbers or truth values.
-        """
+        """Select cells."""
         return Cells(*(getattr(self, name)[index] for name in NAMES))
 
     def with_tubes(self, radius: Array, slabs: Index) -> Cells:
-        """The same with other radii and numbers of slabs."""
+        """Replace radii and slabs."""
         return evolve(self, radius=radius, slabs=slabs)
 
 
@@ -69,29 +63,16 @@ NAMES = tuple(Cells.__annotations__)
 
 
 def joined(parts: list[Cells]) -> Cells:
-    """One after the other.
-
-    Parameters
-    ----------
-    parts : list of Cells
-    """
+    """Concatenate."""
     return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in NAMES))
 
 
 def between(
     begin: Array, tangent_begin: Array, end: Array, tangent_end: Array, weights: Array, place: tuple[float, float]
 ) -> Cells:
-    """The cell between two nodes with these tangents, across its chord in the metric; no tube yet.
+    """The cell between two nodes, without a tube; the chart is orthogonal to the chord in the metric.
 
-    Parameters
-    ----------
-    begin, end : ndarray, shape (N + 1,)
-    tangent_begin, tangent_end : ndarray, shape (N + 1,)
-        Of any length.
-    weights : ndarray, shape (N + 1,)
-        The metric.
-    place : tuple of float
-        Arclengths.
+    `place`: arclengths.
     """
     chart = weights * (end - begin)
     chart = chart / (float(np.abs(chart).max()) or 1.0)
@@ -99,7 +80,7 @@ def between(
     slopes = []
     for tangent in (tangent_begin, tangent_end):
         rate = float(chart @ tangent)
-        # A tangent that does not lead on serves no cubic: the chord does.
+        # A tangent that does not advance is replaced by the chord.
         slopes.append(tangent * (along / rate) if rate > 0.0 else end - begin)
     first, last = (slope[None] for slope in slopes)
     nothing, one = np.zeros_like(begin)[None], np.ones(1, dtype=np.intp)
@@ -107,17 +88,13 @@ def between(
 
 
 def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
-    """How far a cell goes in each component; where that is little, a share of what its metric counts as much.
+    """Extent by component, at least 1e-6 of the chord in the metric.
 
-    Parameters
-    ----------
-    cells : Cells
-    still : ndarray, optional
-        Lengths in that metric of components that stand still, of which a cell does not know it.
+    `still`: unit lengths where components stand still.
     """
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
-        # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
+        # sqrt(chord / chart) is a unit length: chart = weights * chord up to a factor.
         unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
         if still is not None:
             unit = np.where(np.isfinite(unit), unit, still)
@@ -130,16 +107,7 @@ def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
 
 @frozen(eq=False, slots=False)
 class Slabs:
-    """Parts of cells: the parameter within `half` of `middle`; arrays of shape (slabs,) and of cells, one a slab.
-
-    Attributes
-    ----------
-    owner : ndarray of int
-        The cell of each.
-    middle, half : ndarray
-    cells : Cells
-        That of each slab.
-    """
+    """Parameter ranges within `half` of `middle`, and their cells."""
 
     owner: Index
     middle: Array
@@ -150,20 +118,19 @@ class Slabs:
         return len(self.owner)
 
     def take(self, index: Any) -> Slabs:
-        """Some of them."""
+        """Select slabs."""
         return Slabs(self.owner[index], self.middle[index], self.half[index], self.cells.take(index))
 
     @property
     def offset(self) -> Array:
-        """At least the distance of any parameter of the range from the middle, shape (slabs,)."""
+        """Upper bound of |s - middle|, shape (slabs,)."""
         return np.where(self.half > 0.0, self.half * (1.0 + 8.0 * EPS) + 8.0 * EPS * (1.0 + np.abs(self.middle)), 0.0)
 
     @cached_property
     def cubic(self) -> Ends:
-        """The cubics about the middles: p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
+        """Coefficients q of p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
 
-        In the distance from the nearer end a cubic is base + slope t + bend t^2 + last t^3: at a node it is the node,
-        and round-off of the other one does not count.
+        Expanded from the nearer end: a node has no round-off from the other.
         """
         cells, later = self.cells, self.middle[:, None] > 0.5
         sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]
@@ -176,43 +143,38 @@ class Slabs:
         third = bend + by_last
         second = third + by_last + by_last
         parts = base + t * (slope + t * third), slope + t * (second + bend), second, last
-        # From there on, whichever end is the nearer one.
+        # Undo the reversal of t.
         lo, hi = (np.stack([getattr(part, end) for part in parts], axis=1) for end in ("lo", "hi"))
         turned = later[:, :, None] & np.array([False, True, False, True])[:, None]
         return Ends(np.where(turned, -hi, lo), np.where(turned, -lo, hi))
 
     @cached_property
     def over(self) -> tuple[Ends, Ends, Ends]:
-        """The ranges of p, p' and p''/2 over each slab, shape (slabs, N + 1)."""
+        """Ranges of p, p' and p''/2, shape (slabs, N + 1)."""
         x = self.offset[:, None]
         return evaluated(self.cubic, Ends(-x, x))
 
     @property
     def velocity(self) -> Ends:
-        """The range of p' alone."""
+        """Range of p'."""
         return self.over[1]
 
     def box(self, radius: Array) -> Ends:
-        """What is within `radius` of the cubics."""
+        """Boxes within `radius` of the cubics."""
         return self.over[0] + Ends(-radius, radius)
 
     def halved(self, parts: int) -> Slabs:
-        """Each cut into so many."""
+        """Cut each slab into equal parts."""
         steps = (2.0 * np.arange(parts) + 1.0) / parts - 1.0
         middle = (self.middle[:, None] + self.half[:, None] * steps).ravel()
         index = np.repeat(np.arange(len(self)), parts)
-        # A little longer than a part: together they cover the whole, whatever rounding does.
+        # Slightly longer: rounding must not uncover the slab.
         half = np.repeat(self.half / parts, parts) * (1.0 + 1e-9)
         return Slabs(self.owner[index], middle, half, self.cells.take(index))
 
 
 def slabs_of(cells: Cells) -> Slabs:
-    """All slabs of all cells, in order; those of one cell cover [-OVERHANG, 1 + OVERHANG].
-
-    Parameters
-    ----------
-    cells : Cells
-    """
+    """All slabs; those of a cell cover [-OVERHANG, 1 + OVERHANG]."""
     counts = cells.slabs.astype(np.intp)
     owner = np.repeat(np.arange(len(cells)), counts)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -222,19 +184,12 @@ def slabs_of(cells: Cells) -> Slabs:
 
 
 def at_node(cells: Cells, s: Array) -> Slabs:
-    """Slabs of no length at one end of each cell.
-
-    Parameters
-    ----------
-    cells : Cells
-    s : ndarray, shape (cells,)
-        0 or 1.
-    """
+    """Slabs of length zero at s = 0 or 1."""
     return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
 
 
 def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
-    """p, p' and p''/2 of cubics, shape (slabs, 4, m), over offsets x of shape (slabs, 1)."""
+    """Ranges of p, p', p''/2 for cubics (slabs, 4, m) and offsets (slabs, 1)."""
     q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
     by_last = x * q3
     second = q2 + by_last + by_last + by_last
@@ -242,12 +197,12 @@ def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
 
 
 def advance(slabs: Slabs) -> Array:
-    """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
+    """Lower bound of c . p'(s), shape (slabs,)."""
     bound, _ = along(slabs.cells.chart, slabs.velocity)
     return bound
 
 
 def along(chart: Array, v: Ends) -> tuple[Array, Array]:
-    """The range of c . v, row by row."""
+    """Range of c . v by row."""
     product = bilinear(np.matmul, thin(chart[:, None, :]), Ends(v.lo[..., None], v.hi[..., None]))
     return product.lo[:, 0, 0], product.hi[:, 0, 0]

@@ -1,4 +1,4 @@
-"""`certify`: from a traced path to a proof that it is one path."""
+"""`certify`: prove that a traced path is one curve."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ from continuation.point.projection import PathSolver
 from continuation.tolerance import Tolerance
 
 CELL_HALVINGS = 8
-"""How often a cell is halved: its error, of fourth order, is then below round-off."""
+"""Halvings of a cell; its fourth-order error is then below round-off."""
 
 TAIL_NODES = 60
-"""Points at most that are put next to a singular end: a parameter that falls as the distance does takes ten."""
+"""Most points added next to a singular end; ten suffice if the parameter falls like the distance."""
 
 NEARER = 0.25
-"""The distance of such a point from the end, of that of the one before. On 50 degenerate LCPs (n = 2 to 20, 618 points)
-it makes 768 boxes, 0.4 makes 792 and 0.1 784 with half more time."""
+"""Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
+boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
 
 LARGE_NUMBERS = 4_000_000
-"""Numbers of an array of 32 MB, the largest that has this effect."""
+"""Length of a 32 MB array, the largest with the effect described below."""
 
 
 @frozen(eq=False)
 class Node:
-    """A point of the path with its tangent and the metric there."""
+    """A point with tangent and metric."""
 
     u: Array
     tangent: Array
@@ -58,20 +58,18 @@ class Node:
 
 @one_thread
 def certify(path: Path, homotopy: Any) -> Proof:
-    """Prove that a traced path is one path: what is proved, and gaps where it is not.
+    """Prove that a traced path is one curve; parts without a proof are returned as gaps.
 
-    Between two points runs the Hermite cubic through points and tangents; around it a tube is sought in which
-    Krawczyk's test holds for every parameter, so that it has exactly one curve, without branch points, folds allowed.
-    Cells that fail are halved at a new point that the corrector finds. Neighbouring tubes are linked at their nodes,
-    turning points are counted and compared with those of the path, and the end is joined to the target.
+    If Krawczyk's test holds around the cubic between two points, the tube there holds exactly one curve, perhaps with
+    folds. Cells that fail are halved. Turning points are compared with the path's, and the end is joined to the target.
 
     Parameters
     ----------
     path : Path
-        Traced or read from an archive; tangents that it does not have are computed.
+        Traced, or read from an archive.
     homotopy : Homotopy
-        The one that was traced. Its residual is to run on interval arrays as it runs on jets, unless it has bounds of
-        its own (`SupportsProofEngine`): LCP homotopies are proved at a fraction of the cost of their traces.
+        The homotopy that was traced. Its residual must run on interval arrays, unless it has bounds of its own
+        (`SupportsProofEngine`), as LCP homotopies have.
 
     Returns
     -------
@@ -82,14 +80,14 @@ def certify(path: Path, homotopy: Any) -> Proof:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     ValueError
-        If the path has fewer than two points, or not those of this homotopy.
+        If the path has fewer than two points, or belongs to another homotopy.
 
     References
     ----------
     Krawczyk, Computing 4 (1969) 187-201; for curves, Breden, Lessard and Vanicat, Acta Appl. Math. 128 (2013) 113-152.
     """
     require_path(path)
-    Evaluator(homotopy, Counts())  # which says what no homotopy lacks
+    Evaluator(homotopy, Counts())  # raises if it is none
     width = path.u.shape[1]
     if width != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {width - 1} unknowns")
@@ -100,16 +98,14 @@ def certify(path: Path, homotopy: Any) -> Proof:
 
 
 def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
-    """A proof, with new cells or with these."""
     if isinstance(homotopy, SupportsPieces):
         return by_pieces(homotopy, path, cells, _smooth)
     return _smooth(homotopy, path, cells, turning)[0]
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
-    """A proof, what it was found by, and the pieces of the numbers that were looked at, the parameter's rate first."""
-    # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages again
-    # each time took a third of a proof. Nothing is written to this one.
+    """A proof, its engine, and pieces of each observed number, first the parameter's rate."""
+    # glibc keeps freed memory after a large array was freed; otherwise requesting pages takes a third of a proof.
     np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
@@ -123,20 +119,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
-    """Check a proof again, every condition, with the charts and radii that it has.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of a proof, perhaps from a file.
-    path : Path
-        What they are to prove.
-    homotopy : Homotopy
-
-    Returns
-    -------
-    Proof
-    """
+    """Check every condition of a proof again."""
     whole = lifted(homotopy, path, cells)
     if isinstance(whole, Proof):
         return whole
@@ -145,16 +128,7 @@ def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
 
 @frozen(eq=False)
 class TubeSearch:
-    """The search for cells and tubes.
-
-    Attributes
-    ----------
-    engine : Engine
-    homotopy : Homotopy
-    path : Path
-    look : callable
-        At numbers whose zeros along the curve are to be told.
-    """
+    """The search for cells and tubes; `look` observes numbers."""
 
     engine: Engine
     homotopy: Any
@@ -162,11 +136,11 @@ class TubeSearch:
     look: Look
 
     def run(self) -> tuple[Tubes, list[Gap]]:
-        """Proved cells in order, and the gaps between them; cells that fail are halved."""
+        """Proved cells in order, and gaps."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         end, own = nodes[-1], getattr(self.homotopy, "metric", None) is not None
-        # Up to where a path is proved that has a singular end: until then cells next to it are cut in any number.
+        # A path is proved up to here from a singular end; farther cells are cut without limit.
         near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(self.path.steps[-1]) else np.inf
         pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
         done: list[Tubes] = []
@@ -186,7 +160,7 @@ class TubeSearch:
                     continue
                 singular = b is end and near < np.inf and abs(a.u[-1] - end.u[-1]) > 0.0
                 if singular and abs(a.u[-1] - end.u[-1]) <= near:
-                    continue  # what is proved of the end takes the place of the rest
+                    continue  # the proof of the end covers the rest
                 why: Node | str = "no tube holds it, however short"
                 if singular or left:
                     why = _between(solver, a, b, NEARER if singular else 0.5)
@@ -200,7 +174,6 @@ class TubeSearch:
         return whole.take(np.argsort(whole.cells.place[:, 0], kind="stable")), gaps
 
     def _nodes(self, evaluator: Evaluator) -> list[Node]:
-        """The stored points; tangents that are not stored, or are those of a chord, computed."""
         u, out = self.path.u, list[Node]()
         for k, (step, weights) in enumerate(zip(self.path.steps, _weights(self.homotopy, self.path))):
             tangent = step.tangent
@@ -217,9 +190,8 @@ class TubeSearch:
 def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
     """A point of the path between two nodes, at a share of their distance from b, or why there is none.
 
-    Half way it is sought at the cubic's middle, but for slopes as long as the chord: where a tangent is nearly across
-    the chord its slope in the chart is out of all proportion, and the corrector may not come back from there. Next to a
-    singular end it is on the parabola through a, along its tangent, and through the end.
+    The midpoint guess uses slopes as long as the chord: if a tangent is nearly orthogonal to the chord, its slope in
+    the chart is huge. Next to a singular end a parabola gives the guess.
     """
     cell, x = _cell(a, b), 1.0 - share
     first, last = (v[0] / (norm(a.weights, v[0]) or 1.0) for v in (cell.slope_begin, cell.slope_end))
@@ -239,7 +211,7 @@ def _cell(a: Node, b: Node) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """The metric at each point: that in which the path went on from there, where it is known."""
+    """Weights of the next step if stored, else the rule's."""
     rule, out = metric_of(homotopy, path), list[Array]()
     for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)

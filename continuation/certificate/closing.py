@@ -1,4 +1,4 @@
-"""What is proved of the end of a path: a point of the curve, an exact solution, or nothing of the limit of a series."""
+"""Proofs of a path's end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from continuation.path import Path, Step
 from continuation.status import Status
 
 NEXT_TO_END = 1e-6
-"""Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
+"""Distance from a singular end up to which a path is proved, relative to the parameter's way."""
 
 NO_CURVE = "no point of the curve was found at the end"
 LIMIT = "the end is the limit of a series, of which nothing is proved"
@@ -22,10 +22,10 @@ LIMIT = "the end is the limit of a series, of which nothing is proved"
 
 @runtime_checkable
 class SupportsEndCertificate(Protocol):
-    """A homotopy whose ends can be proved to be solutions by other means than the path."""
+    """A homotopy that proves its ends to be solutions in another way."""
 
     def certify_end(self, y: Array) -> str:
-        """What is proved of the end, as a sentence; empty where nothing is.
+        """A sentence on the end that is proved; empty if nothing is.
 
         Parameters
         ----------
@@ -39,11 +39,7 @@ class SupportsEndCertificate(Protocol):
 
 
 def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> tuple[str, Array | None, str]:
-    """What is proved of the end, how far the curve there is from the stored one, and what is missing.
-
-    Tubes that end next to the target of a path, where it was reached otherwise than by a step, are followed by what the
-    homotopy can prove of the end, or by a series.
-    """
+    """The proved sentence on the end, the curve's distance from the end, and the missing condition."""
     end, last = path.steps[-1], float(cells.end[-1, -1])
     if path.status is not Status.REACHED_TARGET:
         return ("The end is a point of the curve.", None, "") if at.proved[-1] else ("", None, NO_CURVE)
@@ -63,5 +59,5 @@ def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> t
 
 
 def made(step: Step) -> bool:
-    """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
+    """Whether an end was found without a step; its tangent is a chord."""
     return step.index > 0 and step.segment is None and step.corrector_iterations == 0

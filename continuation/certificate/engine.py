@@ -1,4 +1,4 @@
-"""What Krawczyk's test needs to know of slabs, and what follows from it where it holds."""
+"""The bounds that Krawczyk's test needs."""
 
 from __future__ import annotations
 
@@ -12,31 +12,29 @@ from continuation.numbers.ends import TINIEST, Ends, accumulated
 
 
 class Judged(Protocol):
-    """What is known of slabs once their derivatives have been bounded."""
+    """Bounds on slabs."""
 
     @property
     def misfit(self) -> Array:
-        """A bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan where there is none."""
+        """Upper bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan if unknown."""
         ...
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
-        """A multiple > 0 of the tangent over each slab, shape (slabs, N + 1); nan where unknown.
+        """Range of a positive multiple of the tangent, shape (slabs, N + 1); nan if unknown.
 
         Parameters
         ----------
         radius : ndarray, shape (slabs, N + 1)
-            Within which the curve lies.
+            Bounds the curve's distance.
         tube : ndarray, shape (slabs, N + 1)
-            Radii with which the test holds, for a norm.
+            Radii for which the test holds.
         """
         ...
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
-        """The ranges of the parameter's rate along the curve, or a multiple > 0 of it, and of the derivative of that.
+        """Ranges of the parameter's rate (up to a positive factor) and of its derivative, along the curve.
 
-        They are those of parts of each slab, of equal length and in order, shape (slabs, parts).
-
-        The second is nan where it is not known, as where the first has a sign all along.
+        Shape (slabs, parts), equal parts in order. The derivative is nan if unknown or unneeded.
 
         Parameters
         ----------
@@ -46,7 +44,7 @@ class Judged(Protocol):
         ...
 
     def spread(self, x: Array, radius: Array) -> Array:
-        """A bound of |I - Y G'(p(s) + d)| x for |d| <= radius and x >= 0.
+        """Upper bound of |I - Y G'(p(s) + d)| x for |d| <= radius, x >= 0.
 
         Parameters
         ----------
@@ -56,33 +54,33 @@ class Judged(Protocol):
 
 
 class Engine(Protocol):
-    """A way to bound what Krawczyk's test needs.
+    """A source of bounds.
 
     Attributes
     ----------
     exact : bool
-        Whether bounds hold for all radii, and smaller ones need no new judgement.
+        Whether bounds hold for all radii.
     """
 
     exact: ClassVar[bool]
 
     @property
     def most(self) -> int:
-        """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
+        """Most slabs of a cell; then a new point costs less."""
         ...
 
     def together(self, m: int) -> int:
-        """So many slabs are best judged together.
+        """Slabs for one batch.
 
         Parameters
         ----------
         m : int
-            Unknowns, with the parameter.
+            N + 1.
         """
         ...
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """Bounds for slabs, valid for radii up to `radius`.
+        """Bounds for radii up to `radius`.
 
         Parameters
         ----------
@@ -94,10 +92,10 @@ class Engine(Protocol):
 
 @runtime_checkable
 class SupportsProofEngine(Protocol):
-    """A homotopy that knows bounds of its own: its proofs are then cheaper than by interval arithmetic."""
+    """A homotopy with bounds cheaper than interval arithmetic."""
 
     def proof_engine(self) -> Engine:
-        """What proofs of its paths ask.
+        """The engine.
 
         Returns
         -------
@@ -107,13 +105,13 @@ class SupportsProofEngine(Protocol):
 
 
 def together(engine: Engine, cells: Cells) -> list[Index]:
-    """Places of cells to be judged together, by the number of their slabs."""
+    """Batches of cells by number of slabs."""
     most = engine.together(cells.radius.shape[1])
     groups = (np.cumsum(cells.slabs) - cells.slabs) // most
     return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
 
 
 def up_by(x: Array, count: int) -> Array:
-    """A bound for sums of `count` products of numbers >= 0 that were rounded in any order."""
+    """Upper bound of sums of `count` products >= 0, rounded in any order."""
     bound: Array = x * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
     return bound

@@ -1,4 +1,4 @@
-"""Where numbers vanish along a proved curve: by their signs on pieces of it, and those of their derivatives."""
+"""Zeros of numbers along a proved curve, from signs of numbers and derivatives."""
 
 from __future__ import annotations
 
@@ -13,27 +13,21 @@ from continuation.certificate.engine import Engine, Judged
 from continuation.numbers.ends import EPS, Ends
 
 RANGE = 0.25
-"""Longer ranges with a turning point, in cells, do not say where it is."""
+"""Largest range, in cells, that locates a turning point."""
 
 SIGN_PLACES = 32
 """At so many places in a range with a turning point the sign is asked, twice: a thousandth of it is left."""
 
 Look = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
-"""Signs of numbers on equal parts of slabs, and of their derivatives along the curve, which lies within a radius of the
-cubic; of each number, shape (slabs, parts)."""
+"""Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
+slabs, shape (slabs, parts)."""
 
 
 @frozen(eq=False)
 class Piece:
-    """A range of parameters of a cell, or in cells (number + parameter), with what is known of a number on it.
+    """A parameter range, within a cell or in cells (index + parameter).
 
-    Attributes
-    ----------
-    lo, hi : float
-    sign : int
-        Of that number; 0 where it has none.
-    bend : int
-        Sign of its derivative along the path; 0 where it is not known, or not asked.
+    `sign`: of a number; `bend`: of its derivative; 0 if unknown.
     """
 
     lo: float
@@ -44,10 +38,8 @@ class Piece:
 
 @frozen(eq=False)
 class Turn:
-    """A range in which a number has exactly one zero, in cells.
-
-    At an end of the path it is not `certain`: the zero may lie a little beyond. The derivative of the number has the
-    sign `bend` all over it.
+    """A range, in cells, with exactly one zero and a derivative of sign `bend`; if not `certain`, the zero may lie
+    beyond the path's end.
     """
 
     lo: float
@@ -57,27 +49,18 @@ class Turn:
 
 
 def signs(x: Ends) -> Index:
-    """Of intervals; 0 where there is none."""
+    """Signs of intervals; 0 if undecided."""
     return np.where(x.lo > 0.0, 1, np.where(x.hi < 0.0, -1, 0))
 
 
 def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
-    """The look at the rate of the parameter along the curve, whose zeros are turning points."""
+    """Look at the parameter's rate, zero at turning points."""
     slope, bend = judged.pace(radius, radius)
     return [(signs(slope), signs(bend))]
 
 
 def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
-    """Those of so many cells, of each number, in order: one of a slab where the sign is one, else of each part.
-
-    Parameters
-    ----------
-    look : callable
-    judged : Judged
-    slabs : Slabs
-    radius : ndarray, shape (slabs, N + 1)
-    count : int
-    """
+    """Pieces of `count` cells for each number, one for a slab with one sign, else one for each part."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]
     for j, (sign, bend) in enumerate(numbers):
@@ -91,19 +74,10 @@ def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) 
 
 
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
-    """Zeros in order, and ranges in which they could not be counted.
+    """Zeros in order, and ranges with an unknown number of zeros.
 
-    Pieces without a sign form runs. A run on which the derivative has one sign all along, between different signs, has
-    exactly one zero; between equal signs none is possible with it. Other runs are not understood.
-
-    Parameters
-    ----------
-    found : list of Piece
-
-    Returns
-    -------
-    turns : list of Turn
-    unknown : list of tuple of float
+    A run of pieces without a sign holds exactly one zero if the derivative has one sign and the signs around the run
+    differ.
     """
     out: list[Turn] = []
     unknown: list[tuple[float, float]] = []
@@ -125,17 +99,9 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
 
 
 def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
-    """The same in shorter ranges, of those that are longer than `RANGE`.
+    """Shorten the turning points' ranges above `RANGE`, by signs of the monotone number.
 
-    The number grows, or falls, all over a range: where it has the sign that it has before its zero, that lies behind.
-    At points within a cell the order of parameters is that of the curve; next to nodes it need not be.
-
-    Parameters
-    ----------
-    engine : Engine
-    cells : Cells
-    found : list of Turn
-        Of the parameter's rate.
+    Away from nodes parameters have the curve's order.
     """
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]

@@ -1,4 +1,4 @@
-"""Products and approximate inverses of stacks of matrices."""
+"""Products and inverses of stacks of matrices."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from continuation.arrays import Array
 
 
 def times(matrix: Array, x: Array) -> Array:
-    """Matrices times vectors, slab by slab."""
+    """Matrix times vector, slab by slab."""
     product: Array = np.matmul(matrix, x[..., None])[..., 0]
     return product
 

@@ -1,11 +1,11 @@
-"""Krawczyk's test on slabs, for any homotopy whose residual runs on interval arrays.
+"""Krawczyk's test on slabs, for homotopies whose residual runs on interval arrays.
 
-In the chart c . (u - p(s)) = 0 let G(s, u) = (H(u), c . (u - p(s))), and Y any matrix. If for every s of a slab
+In the chart c . (u - p(s)) = 0 let G(s, u) = (H(u), c . (u - p(s))), and let Y be any matrix. If for every s of a slab
 
     |Y G(s, p(s))| + |I - Y G'(p(s) + d)| r < r    for all |d| <= r, component by component,
 
-then p(s) + [-r, r] holds exactly one zero of G(s, .) for every such s, and it moves smoothly with s: one arc (Krawczyk,
-Computing 4 (1969) 187-201; with the uniqueness of Moore, SIAM J. Numer. Anal. 14 (1977) 611-615).
+then p(s) + [-r, r] holds exactly one zero of G(s, .) for each s, and it moves smoothly with s (Krawczyk, Computing 4
+(1969) 187-201; uniqueness: Moore, SIAM J. Numer. Anal. 14 (1977) 611-615).
 """
 
 from __future__ import annotations
@@ -28,30 +28,22 @@ from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, mo
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
-"""Numbers of one array while many slabs go through a residual together: 4 MB, and 64 where each is cut into `most`."""
+"""Size of one array: 4 MB, or 64 MB if slabs are cut into `most`."""
 
 DIRECTIONS_THAT_PAY = 16
-"""Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
-Bratu's equation with 30 none, and its proof took eight times as long."""
+"""Second derivatives pay up to this many unknowns: they save nine boxes of ten with 10 (exponential-cosine), none with
+30 (Bratu), where the proof takes eight times as long."""
 
 TUBE_STRETCHES = 8
 """Into so many parts a slab is cut where the parameter may turn."""
 
 MISFIT_PARTS = 4
-"""Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
+"""Parts of a slab to bound H on the cubic; Taylor's remainder is of third order."""
 
 
 @frozen(eq=False)
 class ByIntervals:
-    """Any homotopy: derivatives over the boxes by interval arithmetic.
-
-    Attributes
-    ----------
-    residual : callable
-        ``residual(y, lam)``, of the homotopy.
-    unknowns : int
-        N. Up to `DIRECTIONS_THAT_PAY` the preconditioner follows the path.
-    """
+    """Derivatives over boxes by interval arithmetic; `unknowns` is N."""
 
     residual: Callable[[Any, Any], Any]
     unknowns: int
@@ -59,7 +51,7 @@ class ByIntervals:
 
     @property
     def moving(self) -> bool:
-        """Whether the preconditioner follows the path."""
+        """Whether the preconditioner follows the path: N <= `DIRECTIONS_THAT_PAY`."""
         return self.unknowns <= DIRECTIONS_THAT_PAY
 
     @property
@@ -68,7 +60,7 @@ class ByIntervals:
         return 8 if self.moving else 16
 
     def image(self, u: Interval) -> Any:
-        """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
+        """H on an interval array, shape (N + 1,); nan where a comparison is undecided."""
         whole: Any = u
         try:
             return u.lifted(self.residual(whole[:-1], whole[-1]))
@@ -81,22 +73,22 @@ class ByIntervals:
             return _side_by_side(parts)
 
     def together(self, m: int) -> int:
-        """As their boxes go through the residual together."""
+        """Limited by `RESIDUAL_NUMBERS`."""
         return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
     def judge(self, slabs: Slabs, radius: Array) -> Bounded:
-        """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W.
+        """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W, x = s - m.
 
-        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole, x = s - m.
-        With R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). Where H' has
-        no derivative, at kinks, or too many, the preconditioner stands still: E = D = 0, and G_0 is over the whole box.
+        G_0 is the range of G' over the box at the middle m, W that of H''(p'(s), .) over the whole. With R = I - Y_0
+        G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). At kinks, or with many unknowns, E = D
+        = 0 and G_0 is over the whole box.
         """
         m, x, whole = radius.shape[1], slabs.offset[:, None, None], slabs.box(radius)
         W = thin(np.full((len(slabs), m - 1, m), np.nan))
         moving = self.moving and bool(slabs.half.any())
         if moving:
             size = cell_sizes(slabs.cells)
-            # What stands still has as much room as other components have, of lengths in which it counts as much.
+            # Components that stand still get the room of others, in unit lengths.
             unit = np.where(size < radius, radius * (size / radius).max(axis=1, keepdims=True), size)
             W = self._change(whole, slabs.velocity, unit)
         at, largest = slabs.cubic[:, 0] + Ends(-radius, radius), W.magnitude().sum(axis=(1, 2), keepdims=True)
@@ -118,7 +110,7 @@ class ByIntervals:
         return Bounded(self, slabs, misfit, Y, off, radius, E)
 
     def _inverse(self, slabs: Slabs, box: Ends) -> tuple[Array, Array]:
-        """An inverse Y of the middle of G' over a box, and a bound of |I - Y G'| entry by entry."""
+        """Y, about the inverse of G' over a box, and a bound of |I - Y G'|."""
         m = box.shape[1]
         lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), m)
         middle = 0.5 * lo + 0.5 * hi
@@ -128,15 +120,12 @@ class ByIntervals:
             width = Ends(lo, hi).radius(middle)
             size_Y = np.abs(Y)
             off = np.abs(np.eye(m) - np.matmul(Y, full))
-            # Rounding of Y times the middle, of the subtraction, and the width of the derivative.
+            # Rounding of product and subtraction, then the derivative's width.
             off = up_by(off + accumulated(m) * (np.matmul(size_Y, np.abs(full)) + np.eye(m)), 2)
             return Y, off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
 
     def _change(self, box: Ends, velocity: Ends, unit: Array) -> Ends:
-        """The range of H''(p', e_j), shape (slabs, N, m): H''(a, b) is a difference of H'' along a + b and a - b.
-
-        The lengths of the e_j are those of the cell, which makes both of a size.
-        """
+        """Range of H''(p', e_j), shape (slabs, N, m), from H'' along p' + e_j and p' - e_j; e_j has the cell's size."""
         count, m = unit.shape
         step: Array = np.exp2(np.round(np.log2(unit)))
         along = np.zeros((2, m, count, m))
@@ -153,7 +142,7 @@ class ByIntervals:
         return Ends(*(v.transpose(1, 2, 0) for v in (change.lo, change.hi)))
 
     def _misfit(self, slabs: Slabs, Y: Array, parts: int) -> Array:
-        """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
+        """|Y H(p(s))| by Taylor's formula to second order, at kinks to first."""
         fine = slabs.halved(parts)
         x, left, count = fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0), len(fine)
         both = [moved(lambda *ends: np.concatenate(ends), fine.cubic[:, k], fine.over[k]) for k in range(3)]
@@ -169,11 +158,7 @@ class ByIntervals:
 
 
 def engine_of(homotopy: Any) -> Engine:
-    """What bounds derivatives for this homotopy: what it knows itself, else interval arithmetic.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
+    """The homotopy's own engine, else interval arithmetic.
 
     Raises
     ------
@@ -190,20 +175,20 @@ def engine_of(homotopy: Any) -> Engine:
 
 
 def applied(Y: Array, v: Ends) -> Ends:
-    """The range of matrices times interval vectors, slab by slab."""
+    """Range of matrix times interval vector."""
     image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
     return image[..., 0]
 
 
 def size_of(Y: Array, v: Ends) -> Array:
-    """A bound of |Y v| for interval vectors v, slab by slab."""
+    """Upper bound of |Y v|."""
     bound = applied(Y, v).magnitude()
     return np.where(np.isfinite(v.lo).all(axis=-1) & np.isfinite(v.hi).all(axis=-1), bound.T, np.nan).T
 
 
 @frozen(eq=False)
 class Bounded:
-    """The bounds as a matrix: |I - Y G'| entry by entry, for all radii up to `largest`."""
+    """Bounds for radii up to `largest`; `off`: |I - Y G'| by entry."""
 
     engine: ByIntervals
     slabs: Slabs
@@ -214,7 +199,7 @@ class Bounded:
     E: Array
 
     def take(self, index: Mask) -> Bounded:
-        """Those of some slabs."""
+        """Select slabs."""
         bounds = (self.misfit, self.Y, self.off, self.largest, self.E)
         return Bounded(self.engine, self.slabs.take(index), *(bound[index] for bound in bounds))
 
@@ -223,10 +208,9 @@ class Bounded:
         return self._solved(thin(self.Y[:, :, -1]), radius, tube)
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
-        """See `Judged.pace`, of the multiple t of the tangent with c . t = 1.
+        """See `Judged.pace`, with c . t = 1.
 
-        Slabs on which it has no sign are cut. On a part the curve lies where it lies on the whole, and in the image of
-        that box, which is smaller: of a wide tube a tenth.
+        Slabs without a sign are cut; on parts the image of a wide box is a tenth of it.
         """
         slope = self.tangent(radius, tube)[:, -1:]
         ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], TUBE_STRETCHES, axis=3)
@@ -248,15 +232,14 @@ class Bounded:
         return Ends(*ends[0]), Ends(*ends[1])
 
     def _image(self, radius: Array) -> Array:
-        """How far from the cubic the test says the curve is at most."""
+        """Upper bound of the curve's distance from the cubic."""
         with np.errstate(all="ignore"):
             return (self.misfit + self.spread(radius, radius)) * (1.0 + 4.0 * EPS)
 
     def turned(self, radius: Array) -> tuple[Ends, Ends]:
-        """The ranges of t's last component, and of its derivative along the curve, shape (slabs,).
+        """Ranges of t's last component and of its derivative up to a factor, shape (slabs,).
 
-        H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the second is that of the last component of
-        -G'^{-1} (H''(t, t), 0), up to a factor.
+        H' t = 0 gives H' t' = -H''(u', t), u' a positive multiple of t.
         """
         t = self.tangent(radius, radius)
         image = self.engine.image(along_curve(self.slabs.box(radius), t, thin(np.zeros_like(t.lo)))).c
@@ -266,10 +249,10 @@ class Bounded:
         return t[:, -1], -self._solved(applied(self.Y, second), radius, radius)[:, -1]
 
     def _solved(self, v: Ends, radius: Array, tube: Array) -> Ends:
-        """The range of G'^{-1} b over the slabs, within `radius` of the cubic, for v that holds Y_0 b.
+        """Range of G'^{-1} b within `radius` of the cubic, for v that holds Y_0 b.
 
-        With F = I - Y(s) G' it is (I - F)^{-1} (I - x E) v, so that its distance from that is at most the sum of F^k
-        |(I - x E) v| over k >= 1: two terms, and a geometric series, as F^3 |(I - x E) v| <= theta r, F r <= kappa r.
+        With F = I - Y(s) G' and w = (I - x E) v it is (I - F)^{-1} w, off w by the sum of F^k |w|: two terms and a
+        geometric series, as F^3 |w| <= theta r, F r <= kappa r.
         """
         x = self.slabs.offset[:, None]
         with np.errstate(all="ignore"):
@@ -283,7 +266,7 @@ class Bounded:
             return v + Ends(-room, room)
 
     def spread(self, x: Array, radius: Array) -> Array:
-        """Nothing is known (nan) beyond the largest radii."""
+        """As in `Judged`; nan beyond the largest radii."""
         bound = up_by(times(self.off, x), x.shape[1])
         known = (radius <= self.largest).all(axis=1, keepdims=True)
         return np.where(known, bound, np.nan)
@@ -294,6 +277,5 @@ def _boxes(some: slice, x: Array) -> Array:
 
 
 def _side_by_side(parts: list[Interval]) -> Any:
-    """Boxes of two arrays in one; a part without derivatives has zeros for them."""
     stores = [lengthened(part.c, max(len(part.c) for part in parts)) for part in parts]
     return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), parts[0].algebra)

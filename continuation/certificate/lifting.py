@@ -1,4 +1,4 @@
-"""Paths with more unknowns in front, where a homotopy's residual is plain arithmetic with these alone."""
+"""Paths with further unknowns, for residuals that are plain arithmetic only with these."""
 
 from __future__ import annotations
 
@@ -15,26 +15,25 @@ from continuation.path import Path, Step
 
 @runtime_checkable
 class SupportsWrittenOut(Protocol):
-    """A homotopy that may eliminate unknowns by factorisations, and says what it is without that."""
+    """A homotopy that eliminates unknowns by factorisations."""
 
     def written_out(self, points: Array) -> Any:
-        """The homotopy with all unknowns, for a path with these points; None where nothing is eliminated.
+        """The homotopy with all unknowns; None if nothing is eliminated.
 
-        It has a method `lifted(u, before)`: a point of this one with the further unknowns in front; of several, the
-        one that is near to `before`.
+        Its `lifted(u, before)` puts the further unknowns, near those of `before`, in front of u.
 
         Parameters
         ----------
         points : ndarray, shape (m, N + 1)
+            Points of the path.
         """
         ...
 
 
 def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
-    """What is to be proved: the homotopy and the path, or those with more unknowns that stand for them.
+    """The homotopy and path to prove, with further unknowns if needed, or an empty proof with a reason.
 
-    The nodes of `cells`, of a proof, say what the further unknowns are at points that they share with the path. A proof
-    of nothing, with the reason, comes where these have no value, or the cells are of other ones.
+    Nodes of `cells` give the further unknowns of points that they share with the path.
     """
     points = path.u
     width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))
@@ -50,7 +49,6 @@ def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, 
 
 
 def _lifted(whole: Any, path: Path, cells: Cells | None) -> Path:
-    """The path with the further unknowns."""
     rows = () if cells is None else (*cells.begin, *cells.end)
     known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}
     steps: list[Step] = []

@@ -1,9 +1,7 @@
-"""What joins tubes to one curve: at each node a point of it that is in the tubes on either side, passed in one way.
+"""Links between tubes at their nodes.
 
-At the node that two cells share the test of Krawczyk on a box of no length proves a point z of the left curve with
-|z - u| <= r_t. In the chart of the right cell z belongs to a parameter s' near 0; where p(s') + [-r, r] holds it, it is
-the one zero that the right tube has there, and both curves pass through it. Where the tangent at z advances in both
-charts, the one goes on where the other ends.
+At a node u Krawczyk's test on a box of length zero proves a point z of the left curve, |z - u| <= r_t. If the right
+tube holds z and the tangent advances in both charts, one curve continues the other.
 """
 
 from __future__ import annotations
@@ -19,28 +17,22 @@ from continuation.certificate.engine import Engine, Judged, together, up_by
 from continuation.numbers.ends import EPS, Ends, Mask
 
 RADII = 12
-"""Radii that are tried with the bounds of one test."""
+"""Radii tried with one test's bounds."""
 
 INFLATION = 1.1
-"""How much wider than what the test gives the next radii are: a fixed point is approached from above."""
+"""Factor from image to next radii, as a fixed point is approached from above."""
 
 LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
-"""Of the radii of the tube: the least box around a node, and the one over which derivatives are bounded first."""
+"""In radii of the tube: least box, first box for derivatives."""
 
 NODE_ULPS = 32.0
-"""Units in the last place: the least box around a node."""
+"""Units in the last place of the least box."""
 
 
 @frozen(eq=False)
 class Nodes:
-    """Points of the curve, proved near ends of cells.
-
-    Attributes
-    ----------
-    radius : ndarray, shape (cells, N + 1)
-        |z - u| <= radius; nan where nothing is proved.
-    tangent : Ends
-        That of the curve there, with c . t = 1.
+    """Points of the curve near ends of cells: |z - u| <= `radius`, shape (cells, N + 1), or nan; `tangent` with c . t =
+    1.
     """
 
     radius: Array
@@ -48,16 +40,16 @@ class Nodes:
 
     @property
     def proved(self) -> Mask:
-        """Whether there is a point, cell by cell."""
+        """Whether a point is proved, by cell."""
         return np.asarray(np.isfinite(self.radius).all(axis=1))
 
     def take(self, index: Any) -> Nodes:
-        """Some of them."""
+        """Select cells."""
         return Nodes(self.radius[index], self.tangent[index])
 
     @classmethod
     def joined(cls, parts: list[Nodes]) -> Nodes:
-        """One after the other."""
+        """Concatenate."""
         radius, lo, hi = (
             np.concatenate(rows) for rows in zip(*((part.radius, part.tangent.lo, part.tangent.hi) for part in parts))
         )
@@ -65,17 +57,7 @@ class Nodes:
 
 
 def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
-    """A point of the curve at one end of each cell; or the curve on a range of parameters, |u - p(s)| <= radius.
-
-    Parameters
-    ----------
-    engine : Engine
-    cells : Cells
-    s : ndarray, shape (cells,)
-        0 or 1, or near these.
-    half : float
-        Half the length of the range.
-    """
+    """A point of the curve near an end of each cell, or the curve within `half` of s, shape (cells,)."""
     parts = together(engine, cells)
     return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
 
@@ -94,15 +76,9 @@ def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
 
 
 def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple[Array, Array, Mask]:
-    """Radii a little above what the test gives back, the bound of the contraction, and whether it holds; a cell.
+    """By cell: radii slightly above the test's image, the contraction bound, whether the test holds.
 
-    Parameters
-    ----------
-    judged : Judged
-    owner : ndarray of int, shape (slabs,)
-        The cell of each slab.
-    least, bounded : ndarray, shape (cells, N + 1)
-        Radii to begin with, and those for which bounds are valid.
+    `least`, `bounded`: smallest radii, largest with valid bounds.
     """
     with np.errstate(all="ignore"):
         off = largest_by_cell(judged.misfit, owner, len(least))
@@ -119,7 +95,7 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple
 
 
 def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
-    """The largest of each cell's slabs, of which it has one at least; nan where one is."""
+    """Largest value over each cell's slabs, or nan."""
     if len(values) == count:
         return values
     out = np.zeros((count, values.shape[1]))
@@ -128,15 +104,7 @@ def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
 
 
 def reach(cells: Cells, s: Array, off: Ends) -> Array:
-    """How wide a tube has to be at a parameter to hold what is `off` the cubic there; nan where the tube ends before.
-
-    Parameters
-    ----------
-    cells : Cells
-    s : ndarray, shape (cells,)
-        From 0 to 1.
-    off : Ends, shape (cells, N + 1)
-    """
+    """Radius that a tube needs at s in [0, 1] to hold points `off` the cubic; nan beyond the tube."""
     count = len(cells)
     speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).velocity
     with np.errstate(all="ignore"):
@@ -147,18 +115,7 @@ def reach(cells: Cells, s: Array, off: Ends) -> Array:
 
 
 def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
-    """Whether the curves of the left cells go on in the right ones.
-
-    Parameters
-    ----------
-    left, right : Cells
-    at : Nodes
-        Of the left cells, at their ends.
-
-    Returns
-    -------
-    ndarray of bool
-    """
+    """Whether the left curves, with nodes `at` their ends, continue in the right cells."""
     with np.errstate(all="ignore"):
         same = (left.end == right.begin).all(axis=1)
         inside = (at.radius <= left.radius).all(axis=1)

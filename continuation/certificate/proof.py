@@ -1,4 +1,4 @@
-"""What was proved of a path, and what was not."""
+"""Proofs and their gaps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.certificate.cells import NAMES, Cells
 
 @frozen
 class Gap:
-    """A part of the path for which there is no proof.
+    """A part of the path without a proof.
 
     Attributes
     ----------
@@ -31,12 +31,7 @@ class Gap:
 
 
 def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
-    """In order, those that touch and have one reason as one.
-
-    Parameters
-    ----------
-    gaps : list of Gap
-    """
+    """Gaps in order; touching ones with one reason are merged."""
     out: list[Gap] = []
     for gap in sorted(gaps, key=lambda gap: (gap.reason, gap.begin, gap.end)):
         if out and out[-1].reason == gap.reason and gap.begin <= out[-1].end:
@@ -48,34 +43,33 @@ def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
 
 
 SHOWN = 4
-"""Gaps in a sentence; the others are counted."""
+"""Gaps listed in a sentence; the others are counted."""
 
 
 @frozen(eq=False, repr=False)
 class Proof:
-    """A proof that a traced path is one path, or how far it goes.
+    """A proof that a traced path is one curve, or the proved parts.
 
-    Where it is complete, the tubes hold one smooth curve of zeros of the homotopy's residual, round-off included: it
-    passes the boxes of all stored points in their order and in one direction, has no branch point, and just the turning
-    points that the path lists. That there is no other curve outside of the tubes is not said.
+    If complete, the tubes hold one smooth curve of zeros of the residual, round-off included. It passes the boxes of
+    all points in order and in one direction, without branch points, and turns exactly where the path says. Other curves
+    may exist outside the tubes.
 
     Attributes
     ----------
     cells : Cells
-        What is proved: cubics, charts and radii.
     node_radius : ndarray, shape (cells, N + 1)
-        How far the curve is from the end of each cell, at most.
+        Largest distance of the curve from each cell's end.
     gaps : tuple of Gap
     turning_points : tuple of tuple of float
-        Ranges of arclength that hold one turning point each.
+        Ranges of arclength with one turning point each.
     end : str
-        What is known of the end, in words.
+        What is known of the end.
     end_radius : ndarray or None
-        Where the end is proved to lie on the curve, exactly at the target: how far from the stored one it is at most.
+        Largest distance of the curve from the stored end, if proved exactly at the target.
     kinks : tuple of tuple of float
-        Of a homotopy in pieces, ranges of arclength with exactly one zero of a switch each; elsewhere none vanishes.
+        Ranges of arclength with exactly one zero of a switch each; no switch vanishes elsewhere.
     width : int
-        N + 1 of the path. Rows of cells are longer where it was proved with other unknowns in front of its own.
+        N + 1 of the path; cells may have further unknowns in front.
     """
 
     cells: Cells
@@ -89,7 +83,7 @@ class Proof:
 
     @classmethod
     def empty(cls, width: int, *gaps: Gap) -> Proof:
-        """One of nothing.
+        """A proof without cells.
 
         Parameters
         ----------
@@ -103,12 +97,12 @@ class Proof:
 
     @property
     def complete(self) -> bool:
-        """Whether the proof covers the path from its first point to its last."""
+        """Whether the proof covers the whole path."""
         return not self.gaps
 
     @property
     def boxes(self) -> int:
-        """How many boxes hold the path: one a cell, more where a cell was cut into slabs."""
+        """Number of boxes, one for each slab."""
         return int(self.cells.slabs.sum())
 
     def __repr__(self) -> str:
@@ -123,12 +117,12 @@ class Proof:
 
     @property
     def shadow(self) -> Cells:
-        """The cells in the unknowns of the path alone."""
+        """Cells in the path's unknowns."""
         rows = {name: getattr(self.cells, name)[:, -self.width :] for name in NAMES if name not in ("slabs", "place")}
         return evolve(self.cells, **rows)
 
     def of_width(self, width: int) -> Proof:
-        """The proof of a path whose points have so many components, the last ones of the cells'.
+        """The proof with the path's `width` (N + 1).
 
         Parameters
         ----------
@@ -138,11 +132,12 @@ class Proof:
         return evolve(self, node_radius=self.node_radius[:, -width:], end_radius=end, width=width)
 
     def radius(self, s: float) -> Array:
-        """The tube's radius at arclength s, shape (N + 1,): nan in a gap.
+        """The tube's radius, shape (N + 1,); nan in a gap.
 
         Parameters
         ----------
         s : float
+            Arclength.
 
         Returns
         -------
@@ -155,7 +150,7 @@ class Proof:
         return np.asarray(self.shadow.radius[inside].max(axis=0))
 
     def plot(self, component: int = 0, axes: Any = None) -> Any:
-        """The tube against the parameter: each cell's cubic with its radius, and what is not proved as gaps.
+        """Plot the tube and the gaps against the parameter.
 
         Parameters
         ----------

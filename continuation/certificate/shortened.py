@@ -1,4 +1,4 @@
-"""Steps short enough for a proof: what `trace(..., certified=True)` looks for before it records a path."""
+"""Steps short enough for a proof, for `trace(..., certified=True)`."""
 
 from __future__ import annotations
 
@@ -12,27 +12,14 @@ from continuation.step.options import Options
 from continuation.step.tracer import Tracer
 
 TRACES = 4
-"""Traces at most, each with steps half as long as the one before."""
+"""Most traces; each halves the steps."""
 
 
 @one_thread
 def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
-    """Options with which the path is proved, or the part of it that is longest, and the proof.
+    """Options with which the path, or its longest part, is proved, and the proof (None below two points).
 
-    A trace is the same each time, on as many threads, so that the one that is recorded afterwards is the one that was
-    proved.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    options : Options
-        Those of the trace.
-
-    Returns
-    -------
-    options : Options
-    proof : Proof or None
-        None for a path of fewer than two points, of which there is nothing to prove.
+    The recorded trace is the proved one: traces with the same number of threads are equal.
     """
     best: tuple[Options, Proof] | None = None
     tried = options
@@ -52,5 +39,4 @@ def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
 
 
 def _missing(proof: Proof) -> tuple[float, int]:
-    """How much of the path is not proved: arclength, and the number of gaps."""
     return sum(gap.end - gap.begin for gap in proof.gaps), len(proof.gaps)

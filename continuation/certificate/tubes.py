@@ -1,4 +1,4 @@
-"""Tubes around cells: radii and slabs with which Krawczyk's test holds, found and checked."""
+"""Radii and slabs with which Krawczyk's test holds."""
 
 from __future__ import annotations
 
@@ -13,53 +13,39 @@ from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
-"""Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
-curve. The curve itself is found where it is, within the misfit."""
+"""Least radius, in sizes of the cell: a tube thinner than round-off misses its neighbour's curve."""
 
 STILL_ULPS = 1024.0
-"""Units in the last place of the nodes: the same for a component that stands still."""
+"""Least radius of components that stand still, in units in the last place."""
 
 FIRST_RADII = 0.05
-"""The radii that a test begins with, in lengths of a slab: they widen the derivatives by so much."""
+"""First radii, in lengths of a slab; derivatives widen in proportion."""
 
 CELL_TESTS = 6
-"""Tests of a cell, with more slabs or other radii each time."""
+"""Most tests of a cell."""
 
 CONTRACTING = 0.6
-"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length."""
+"""Above this bound of |I - Y G'| slabs are halved: it falls with their length."""
 
 
 def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
-    """Whether the test holds, slab by slab: the only place where something is proved.
-
-    Parameters
-    ----------
-    slabs : Slabs
-    judged : Judged
-    radius : ndarray, shape (slabs, N + 1)
-
-    Returns
-    -------
-    ndarray of bool
-    """
+    """Whether the test holds, slab by slab; all proofs rest on this."""
     with np.errstate(all="ignore"):
         total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-        # Along the cubic the charts must advance: then each of them is crossed once, in order.
+        # Charts must advance: the cubic crosses each once.
         return np.asarray((total < radius).all(axis=1) & (advance(slabs) > 0.0))
 
 
 @frozen(eq=False)
 class Tubes:
-    """Cells with radii and slabs, and what came of their tests.
+    """Cells with test results.
 
     Attributes
     ----------
-    cells : Cells
-    proved : ndarray of bool, shape (cells,)
     undefined : ndarray of bool, shape (cells,)
-        Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
+        Whether the residual is undefined or undecided in the last box.
     pieces : list of list of list of Piece
-        Of each proved cell, of each number that is looked at.
+        By proved cell and observed number.
     """
 
     cells: Cells
@@ -69,7 +55,7 @@ class Tubes:
 
     @classmethod
     def joined(cls, parts: list[Tubes]) -> Tubes:
-        """One after the other."""
+        """Concatenate."""
         return cls(
             joined([part.cells for part in parts]),
             np.concatenate([part.proved for part in parts]),
@@ -78,11 +64,11 @@ class Tubes:
         )
 
     def take(self, index: Index) -> Tubes:
-        """Some of them."""
+        """Select."""
         return Tubes(self.cells.take(index), self.proved[index], self.undefined[index], [self.pieces[k] for k in index])
 
     def numbers(self) -> list[list[Piece]]:
-        """Of each number that is looked at the pieces of all cells, in cells."""
+        """Pieces by observed number, in cells."""
         placed = [
             [[Piece(k + piece.lo, k + piece.hi, piece.sign, piece.bend) for piece in part] for part in parts]
             for k, parts in enumerate(self.pieces)
@@ -91,16 +77,7 @@ class Tubes:
 
 
 def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
-    """Radii and slabs for cells that have none, many of them in one batch a round.
-
-    Parameters
-    ----------
-    engine : Engine
-    cells : Cells
-        With lengths of components that stand still for radii.
-    look : callable
-        What is asked of proved cells.
-    """
+    """Find radii and slabs; `cells.radius` holds unit lengths."""
     return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
 
 
@@ -115,7 +92,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
-        # Exact bounds hold for all radii, others for those that they were made with.
+        # Other bounds hold only up to their radii.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
         wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
@@ -125,7 +102,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
                 known[pending[k]] = seen[k]
         proved[pending] = good
         undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
-        # Bounds that hold for all radii are the same again; the others are not.
+        # Exact bounds would not change.
         wider = np.isfinite(wanted).all(axis=1) & (kappa < CONTRACTING) & (not engine.exact)
         slabs[pending] *= np.where(good | wider, 1, 2)
         first = np.maximum(FIRST_RADII * scale[pending] / slabs[pending][:, None], least[pending])
@@ -135,27 +112,20 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
         if not len(pending):
             break
     cells = cells.with_tubes(radius, np.minimum(slabs, engine.most))
-    if not engine.exact and proved.any():  # all at once
+    if not engine.exact and proved.any():  # one batch
         for k, found in zip(np.flatnonzero(proved), check(engine, cells.take(proved), look).pieces):
             known[k] = found
     return Tubes(cells, proved, undefined, known)
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
-    """Whether all of a cell's slabs have it."""
     out = np.ones(count, bool)
     np.logical_and.at(out, owner, values)
     return out
 
 
 def check(engine: Engine, cells: Cells, look: Look) -> Tubes:
-    """What is proved of these cells with the radii and slabs that they have.
-
-    Parameters
-    ----------
-    engine, cells, look
-        As for `search`.
-    """
+    """Test cells with their own radii and slabs."""
     found = []
     for place in together(engine, cells):
         some = cells.take(place)

@@ -1,4 +1,4 @@
-"""What has to hold of cells so that a path is proved: tubes, links, order, turning points, events and the end."""
+"""Conditions under which cells prove a path: tubes, links, order, turning points, events, end."""
 
 from __future__ import annotations
 
@@ -25,29 +25,14 @@ NO_END = "no tube was found at the end"
 NOWHERE = "where the parameter turns is not known"
 
 POINT_DISTANCE = 1e-4
-"""How far a point or an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of
-1e-6."""
+"""Allowed distance of points and events from the curve, in steps; events are located to 1e-6."""
 
 PARAMETER_STEPS = 30
-"""Of Newton's method from the middle of a cell, along which its chart advances."""
+"""Newton steps from a cell's middle."""
 
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
-    """The proof that these cells make.
-
-    Parameters
-    ----------
-    engine : Engine
-    cells : Cells
-        In order, their tubes tested.
-    path : Path
-        What they are to prove.
-    homotopy : Homotopy
-    gaps : list of Gap
-        Known already.
-    found : list of Piece
-        The pieces of the cells, by the parameter's rate.
-    """
+    """The proof by tested cells in order; `gaps` so far, `found` pieces of the parameter's rate."""
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
@@ -65,7 +50,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
     end, radius, missing = ending(cells, at, ends, path, homotopy)
     before, last = float(cells.place[-1, 1]), float(path.arclength[-1])
     if end and radius is None and path.status is Status.REACHED_TARGET:
-        # What is said of the end takes the place of the rest.
+        # The proof of the end covers the rest.
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
     places = _places(engine, cells, path)
     ranges, more = _turning(engine, cells, _between_nodes(found, cells, ends, at), path, places)
@@ -76,10 +61,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
-    """Points of the curve at the ends of cells, which cells are linked to the next, and two more points.
-
-    These are at the start, and at the end with the parameter for a chart.
-    """
+    """Nodes at the ends of cells, links to the next, and nodes at the start and (chart: the parameter) the end."""
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
@@ -92,7 +74,7 @@ def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
-    """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
+    """Check the order of points, gaps between cells, and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
     places = cells.place.ravel().tolist()
@@ -119,9 +101,9 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 
 
 def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
-    """That each node is next to a point of the curve: a wide tube holds points that are not, as a start that was moved.
+    """Check that the curve is near each node: wide tubes also hold a start that was moved.
 
-    Of standing paths nodes are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
+    Nodes of sound paths are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
     own, u = cells.take(np.append(0, np.arange(len(cells)))), np.vstack([cells.begin[:1], cells.end])
     place = np.append(cells.place[0, 0], cells.place[:, 1])
@@ -130,18 +112,17 @@ def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
 
 
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
-    """How far a point in a cell may be from the curve, component by component."""
     step = np.clip(np.searchsorted(path.arclength, arclength), 1, len(path) - 1)
     size = np.maximum(cell_sizes(own), np.abs(path.u[step] - path.u[step - 1]))
-    # Of what stands still a cell knows no size but the tube's.
+    # A component that stands still has no size but the tube's.
     return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 
 
-# --- turning points and events ----------------------------------------------------------------------------
+# --- turning points and events ---
 
 
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
-    """With the signs at the first and the last point, where they have one: what lies beyond these does not count."""
+    """Add signs at first and last point; zeros beyond do not count."""
     signs = []
     for node, k in ((start, 0), (at, -1)):
         lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
@@ -154,7 +135,7 @@ def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) ->
 def _turning(
     engine: Engine, cells: Cells, found: list[Piece], path: Path, places: list[float | None]
 ) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
-    """Ranges of arclength with one turning point each, and where they are not those of the path."""
+    """Ranges of arclength with one turning point, and disagreements with the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
@@ -182,7 +163,6 @@ def _turning(
 
 
 def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
-    """Places in cells as arclengths."""
     k = np.clip(np.array([lo, hi]).astype(int), 0, len(cells) - 1)
     begin, end = cells.place[k].T
     first, last = (begin + np.clip([lo, hi] - k, 0.0, 1.0) * (end - begin)).tolist()
@@ -190,7 +170,7 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
 
 
 def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
-    """Cell and parameter of each event next to a point of the curve in the tube; None where there is none."""
+    """Cell index + parameter of each event near the curve, else None."""
     places = [_place(cells, event, path) for event in path.events]
     known = [k for k, place in enumerate(places) if place is not None]
     if known:
@@ -203,7 +183,7 @@ def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
 
 
 def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
-    """Cell and parameter of an event in the tube. Arclengths of cells tell little more than in which step they are."""
+    """Cell index + parameter of an event in the tube; arclength tells only the step."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
     begin, end = path.arclength[step - 1 : step + 1]
     for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
@@ -215,7 +195,7 @@ def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0 in a proved cell, by Newton's method for a cubic that grows all over it."""
+    """About where c . (p(t) - u) = 0: the cubic advances in a proved cell."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
     cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
@@ -226,7 +206,7 @@ def _parameter(cell: Cells, u: Array) -> Array:
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
-    """That every listed event lies in the tube, in order, and that none is a branch point."""
+    """Check that events lie in the tube in order, none a branch point."""
     gaps, last = [], -np.inf
     for event, place in zip(path.events, places):
         s = event.arclength

@@ -1,1 +1,1 @@
-"""How a path ends: at its target, in a singular limit, in its own start, at infinity."""
+"""Ends of a path: target, singular limit, start, infinity."""

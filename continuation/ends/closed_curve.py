@@ -1,4 +1,4 @@
-"""Whether a path has come back to its start: a closed curve."""
+"""Whether a path has returned to its start: a closed curve."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
 SAME_POINT = 1e3
-"""How far apart two points of one path may be, in tolerances, that are one: both were corrected to the tolerance, in
-planes and metrics of their own, and a condition of a thousand is ordinary."""
+"""Distance, in tolerances, of equal points: their planes and metrics differ, and condition numbers of a thousand are
+ordinary."""
 
 SAME_TANGENT = 1e-3
-"""How far apart the unit tangents of one branch may be, for points that are as far apart as that."""
+"""Distance of equal unit tangents."""
 
 NEAR_START = 0.5
-"""How near an arc must pass to be looked at, in its lengths: half a step is far more than a segment errs."""
+"""Distance from the start, in arc lengths, within which an arc is examined; segments err far less."""
 
 
 def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
-    """Whether a path that began in a kink leaves it again by the branch on which it began."""
+    """Whether a path that began in a kink leaves it again by its first branch."""
     if solver.tolerance.measure(point.u - origin.u, point.weights) > SAME_POINT:
         return False
     v = origin.tangent / norm(point.weights, origin.tangent)
@@ -29,11 +29,10 @@ def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
 
 
 def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
-    """Whether the arc passes through the start in the start's direction.
+    """Whether the arc passes the start in the start's direction.
 
-    The plane through the start and orthogonal to its tangent must be crossed from behind, near the start; the crossing
-    is then corrected in that plane and must be the start itself. Both in the metric of the arc: that of the start knows
-    only how far the path went there, and near a turning point its plane is crossed once more.
+    It must cross the plane orthogonal to the start's tangent from behind, and the corrected crossing must be the start.
+    The metric is the arc's: in the start's own a path crosses once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

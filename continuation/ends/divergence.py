@@ -1,9 +1,8 @@
-"""Whether a path runs off to infinity while the parameter stops: a model of its asymptote, predicted further and met.
+"""Whether a path goes to infinity while the parameter stops, by a model that must predict the path.
 
-On a pole y ~ (limit - lam)^-p, and on a logarithm, p = 0, slopes dy/dlam grow like (limit - lam)^-(p + 1). Three points
-give p and the limit; the model counts where it says where the parameter is at the next ones, until that is the
-limit itself to nearly all digits. Fast growth alone says nothing: a pitchfork with an imperfection of 1e-14 looks like
-a pole until the parameter is as near as 1e-9 of its way.
+On a pole y ~ (limit - lam)^-p, or a logarithm (p = 0), slopes grow like (limit - lam)^-(p + 1); three points give p and
+the limit. Fast growth is no proof: a pitchfork with an imperfection of 1e-14 resembles a pole down to 1e-9 of the
+parameter's way.
 """
 
 from __future__ import annotations
@@ -21,40 +20,38 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
-"""The slope grows by this factor, or more, from one point of the model to the next."""
+"""Least growth of the slope between marks."""
 
 MET = 0.1
-"""What a prediction may be off, beside the way of the parameter that it predicts: a tenth of a decade."""
+"""Allowed error of a prediction, relative to the predicted change of the parameter."""
 
 MET_OVER = 1e-2
-"""A model is tried further after the parameter has come nearer to the limit by this factor while all predictions were
-met."""
+"""The model is tried further once the distance to the limit fell by this factor with all predictions met."""
 
 ARRIVED, LAST_PLACES = 1e-11, 8.0
-"""It is tried until the parameter is so near to its limit, beside all its way or in units of its last place: imperfect
-pitchforks turn off at the power 2/3 of the imperfection, so those above 1e-16 do not come so near."""
+"""The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
+Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
 
 ASYMPTOTE_STEPS = 5
-"""From a prediction that is off by a tenth of what is left four steps are quadratic to all digits."""
+"""From an error of a tenth, four quadratic steps give all digits."""
 
 LARGER = 2.0
-"""On a pole the largest unknown, in plain numbers, is so many times as large as at the start: what grows from 1e-20 to
-1e-8 beside others that are 1 may be bounded by them."""
+"""Least growth of the largest unknown on a pole; smaller unknowns may be bounded."""
 
 HORIZON = 1e100
-"""No path is followed to larger numbers: norms are made of their squares, which overflow."""
+"""Largest number on a path: norms square it."""
 
 ASYMPTOTE_ORDERS = 0.9, 13.0
-"""Between these p + 1 is sought: at folds and cusps it is 1/2 or less, and no pole of a model has an order above 12."""
+"""Range of p + 1: at folds and cusps it is at most 1/2; no pole has an order above 12."""
 
 LOGARITHM = 13.0 / 12.0
-"""p + 1 of a pole of order 1/12; what is nearer to 1 is a logarithm, or an exponential decay."""
+"""The p + 1 of order 1/12; smaller means a logarithm or an exponential decay."""
 
 ABOUT = 0.02
-"""Three points give an order to two digits: one that is so near to a whole number, or to its inverse, is that."""
+"""An order so near an integer or its inverse is that: three points give two digits."""
 
 PRINTED_DIGITS = 9
-"""Of the parameter's way, in messages."""
+"""Digits of the parameter's way in messages."""
 
 Monitor = tuple[float, ...]
 
@@ -62,26 +59,18 @@ Monitor = tuple[float, ...]
 def divergence(
     monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator, stops: Sequence[tuple[int, float]]
 ) -> tuple[Monitor, str]:
-    """Follow the slope of the path by decades; the monitor afterwards, and which infinity it is in words, if any.
+    """Update the monitor with a point; also the sentence that names the infinity, if any.
 
-    Parameters
-    ----------
-    monitor : tuple of float
-        (the parameter's way so far; the distance to the limit where predictions began to be met, 0 if none was;
-        parameter and slope at the last marks, three at most); empty at the start.
-    point : Linearization
-    origin : Knot
-        The start: slopes are measured in how far each unknown has come from it.
-    evaluator : Evaluator
-    stops : sequence of (component, value)
-        Where the path is to end: what comes to one of them on the way runs off to no infinity.
+    `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
+    parameter and slope at three marks at most. `stops`: ends (component, value) of the path; one on the way excludes
+    infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)
     way = max(way, abs(lam - float(origin.u[-1])))
     slope = largest(point.tangent[:-1]) / abs(moves) if moves else math.inf
     if marks and (slope < marks[-1] or (len(marks) > 2 and (lam - marks[-2]) * (marks[-2] - marks[-4]) < 0.0)):
-        # Slower again, or back: what was seen is behind.
+        # Slower or backwards: forget the model.
         return (way, 0.0), ""
     if not 0.0 < slope < math.inf or (marks and slope < DECADE * marks[-1]):
         return (way, began, *marks), ""
@@ -107,17 +96,13 @@ def _met_further(
     way: float,
     stops: Sequence[tuple[int, float]],
 ) -> bool:
-    """Whether the path is where the model says decade by decade, until the parameter is at its limit.
-
-    Newton's method along the path's hyperplane from each prediction must come to a point whose parameter is no more
-    than a tenth of what is left away; its slope predicts the next.
-    """
+    """Whether Newton's method finds the path at the model's predictions, decade by decade, up to the limit."""
     enough = ARRIVED * way + LAST_PLACES * float(np.spacing(abs(limit)))
     power, at = order - 1.0, point
     try:
         while (left := limit - at.lam) and abs(left) > enough:
             nearer = left / DECADE
-            # The integral of a slope that goes like the power -(p + 1) of what is left.
+            # Integral of a slope proportional to the power -(p + 1) of the distance.
             grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
@@ -133,12 +118,12 @@ def _met_further(
 
 
 def beyond_horizon(u: Array) -> str:
-    """The limit of the budget that numbers are, as text, if a point has come to it."""
+    """The number size that a point has reached, as text."""
     return f"numbers of {largest(u):.0e}" if largest(u) >= HORIZON else ""
 
 
 def words(monitor: Monitor) -> str:
-    """What asymptote is in sight, in words; "" if none is."""
+    """The asymptote in words; "" if none."""
     if not monitor or monitor[1] == 0.0:
         return ""
     way, _, *marks = monitor
@@ -156,7 +141,7 @@ def words(monitor: Monitor) -> str:
 
 
 def _fitted(marks: list[float]) -> tuple[float, float] | None:
-    """The limit of the parameter, and p + 1, of the slopes (limit - lam)^-(p + 1) through three marks, if any."""
+    """The limit and p + 1 from three marks, or None."""
     if len(marks) < 6:
         return None
     first, a, second, b, third, c = marks
@@ -165,7 +150,7 @@ def _fitted(marks: list[float]) -> tuple[float, float] | None:
     ratio = (third - second) / (second - first)
 
     def missed(order: float) -> float:
-        # Distances to the limit, that of the first being 1.
+        # Distances to the limit, relative to the first.
         left, last = (a / b) ** (1.0 / order), (a / c) ** (1.0 / order)
         return float((left - last) / (1.0 - left) - ratio)
 

@@ -1,9 +1,7 @@
-"""The limit of a path at a target where it is not regular: y ~ y* + c1 t + c2 t^2 + ..., t = |lam - target|^(1/w).
+"""The limit of a path at a singular target: y ~ y* + c1 t + c2 t^2 + ..., t = |lam - target|^(1/w).
 
-A power-series endgame (Morgan, Sommese and Wampler, Numerische Mathematik 63, 1992) on real paths: points and tangents
-are computed for parameter values that fall geometrically towards the target, and the Hermite polynomial through
-them in t is evaluated at t = 0, for each winding number w that is tried. Newton's method at the target itself, which
-is singular there, is never asked.
+A power-series endgame (Morgan, Sommese and Wampler, Numerische Mathematik 63, 1992): parameter values approach the
+target geometrically, and for each winding number w the Hermite polynomial in t is evaluated at t = 0.
 """
 
 from __future__ import annotations
@@ -27,47 +25,45 @@ from continuation.predictors.polynomial import interpolate
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
-"""Each parameter value is this fraction of the one before: far enough for few points, near enough for Newton."""
+"""Ratio of distances to the target: few points, each within Newton's reach."""
 
 RELATIVE_FLOOR = 1e-13
-"""A relative error estimate at which no further point is taken: the estimate is the change by the last one."""
+"""Relative error that stops the sampling: the change by the last sample."""
 
 RESIDUAL_RATIO = 1e-3
-"""The residual at the limit, relative to that of the first sample put on the target, at which the equations hold."""
+"""Largest residual at the limit, relative to the first sample moved to the target."""
 
 ULPS = 8.0
-"""Units in the last place by which a point is moved to see the round-off in H."""
+"""Perturbation, in units in the last place, that shows round-off."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
 SAMPLES_WITHOUT_GAIN = 3
-"""Samples in a row that make the estimate no better, after which round-off has the word."""
+"""Samples without gain that stop the sampling."""
 
 ROUND_OFF_SPREAD = 10.0
-"""How much more round-off there may be in H at the limit than at the last sample."""
+"""Allowed growth of round-off in H from the last sample to the limit."""
 
 SAMPLE_TOLERANCE = 1e-3
-"""Of the tolerance, to which samples are corrected: the extrapolation multiplies their errors."""
+"""Accuracy of samples, in tolerances; the extrapolation multiplies their errors."""
 
 AMPLIFICATION = 0.3, 10.0
-"""By how much the extrapolation multiplies errors of the samples and of their slopes: 3, 30, 300, ... for winding
-numbers 1, 2, 3, ... That is the sum of magnitudes of the weights at t = 0 of Hermite's interpolant on nodes in ratio
-RATIO^(1/w), rounded."""
+"""The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
+weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w)."""
 
 EQUALLY_GOOD = 10.0
-"""A multiple of the true winding number fits as well, a little later, so the smallest within this factor wins."""
+"""The smallest winding number within this factor of the best error wins: multiples fit as well, later."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
-"""Near a singular end Newton's method converges linearly, and slowly."""
+"""Newton's method converges linearly near a singular end."""
 
 
 @frozen(eq=False)
 class SingularLimit:
-    """The limit of a path.
+    """A limit u, shape (N + 1,), exactly at the target.
 
-    `u`, of shape (N + 1,): The parameter is the target exactly. `error`: Estimate of the largest error of a component,
-    absolute. `winding_number`: 1 where the path is analytic in the parameter, 2 for a square root, ... `length`: The
-    error's length in the metric of the path.
+    `error`: largest error of a component; `length`: the error's in the metric. `winding_number`: 1 if analytic, 2 for a
+    square root, ...
     """
 
     u: Array
@@ -78,7 +74,7 @@ class SingularLimit:
 
 @frozen(eq=False)
 class Sample:
-    """A point of the path, dy/dlam there, and how much round-off moves Newton's method about it, by component."""
+    """A point, dy/dlam, and noise by component."""
 
     u: Array
     slope: Array
@@ -87,20 +83,14 @@ class Sample:
 
 @frozen(eq=False)
 class Endgame:
-    """The search for the limit of a path at a target.
-
-    `samples`: At most so many points, each of which costs a factorisation or two.
-    """
+    """The search for a limit at a target, with at most `samples` points."""
 
     solver: PathSolver
     target: float
     samples: int = 14
 
     def limit(self, point: Linearization) -> SingularLimit | None:
-        """The limit of the path at the target, or None where no winding number fits to within the tolerance.
-
-        `point`: On the path, near the target, with the parameter moving towards it.
-        """
+        """The limit, or None if no winding number fits to the tolerance."""
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
@@ -113,7 +103,7 @@ class Endgame:
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
-                # The path turns off before the target, and the samples would not: the limit is another branch's.
+                # The path turns off: the limit is another branch's.
                 return None
             here, noise = tracked
             taken.append(_sample(here, noise))
@@ -131,12 +121,11 @@ class Endgame:
         return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None
 
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
-        """Whether two samples lie on one branch, as far as can be told.
+        """Whether two samples lie on one branch, as far as known.
 
-        Where two branches nearly meet, the path turns off, and what goes straight on is the other one. However near
-        they are, the orientation tells: it is constant along a path, and across a branch point, which these come from
-        by a perturbation, it is reversed (Allgower and Georg, Section 8.1). Where nobody knows it the path is looked
-        at between the two: of six such ends (seeds in test_endgame.py) that shows five.
+        Orientation is constant along a path, and differs on the other of two branches that nearly meet (Allgower and
+        Georg, Section 8.1). If unknown, the path between is examined, which detects five of six such ends (seeds in
+        test_endgame.py).
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
@@ -144,11 +133,7 @@ class Endgame:
         return arc_on_path(self.solver, arc, arc.length) is not None
 
     def _keeps_orientation(self, end: SingularLimit, last: Linearization) -> bool:
-        """Whether a limit at which H' has its full rank has the orientation of the last sample before it.
-
-        Samples may end where Newton's method fails, because the path turns off there. The factorisation of the last
-        one mostly tells, by refinement.
-        """
+        """Whether a regular limit has the last sample's orientation."""
         if end.winding_number > 1 or last.orientation == 0:
             return True
         try:
@@ -161,22 +146,18 @@ class Endgame:
         return end.length <= self.solver.tolerance.relative
 
     def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
-        """Whether the equations hold at the limit: to round-off, or far better than at the first sample, put there.
-
-        Relative to that sample because the equations have units of their own.
-        """
+        """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
         residual_norm = self.solver.evaluator.residual_norm
         residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
         moved = residual_norm(np.append(taken[0].u[:-1], self.target))
-        # Where one of them has no value, and is nan, this is False.
+        # False if one is nan.
         return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
-        """The point at a parameter value, by Newton at that value, and its noise.
+        """The point at a parameter value, and its noise.
 
-        Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H
-        alone makes larger ones, and `noisy` points are wanted, one below the tolerance will do: it says what the point
-        is worth.
+        If round-off prevents an accurate point and `noisy` allows it, an increment below the tolerance is accepted as
+        the noise.
         """
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
@@ -214,7 +195,7 @@ def _sample(point: Linearization, noise: Array) -> Sample:
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
-    """The Hermite interpolant in t, scaled so that the first sample has t = 1, and the nodes."""
+    """The Hermite interpolant in t, with t = 1 at the first sample, and its nodes."""
     gap = taken[0].u[-1] - target
     t = np.array([((sample.u[-1] - target) / gap) ** (1.0 / w) for sample in taken])
     slopes = [sample.slope * (w * gap * node ** (w - 1)) for sample, node in zip(taken, t)]
@@ -222,12 +203,12 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[f
 
 
 def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
-    """The best limit over the winding numbers; the error is the change that a sample makes, and the noise."""
+    """The best limit over winding numbers; the error is the change by a sample, and noise."""
     ends = []
     noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)[0](0.0)
-        # Without the last sample, the most accurate, and without the first, the least: a small change may be chance.
+        # Without the last and the first sample: one small change may be chance.
         others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
@@ -241,7 +222,6 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
 
 
 def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
-    """The interpolant of the last samples at the next parameter value; at first the tangent."""
     if best is None:
         last = taken[-1]
         guess: Array = last.u + (lam - last.u[-1]) * last.slope
@@ -255,16 +235,13 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
-    """How far round-off in H moves the point at its parameter value: where H repeats it, Newton's method cannot see it.
-
-    Measured: H a few units in the last place away, less what the derivative says of that, is round-off.
-    """
+    """How far round-off in H moves the point: H at a few units in the last place, less its linear part."""
     apply = evaluator.differential(at.u)
     if apply is None:
         return np.zeros_like(at.u)
     nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
     nearby[-1] = at.u[-1]
     left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
-    # One look at something random: the largest of many is more than that.
+    # The largest of many samples is larger.
     seen: Array = 2.0 * np.abs(at.solve(left, 0.0, unit))
     return seen

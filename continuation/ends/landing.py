@@ -1,4 +1,4 @@
-"""Landing on the target: by a step of its own, or where an accepted arc crosses it or touches it."""
+"""Landing on the target by its own step, or where an arc crosses or touches it."""
 
 from __future__ import annotations
 
@@ -20,28 +20,26 @@ from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
 RESOLUTION = 1e-9
-"""Of the step to the target, relative: Newton's method at the target's parameter value does the rest."""
+"""Relative accuracy of the step to the target, before Newton's method."""
 
 SINGULAR_SHARE = 1e-10
-"""Share of the parameter in the tangent below which an end counts as singular in the parameter."""
+"""Parameter's share of the tangent at which an end is singular."""
 
 DISTANCE, ANGLE = 0.3, 1.0
-"""A landing that corrects the prediction by more than this fraction of the step, or turns the tangent by more than this
-(radians), has landed on another branch."""
+"""A larger correction, in steps, or angle (radians) means another branch."""
 
 RETRY, LEAP = 0.3, 10.0
-"""An interior path creeps towards a target on its boundary. There a landing is tried from so many step lengths away,
-and again when so much of the way is left."""
+"""Paths creep towards a boundary: landing is tried from so many steps away, and again when this share of the way is
+left."""
 
 STRETCH = 1.01
-"""A target just beyond the step is landed on with it: a step of round-off would be left."""
+"""A target just beyond the step is landed on: a step of round-off would be left."""
 
 ROOM, EDGE = 0.9, 1e-6
-"""The least way to the boundary, in ways to the predicted end: a prediction may err by so much. The end itself may lie
-on the boundary, to within the other."""
+"""ROOM: least distance to the boundary, in ways to the predicted end. EDGE: tolerance for an end on the boundary."""
 
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
-"""It must contract well: at a fixed parameter a far solution is as good as the path's own."""
+"""It must contract well: at a fixed parameter far solutions look as good."""
 
 
 @frozen(eq=False)
@@ -53,16 +51,15 @@ class Landing:
 
     @property
     def lands_from_afar(self) -> bool:
-        """Whether landing is tried from many steps away, now and then: near a boundary steps become short."""
+        """Whether landing is tried from many steps away: near a boundary steps become short."""
         return self.stepper.solver.max_step is not None
 
     def attempt(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> Attempt | None:
-        """A step to the target, if the prediction reaches it.
+        """A step to the target if the prediction reaches it, else None.
 
-        `h`: The step length that the controller wants, `longest`: the longest that it allows. `last_failed`: The
-        parameter value at which landing was last tried in vain.
+        `h`, `longest`: the controller's. `last_failed`: parameter of the last failed landing.
         """
         guess = self._guess(point, prediction, h, longest, last_failed)
         if guess is None:
@@ -78,7 +75,7 @@ class Landing:
     def _guess(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> tuple[Array, float] | None:
-        """The predicted point with the target's parameter value, and its step, if that is within reach."""
+        """The predicted point at the target and its step."""
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
@@ -103,7 +100,6 @@ class Landing:
         return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
-        """The parameter of `guess` is kept: the border is e_{N+1}."""
         solver = self.stepper.solver
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
@@ -115,7 +111,7 @@ class Landing:
         along = dot(border, correction.u - point.u)
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
-        # The target may lie on the boundary of the domain, so the end itself is exempt from the ratio test.
+        # The end itself may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
@@ -123,7 +119,7 @@ class Landing:
 
 
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
-    """Where the arc first takes a parameter value that its ends enclose, or that it touches in a fold."""
+    """The first point of an arc with a parameter value that its ends enclose, or that a fold touches."""
 
     def gap(u: Array, v: Array) -> float:
         return float(u[-1]) - value
@@ -132,17 +128,17 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before == 0.0 or not may_vanish(gap, arc, before, after):
         return None
     if before * after > 0.0:
-        # An asymptote gets as near as 1e-250, and the least value of a polynomial between two such ends is noise.
+        # Asymptotes come within 1e-250; then minima are noise.
         if max(abs(before), abs(after)) <= solver.noise_by_component(arc.a)[-1]:
             return None
         ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
         if ends[0] * ends[1] < 0.0 and before * ends[0] < 0.0:
-            # The parameter came nearer and turned away again: a fold that lies on the target as far as H can tell is
-            # the end, and a path that passes through the target on its way to a fold just behind it ends there.
+            # A fold on the target, to round-off, is the end; a path that crosses the target just before the fold ends
+            # there.
             fold = next(zeros(solver, TurningPoint().monitor, arc, *ends), None)
             if fold is None:
                 return None
-            # What is left of the slope at the fold, as where branches cross in it, leaves so much of the parameter.
+            # The slope left at the fold, as at crossing branches, leaves this much of the parameter.
             left = float(fold.tangent[-1]) ** 2 * arc.length / abs(ends[1] - ends[0])
             if abs(fold.lam - value) <= solver.noise_by_component(fold)[-1] + left:
                 return fold
@@ -154,10 +150,10 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
 
 
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
-    """Whether H' has full rank at a point that was corrected with the factorisation of `near`: if not, that is no end.
+    """Whether H' has full rank at a point corrected with the factorisation of `near`.
 
-    Where H_y vanishes at the target, as in lam F(y), anything solves H = 0 there. Refinement of a general right-hand
-    side contracts if H' is that of `near` but for a moderate change. If it does not, H' is factored at the point.
+    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
+    contracts if H' is near `near`'s; otherwise H' is factored.
     """
     evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
     z = near.solve(r)

@@ -1,6 +1,4 @@
-"""Where a path may end on an arc or ahead of it: the target, ends that are singular, the start. What that makes of the
-path is decided in `continuation.step.verdict`.
-"""
+"""Possible ends of a path; `continuation.step.verdict` decides."""
 
 from __future__ import annotations
 
@@ -24,26 +22,26 @@ from continuation.status import Kind
 from continuation.step.state import State
 
 ENDGAME = 1e-2
-"""How near to the target, as a fraction of the whole way, a singular end is looked for."""
+"""Relative distance to the target at which a singular end is sought."""
 
 RETRY_ENDGAME = 0.05
-"""What must be left of the way, since the endgame was last tried in vain, for it to be tried again: two samples."""
+"""Share of the distance since the last failed endgame that allows another: two samples."""
 
 CONDITIONED = 0.1
-"""An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
+"""Ends that round-off may move by this share of the path are rejected: asymptotes satisfy any equation."""
 
 NEAR_ENOUGH = 30.0
-"""A bound of so many tolerances is no reason to look for a limit: noise decides what components are measured by."""
+"""Error bound, in tolerances, that needs no limit: noise decides the components' scales."""
 
 VANISHING_SHARE = 1e-18
-"""Share of the parameter in the tangent that the square of round-off may leave of none."""
+"""Parameter's share of the tangent that is zero, the square of round-off."""
 
 END_CORRECTIONS = 4
-"""Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
+"""Newton's increments at the target, which converge quadratically."""
 
 
 class EndsAt(Enum):
-    """What a path may end on."""
+    """Ways to end."""
 
     NOTHING = "it goes on"
     TARGET = "the target"
@@ -55,10 +53,9 @@ class EndsAt(Enum):
 
 @frozen(eq=False)
 class ArcEnd:
-    """An accepted arc, cut where the path ends on it if it does.
+    """An accepted arc, cut where the path ends.
 
-    `kind`: Of the arc's last point, one of `Kind`. `whole`: Whether the arc's last point is the one at which the
-    attempt arrived. `limit`: Set where the end is singular. `error`: A bound of what the target's components are off.
+    `kind`: of its last point. `whole`: not cut. `limit`: of a singular end. `error`: bound of the end's components.
     """
 
     arc: Arc
@@ -71,31 +68,30 @@ class ArcEnd:
 
 @frozen(eq=False)
 class Target:
-    """The target of a trace and the ways to end on it, or on the start, other than by a step of its own."""
+    """The target of a trace, and ends without a step of their own."""
 
     solver: PathSolver
     target: float | None
 
-    # A homotopy with `max_step` has a domain, and its target mostly lies on the boundary. Three decisions follow, each
-    # for a reason of its own: these two, and `Landing.lands_from_afar`.
+    # A homotopy with `max_step` has a domain, its target mostly on the boundary: hence these two and
+    # `Landing.lands_from_afar`.
 
     @property
     def expects_singular_end(self) -> bool:
-        """Whether the endgame is tried before any landing has failed: on the boundary H' may lose its rank."""
+        """Whether the endgame precedes landing: H' may lose rank on the boundary."""
         return self.solver.max_step is not None
 
     @property
     def may_turn_back(self) -> bool:
-        """Whether the start's parameter value is an end: beyond it such a homotopy has no meaning."""
+        """Whether the start's parameter is an end: beyond it the homotopy has no meaning."""
         return self.solver.max_step is not None
 
-    # -- before a step ----------------------------------------------------------------------------------------
+    # -- before a step --
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
-        """Whether the path is so near the target that a singular end is to be looked for.
+        """Whether to seek a singular end: the target is near, and a landing failed or the path is interior.
 
-        An interior path creeps towards a singular end on its boundary; any path may have failed to land. Asked for
-        again only when the parameter has come nearer by a good factor.
+        After a failure the endgame waits until the target is much nearer.
         """
         if self.target is None or state.index == 0:
             return False
@@ -105,20 +101,17 @@ class Target:
         return near and failed and abs(gap) <= RETRY_ENDGAME * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
-        """The limit at the target by the endgame."""
+        """The limit at the target."""
         assert self.target is not None
         try:
             return self._placed(Endgame(self.solver, self.target).limit(point), point)
         except EvaluationError:
             return None
 
-    # -- after a step -----------------------------------------------------------------------------------------
+    # -- after a step --
 
     def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
-        """Where the path ends on an accepted arc: at the target, at its own start, or beyond the start's parameter.
-
-        `landed`: Whether the arc was made to end on the target.
-        """
+        """The arc, cut at the path's end if there is one; `landed`: the arc was made to end on the target."""
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
@@ -140,11 +133,10 @@ class Target:
         return ArcEnd(arc)
 
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
-        """The end of the arc at a parameter value, a bound of its error, and the limit if it is singular.
+        """The end at a parameter value, an error bound, and the limit if singular.
 
-        Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without
-        leaving round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a
-        fold, or what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
+        Newton's method brings points near a fold to round-off (`off_by`); if that exceeds the tolerance, the endgame is
+        tried. `EvaluationError` if both fail.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)
@@ -161,7 +153,7 @@ class Target:
         return u, largest(off), None
 
     def _at_value(self, end: Linearization, value: float) -> Array:
-        """The point at the value, with Newton's increments there for as long as they reduce the residual."""
+        """The end after Newton's increments at the value, while the residual falls."""
         evaluator = self.solver.evaluator
         unit = np.zeros_like(end.u)
         unit[-1] = 1.0
@@ -181,9 +173,9 @@ class Target:
         return u
 
     def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
-        """A limit with what it errs by because the singular point may lie beside the target, as far as H can tell.
+        """Add to a limit's error that the singular point may lie beside the target, as far as H can tell.
 
-        `point`: On the path before it. There y has come by c |lam - target|^(1/w).
+        Between `point` and the limit y changes like c |lam - target|^(1/w).
         """
         if limit is None or limit.winding_number == 1:
             return limit
@@ -199,11 +191,10 @@ class Target:
 
 
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
-    """How far each component of an end may be off at its parameter: how far H stays round-off of its own terms.
+    """How far components of an end may move while H stays round-off.
 
-    Along what the factorisation of `near` makes of that round-off in two samples of its signs, and along the tangent:
-    as far as H, evaluated there, is no more than twice what it may be. That holds near folds and where more ranks are
-    lost, too; more than any path where nothing ends it.
+    The end moves along the tangent, and along two sign samples of round-off through `near`, until H is twice what is
+    allowed. This also holds near folds and at lower ranks.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

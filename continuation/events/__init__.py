@@ -1,4 +1,4 @@
-"""Events: functions along the path whose zeros are located on corrected points, never interpolated."""
+"""Events: zeros of functions along the path, located on corrected points."""
 
 from continuation.events.monitors import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 

@@ -1,4 +1,4 @@
-"""A box of the parameter and the unknowns: a path ends on its face, as at any other terminal event."""
+"""A box of parameter and unknowns; the path ends on a face, a terminal event."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from continuation.events.monitors import Event, TargetValue
 from continuation.status import Kind
 
 Box = Mapping[str | int, tuple[float | None, float | None]]
-"""What to (low, high), one of them perhaps None: ``"lam"``, ``"y"`` (all unknowns), one unknown by number or name."""
+"""Bounds: maps ``"lam"``, ``"y"`` (all unknowns), an index or a name to (low, high); None means open."""
 
 
 @frozen
 class Extreme:
-    """Where the largest unknown (side +1) or the smallest (side -1) takes a value, on its way out."""
+    """The largest (side +1) or smallest (side -1) unknown passes a value outwards."""
 
     value: float = field(validator=FINITE)
     side: int = field(validator=sign)
@@ -29,7 +29,7 @@ class Extreme:
 
     @property
     def name(self) -> str:
-        """The condition as text."""
+        """Condition as text."""
         return f"{'largest' if self.side > 0 else 'smallest'} unknown = {self.value:g}"
 
     @property
@@ -38,25 +38,17 @@ class Extreme:
         return self.side
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The extreme unknown minus the value."""
+        """Extreme unknown minus value."""
         return float(u[:-1].max() if self.side > 0 else u[:-1].min()) - self.value
 
 
 def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
-    """The events of a box, each on one face.
-
-    Parameters
-    ----------
-    box : Box
-    labels : Labels
-        Of the homotopy, for names.
-    start : ndarray, shape (N + 1,)
-        Must lie inside.
+    """One event for each face of a box.
 
     Raises
     ------
     TypeError, ValueError
-        If it is no box, or the start lies outside.
+        If it is no box, or `start` lies outside.
     """
     events: list[Event] = []
     for key, face in _faces(box, labels, start.size):
@@ -67,24 +59,12 @@ def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
 
 
 def is_inside(box: Any, labels: Labels, u: Array) -> bool:
-    """Whether a point lies in the interior of a box.
-
-    Parameters
-    ----------
-    box : Box
-    labels : Labels
-    u : ndarray, shape (N + 1,)
-    """
+    """Whether u, shape (N + 1,), lies in the interior of a box."""
     return all(face.monitor(u, u) * face.direction < 0.0 for _, face in _faces(box, labels, u.size))
 
 
 def is_boundless(box: Any) -> bool:
-    """Whether all that a box says is that nothing has a limit.
-
-    Parameters
-    ----------
-    box : object
-    """
+    """Whether a box bounds nothing."""
     return isinstance(box, Mapping) and all(_interval(key, pair) == (None, None) for key, pair in box.items())
 
 

@@ -13,8 +13,7 @@ from continuation.status import Kind
 class BranchPoint:
     """Two branches cross: H' loses one rank.
 
-    The tracer always watches for it, since it must flip its orientation there; name it among the events to stop at it.
-    It is found by `continuation.step.crossing` and polished by `continuation.events.singularity`.
+    The tracer always watches for it, to flip its orientation; list it among the events to stop there.
     """
 
     terminal: int = field(default=1, validator=integer(0))
@@ -23,5 +22,5 @@ class BranchPoint:
     name: str = field(default="branch point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: a crossing is no sign change of a function of point and tangent."""
+        """A constant: the tracer itself watches."""
         return 1.0

@@ -1,9 +1,8 @@
-"""Which branches cross an arc, and about where: seen from a factorisation at its beginning, whatever lies on it.
+"""Which branches cross an arc, and about where, by one factorisation at its beginning.
 
-With M_a and M_c the bordered matrices of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of
-C = I - M_a^{-1} M_c. So on an arc that no branch crosses C has no real eigenvalue beyond one; a determinant's sign,
-which sees parity only, is not asked. Units and the scaling of equations change nothing: M_a^{-1} M_c has those of u
-alone. On a straight branch of an H that is affine in the parameter the places are exact.
+With bordered matrices M_a and M_c of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C = I
+- M_a^{-1} M_c: a real eigenvalue above one means a crossing. A determinant shows parity only. Places are exact on a
+straight branch if H is affine in the parameter.
 """
 
 from __future__ import annotations
@@ -19,25 +18,25 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40
-"""At most so many dimensions of the Krylov space; on a path that nothing crosses two are usual."""
+"""Largest Krylov dimension; two usually suffice."""
 
 EIGENVALUE_ACCURACY = 0.05
-"""Of an eigenvalue: it tells about where the crossing lies, and Newton's method does the rest."""
+"""Relative; Newton's method refines the crossing."""
 
 OUTSIDE_SPACE = 0.1
-"""Of the eigenvalues asked for: where the last dimension leads out of the space by more, what it shows must be so in
-the next one too. Without that a tenth of the crossings just behind an arc is overlooked (400 crossings)."""
+"""If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
+Otherwise a tenth of 400 crossings just behind an arc is missed."""
 
 EXHAUSTED = 1e-10
-"""A vector that loses all but this to the ones before it has no direction of its own."""
+"""A vector left with a smaller share after orthogonalisation depends on the others."""
 
 ROUNDING = float(np.finfo(float).eps) ** 0.5
-"""An eigenvalue smaller than so much of its matrix may be round-off, where it is one of a pair that is nearly defective
-(Wilkinson, The Algebraic Eigenvalue Problem, Section 2.22): on the way to a pole all are."""
+"""Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
+Eigenvalue Problem, Section 2.22), as near a pole."""
 
 RANKS, SAME, INDEPENDENT = 4, 1e-3, 1e-4
-"""At most so many vectors of one eigenvalue are sought; that near is the same one, and less than the last, of unit
-length, depends on the others: eigenvectors are known to about the root of what eigenvalues are."""
+"""Vectors sought for one eigenvalue; relative distance of equal eigenvalues; singular value of dependent unit vectors
+(eigenvectors have half the eigenvalues' digits)."""
 
 
 def changes(
@@ -49,28 +48,12 @@ def changes(
     start: Array,
     accuracy: float = EIGENVALUE_ACCURACY,
 ) -> tuple[list[float], Array]:
-    """The real eigenvalues of C = I - M_a^{-1} M above `most` or below `least`, in order, and their eigenvectors.
+    """The real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors in the metric, as
+    columns.
 
-    Arnoldi's method until these are known. Each dimension takes a product with M and a solve at a.
-
-    Parameters
-    ----------
-    a : Linearization
-    apply : callable
-        v -> H' v at the other point.
-    border : ndarray, shape (N + 1,)
-        The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
-    most, least : float
-    start : ndarray, shape (N + 1,)
-        The first vector, in the metric: what has no part in it is not found.
-    accuracy : float
-        Of the eigenvalues, relative.
-
-    Returns
-    -------
-    values : list of float
-    vectors : ndarray, shape (N + 1, number of values)
-        Of unit length in the metric, as columns.
+    By Arnoldi's method. `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent
+    there in the dual metric, so that turns give complex eigenvalues. `start`, shape (N + 1,): first vector;
+    eigenvectors orthogonal to it are not found. `accuracy`: relative.
     """
     values, vectors = _eigenvalues(a, apply, border, most, least, start, accuracy)
     if not values.size:
@@ -80,23 +63,15 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """How many ranks the matrix loses at a singular place: eigenvectors of one eigenvalue found from several vectors.
-
-    A Krylov space holds one vector of an eigenspace, whatever its dimension.
-
-    Parameters
-    ----------
-    a, apply, border
-        As for `changes`.
-    place : float
-        One of these.
+    """Ranks lost at a `place` of `changes`: one Krylov space holds one vector of each eigenspace, so several starts
+    serve.
     """
     found: list[Array] = []
     for k in range(RANKS):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
         values, vectors = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
         near = [i for i, value in enumerate(values) if abs(value * place - 1.0) < SAME]
-        # A vector may have next to no part along an eigenvector: another one has.
+        # A start may have no part along an eigenvector.
         found += [vectors[:, near[0]]] if near else []
         if found and np.linalg.svd(np.array(found), compute_uv=False)[-1] < INDEPENDENT:
             return len(found) - 1
@@ -112,7 +87,6 @@ def _eigenvalues(
     start: Array,
     accuracy: float,
 ) -> tuple[Array, Array]:
-    """The real eigenvalues of C beyond right, or below left, and their vectors in the metric, as columns."""
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
@@ -141,8 +115,7 @@ def _eigenvalues(
             values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
             told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
             before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
-            # Where H' is far from normal, as on the way to a pole, a small residual says little: the next dimension
-            # has to show the same.
+            # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
             last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
             same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
             if whole or (converged and (same if told else before or left_over <= OUTSIDE_SPACE * right)):
@@ -158,30 +131,27 @@ def _eigenvalues(
 
 
 def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:
-    """Eigenvalues of a small matrix, what leads out of the space by their vectors, and the real parts of these.
-
-    In a fifth of the time of `numpy.linalg.eig`.
-    """
+    """Eigenvalues, residuals, real parts of eigenvectors; five times as fast as `numpy.linalg.eig`."""
     real, imaginary, _, vectors, info = dgeev(matrix, 0)
     if info:
         raise EvaluationError("eigenvalues of a small matrix were not found")
     values, last = [complex(x, y) for x, y in zip(real.tolist(), imaginary.tolist())], vectors[-1].tolist()
     for j, z in enumerate(values):
         if z.imag > 0.0:
-            # A pair: its vector's real and imaginary parts stand side by side.
+            # Real and imaginary part of a pair's vector.
             last[j] = last[j + 1] = math.hypot(last[j], last[j + 1])
             vectors[:, j + 1] = vectors[:, j]
     return values, [left_over * abs(x) for x in last], vectors
 
 
 def _nothing_told(H: Array, right: float, left: float) -> bool:
-    """Whether two dimensions show no eigenvalue that is asked for: their two in closed form, for the time of a step."""
+    """Whether two dimensions, in closed form, exclude every eigenvalue asked for."""
     a, b, c, d = float(H[0, 0]), float(H[0, 1]), float(H[1, 0]), float(H[1, 1])
     middle, discriminant = 0.5 * (a + d), 0.25 * (a - d) ** 2 + b * c
     root = math.sqrt(abs(discriminant))
     for sign in (-1.0, 1.0):
         real, imaginary = (middle + sign * root, 0.0) if discriminant >= 0.0 else (middle, root)
-        # The last component of the eigenvector (value - d, c), of unit length, by what leads out of the space.
+        # Residual: last component of the unit eigenvector (value - d, c), times H[2, 1].
         error = float(H[2, 1]) * abs(c) / (math.hypot(real - d, imaginary, c) or 1.0)
         if real + error > right or real - error < left:
             return False

@@ -1,4 +1,4 @@
-"""One bordered matrix of H', regular where H' loses ranks: the kernels of H', and how many ranks are lost."""
+"""Kernels and lost ranks of H', from one bordered matrix."""
 
 from __future__ import annotations
 
@@ -16,19 +16,17 @@ from continuation.arrays import Array, Matrix
 from continuation.linear.entries import extended
 
 BORDERS = 5
-"""Lost ranks that can be counted: two more than are resolved (`continuation.events.multiple`), so that the message is
-right."""
+"""Lost ranks that can be counted: two more than `continuation.events.multiple` resolves, for its message."""
 
 RANK = 1e-6
-"""What may be left of a singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
+"""Smaller singular values, relative to H', count as zero; the root of POLISHED is below."""
 
 
 @frozen(eq=False)
 class Bordered:
-    """[[H', B], [C, 0]] with k columns B and k + 1 rows C, factored: regular where H' has lost k ranks, or fewer.
+    """[[H', B], [C, 0]], factored, with k columns B and k + 1 rows C: regular if H' has lost at most k ranks.
 
-    Its solutions give the null spaces of H' (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
-    Section 3.3).
+    It gives the null spaces (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 3.3).
     """
 
     matrix: Matrix
@@ -49,7 +47,7 @@ class Bordered:
                 raise np.linalg.LinAlgError(str(warning)) from warning
 
     def solve(self, r: Array, transposed: bool = False) -> Array:
-        """The solution of the bordered system, or of its transpose."""
+        """Solve the bordered system or its transpose."""
         if sp.issparse(self.matrix):
             x: Array = self._factor.solve(r, trans="T" if transposed else "N")
             return x
@@ -58,33 +56,27 @@ class Bordered:
 
     @cached_property
     def left(self) -> tuple[Array, Array]:
-        """Columns that span the left null space, and how far H' is from having it: k + 1 numbers for each."""
+        """Columns that span the left null space, and their defects (k + 1 numbers each)."""
         n, k = self.columns.shape
         found = self.solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), transposed=True)
         return found[:n], found[n:]
 
     @cached_property
     def right(self) -> tuple[Array, Array]:
-        """The same of the right null space, with k numbers for each."""
+        """Columns that span the right null space, and their defects (k numbers each)."""
         n, k = self.columns.shape
         found = self.solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]))
         return found[: n + 1], found[n + 1 :]
 
     def refreshed(self, matrix: Matrix) -> Bordered:
-        """Another H' with this one's null vectors as its borders: then the bordered matrix is conditioned best."""
+        """Another H', bordered with these null vectors: the best condition."""
         return Bordered(matrix, np.linalg.qr(self.left[0])[0], np.linalg.qr(self.right[0])[0].T)
 
 
 def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
-    """Orthonormal bases of the kernel of a matrix, shape (N, N + 1), and of its left kernel, as columns.
+    """Orthonormal bases of both kernels of a matrix, shape (N, N + 1), as columns.
 
-    Borders in general position are as many as ranks may be lost.
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array
-    accuracy : float
-        What may be left of a singular value that vanishes.
+    `accuracy`: relative size of vanishing singular values.
     """
     n = matrix.shape[0]
     k = min(BORDERS, n)
@@ -95,7 +87,6 @@ def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
 
 
 def _vanishing(vectors: Array, left_over: Array, accuracy: float) -> Array:
-    """Those combinations of vectors that leave nothing."""
     values, turned = np.linalg.svd(left_over)[1:]
     rank = int(np.count_nonzero(values > accuracy * np.linalg.norm(vectors, 2)))
     basis: Array = np.linalg.qr(vectors @ turned[rank:].T)[0]

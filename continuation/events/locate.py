@@ -1,10 +1,8 @@
-"""Where on an accepted arc a function of its points vanishes: one scanner for events, targets, faces and switches.
+"""Zeros of a function on an accepted arc, for events, targets, faces and switches.
 
-The arc's guide is a model of the function, and costs no evaluation of H. An arc has no zero where the model keeps the
-sign that the function has at both ends, and comes down to no less than half of what it is there. It has one zero where
-the ends have two signs and the model changes its sign once: there a secant converges, on points of the path. Any other
-arc is divided by a point of the path, where the model is lowest or has come through zero, and both parts are asked
-again.
+The arc's guide models the function without evaluating H. An arc has no zero if the model keeps the ends' sign and at
+least half of the smaller end value, one zero if the ends differ in sign and the model changes sign once: secants then
+find it on the path. Other arcs are divided.
 """
 
 from __future__ import annotations
@@ -27,33 +25,30 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, Segment, hermite
 
 Function = Callable[[Array, Array], float]
-"""Of a point and its tangent; continuous along the path."""
+"""A function of point and tangent, continuous along the path."""
 
 JUMP = 1e-3
-"""A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
+"""A bracket that closes on a larger value, relative to its first ones, holds a jump."""
 
 MONITOR_PLACES = 17
-"""Places where a function is looked at before its lowest value is sought: a cubic has two turns at most."""
+"""Samples of the model; a cubic turns at most twice."""
 
 DIVISIONS, INSIDE_ARC = 8, 1e-6
-"""An arc is divided so often in a row at most, so far inside of it."""
+"""Most divisions of an arc; least relative distance from its ends."""
 
 PASSES, NEARLY_ZERO = 60, 1e-10
-"""A bisection in every other pass narrows a bracket to round-off in these. A value that small, beside those at the
-ends, will do where the last two have not halved it."""
+"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if two passes did
+not halve it."""
 
 SLOPE = 1e-3
-"""Of a part: the difference that shows the slope of its model, to three digits as the model itself."""
+"""Step of the difference quotient, in parts: three digits, as the model has."""
 
 TRANSVERSAL = 1e-6
-"""The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
+"""Least tangent component, relative to the largest, along which a point is put exactly on a value."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
-    """A zero, by Brent's method, of a function that costs little and has different signs at two places.
-
-    None where it is NaN on the way. The options are those of `scipy.optimize.brentq`.
-    """
+    """A zero of a cheap function that changes sign, by `scipy.optimize.brentq`; None for NaN."""
     try:
         return float(brentq(function, low, high, disp=False, **options))
     except ValueError:
@@ -61,10 +56,7 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether a function may vanish on an arc, judged by its values at the ends and its least value inside.
-
-    Ends of one sign may hide a pair of zeros where it has the other sign there, or dips to less than half of both.
-    """
+    """Whether a function changes sign on an arc, or falls below half of both ends inside."""
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign = math.copysign(1.0, ga)
@@ -73,10 +65,7 @@ def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
 
 
 def _least(places: Sequence[float], values: Sequence[float]) -> float:
-    """The least of some values and of the parabolas through each three neighbours between them.
-
-    For the parameter's component of a cubic's tangent that is the least of all.
-    """
+    """Least of values and of parabolas through neighbours: exact for a component of a cubic's tangent."""
     least = min(values)
     slopes = [(b - a) / (q - p) for p, q, a, b in zip(places, places[1:], values, values[1:])]
     for p, q, r, a, left, right in zip(places, places[1:], places[2:], values, slopes, slopes[1:]):
@@ -90,7 +79,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 @frozen(eq=False)
 class _Part:
-    """A part of an arc between two points of the path, the function there, and its model from `low` to `high`."""
+    """A part of an arc, with the function's values and its model from `low` to `high`."""
 
     a: Linearization
     b: Linearization
@@ -102,7 +91,7 @@ class _Part:
     depth: int = 0
 
     def divided(self, point: Linearization, g: float, t: float, border: Array) -> tuple[_Part, _Part]:
-        """The two parts on either side of a point. A series stays their model, a cubic gives way to two."""
+        """Divide at a point: a cubic is replaced by two, a series remains."""
         parts = []
         for a, b, ga, gb, low, high in (
             (self.a, point, self.ga, g, self.low, t),
@@ -114,7 +103,7 @@ class _Part:
         return parts[0], parts[1]
 
     def undecided(self, along: Callable[[float], float]) -> float | None:
-        """Where to divide it, with the function `along` its model; None if its ends say what is on it."""
+        """The place of a division, given the model `along`; None if the ends decide."""
         sign = math.copysign(1.0, self.ga)
         places = np.linspace(self.low, self.high, MONITOR_PLACES).tolist()
         values = [sign * self.ga, *(sign * along(t) for t in places[1:-1]), sign * self.gb]
@@ -136,20 +125,10 @@ class _Part:
 def zeros(
     solver: PathSolver, function: Function, arc: Arc, ga: float, gb: float, noise: float = 0.0, direction: int = 0
 ) -> Iterator[Linearization]:
-    """The zeros of a function on the arc, in order, each on the path to round-off.
+    """Zeros of a function of (u, v) on the arc, in order, to round-off.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    function : callable
-        (u, v) -> float
-    arc : Arc
-    ga, gb : float
-        The function at the ends; ga is not zero.
-    noise : float
-        Values inside of the arc up to this are round-off, and change no sign.
-    direction : int
-        +1 only where it rises, -1 only where it falls.
+    `ga`, `gb`: values at the ends; ga is not zero. `noise`: round-off of values. `direction`: +1 rising only, -1
+    falling only.
     """
 
     def along(part: _Part, t: float) -> float:
@@ -195,20 +174,9 @@ def root(
     guess: float | None = None,
     slope: float = math.nan,
 ) -> float | None:
-    """Where a function vanishes between two places; None where it jumps through zero instead, as a tangent may.
+    """A zero between a and b = (place, value) of different signs; None if the function jumps.
 
-    By the secant method. A bisection follows where that leaves the bracket, or has not halved the value.
-
-    Parameters
-    ----------
-    function : callable
-        Asked for the zero last or as one of the last.
-    a, b : (place, value)
-        Of different signs.
-    enough : float
-        How near a place is known.
-    guess, slope : float
-        Of a model of the function: its zero, and the slope there.
+    `enough`: accuracy of places. `guess`, `slope`: a model's zero and slope.
     """
     scale, best = max(abs(a[1]), abs(b[1])), min(a, b, key=lambda place: abs(place[1]))
     if best[1] == 0.0:
@@ -236,7 +204,7 @@ def root(
 
 
 def on_value(solver: PathSolver, point: Linearization, component: int, value: float) -> Linearization:
-    """The point with a component put exactly on a value next to it, if the path is transversal to that there."""
+    """Put a component exactly on a value, if the path is transversal to it."""
     if abs(point.tangent[component]) <= TRANSVERSAL * largest(point.tangent):
         return point
     unit, guess = np.zeros_like(point.u), point.u.copy()

@@ -1,4 +1,4 @@
-"""Events: functions along the path whose zeros are located on corrected points, never interpolated."""
+"""Events: zeros of functions along the path, located on corrected points."""
 
 from __future__ import annotations
 
@@ -14,48 +14,48 @@ from continuation.status import Kind
 
 
 class Event(Protocol):
-    """A monitor, and what to do where it vanishes.
+    """A monitor and what its zeros do.
 
     Attributes
     ----------
     name : str
     kind : int
-        One of `continuation.Kind`, stored with the point.
+        One of `continuation.Kind`.
     terminal : int
-        The trace ends at the k-th occurrence; 0 for never.
+        The trace ends at the k-th occurrence; 0: never.
     direction : int
-        +1 only where the monitor rises, -1 only where it falls, 0 both.
+        +1: rising zeros only; -1: falling only; 0: both.
     """
 
     @property
     def name(self) -> str:
-        """What it is called in the path and the archive."""
+        """Name in path and archive."""
         ...
 
     @property
     def kind(self) -> int:
-        """Kind of the located point."""
+        """Kind of the point."""
         ...
 
     @property
     def terminal(self) -> int:
-        """At which occurrence the trace ends."""
+        """Occurrence that ends the trace."""
         ...
 
     @property
     def direction(self) -> int:
-        """Which crossings count."""
+        """Crossings that count."""
         ...
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The function whose zeros are wanted, of the point and the tangent; continuous along the path.
+        """A function of point and tangent, continuous along the path.
 
         Parameters
         ----------
         u : ndarray, shape (N + 1,)
-            A point (y, lam) of the path.
+            A point (y, lam).
         v : ndarray, shape (N + 1,)
-            The unit tangent there.
+            Unit tangent.
 
         Returns
         -------
@@ -66,7 +66,7 @@ class Event(Protocol):
 
 @frozen
 class TurningPoint:
-    """Where a component of the tangent changes sign: the parameter by default (a fold), or a component of y."""
+    """A component of the tangent changes sign: the parameter's by default (a fold)."""
 
     component: int = field(default=-1, validator=integer())
     terminal: int = field(default=0, validator=integer(0))
@@ -75,7 +75,7 @@ class TurningPoint:
 
     @property
     def name(self) -> str:
-        """``turning point``, with the component where it is not the parameter."""
+        """``turning point``, with the component unless it is the parameter."""
         return "turning point" if self.component == -1 else f"turning point of component {self.component}"
 
     def monitor(self, u: Array, v: Array) -> float:
@@ -83,21 +83,21 @@ class TurningPoint:
         return float(v[self.component])
 
     def resolution(self, noise: Array, length: float) -> float:
-        """The tangent's component that moves the point by no more than its round-off over the arc.
+        """Tangent component that moves the point by its round-off over the arc.
 
         Parameters
         ----------
         noise : ndarray, shape (N + 1,)
-            How far round-off moves each component of a point.
+            Round-off of a point.
         length : float
-            Of the arc, in the units of the tangent.
+            Of the arc.
         """
         return float(noise[self.component]) / length
 
 
 @frozen
 class TargetValue:
-    """Where the parameter (component -1), or a component of y, takes a value; the point lands on it exactly."""
+    """The parameter (component -1) or a component of y takes a value, exactly."""
 
     value: float = field(validator=FINITE)
     component: int = field(default=-1, validator=integer())
@@ -118,9 +118,9 @@ class TargetValue:
 
 @frozen
 class KinkPoint:
-    """Where a switching function of a piecewise smooth homotopy vanishes, and the path goes on on another piece.
+    """A switching function vanishes; the path continues on another piece.
 
-    The tracer always watches for it; name it among the events to stop at it.
+    The tracer always watches for it; list it among the events to stop there.
     """
 
     terminal: int = field(default=1, validator=integer(0))
@@ -129,13 +129,13 @@ class KinkPoint:
     name: str = field(default="kink", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: the tracer watches the switches itself."""
+        """A constant: the tracer itself watches."""
         return 1.0
 
 
 @frozen
 class Monitor:
-    """Where a function of the caller's, of the point u and the unit tangent v, vanishes."""
+    """A function of the point u and the unit tangent v vanishes."""
 
     function: Callable[[Array, Array], float] = field(validator=of_kind("a function of u and v", callable))
     name: str = field(default="event", validator=of_kind("a text", lambda value: isinstance(value, str)))
@@ -144,7 +144,7 @@ class Monitor:
     kind: Kind = field(default=Kind.EVENT, init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The caller's function."""
+        """The function's value."""
         found: Any = self.function(u, v)
         if isinstance(found, float):
             return found

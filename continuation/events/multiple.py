@@ -1,10 +1,8 @@
-"""Multiple branch points: all branches that leave a point where H' loses several ranks.
+"""All branches that leave a multiple branch point, where H' loses several ranks.
 
-Lyapunov and Schmidt: with E a basis of the kernel of H' (of dimension k + 1 where k ranks are lost) and Phi one of the
-left kernel, every zero of H nearby is u = u0 + E a + z, z orthogonal to E, where g(a) = 0; g has k components. Its
-lowest terms are the algebraic branching equations (Keller 1977; Allgower and Georg, Section 8.1), quadratic in general,
-cubic where a symmetry wants it so. They are not asked for: g itself is solved on a small sphere, which every branch
-meets, whatever its order.
+Lyapunov-Schmidt: every zero nearby is u0 + E a + z, E a basis of the kernel of H', z orthogonal to E, g(a) = 0. The
+branching equations (Keller 1977; Allgower and Georg, Section 8.1) are the lowest terms of g; g itself, solved on a
+small sphere, gives branches of any order.
 """
 
 from __future__ import annotations
@@ -23,47 +21,37 @@ from continuation.metric import norm
 from continuation.point.linearization import linearize
 
 LOST_RANKS = 3
-"""Lost ranks that are resolved: the branches of three are sought on the sphere of a space of four dimensions."""
+"""Lost ranks that are resolved: a sphere in four dimensions."""
 
 CHORD, LAST_INCREMENT = 30, 1e-13
-"""Iterations that bring a point onto the graph of z, and the last increment, relative to the sphere."""
+"""Chord steps onto the graph of z; last increment, relative to the sphere."""
 
 STARTS = 600
-"""On the sphere Newton's method begins at so many points: twenty for each of the 27 lines of three cubics."""
+"""Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
 
 NEWTON, ROOT = 30, 1e-9
-"""Its iterations, and the last increment, relative to the sphere."""
+"""Newton steps; last increment, relative to the sphere."""
 
 DIFFERENCE = 1e-4
-"""The step of differences of g, relative to the sphere: half of the digits that g has there are left."""
+"""Step of differences of g, relative to the sphere; half the digits remain."""
 
 SAME_ZERO = 1e-3
-"""Zeros on the sphere that are nearer to each other, relative to it, are one."""
+"""Nearer zeros, relative to the sphere, are one."""
 
 NOISE, ZERO = 1e-11, 1e-14
-"""What of a direction is round-off, relative to its largest component in units of the path; the same of a point."""
+"""Round-off of a direction, relative to its largest component, and of a point, in extents."""
 
 ISOLATED = 1e-7
-"""The least singular value of the equations on the sphere, each divided by its size, where a zero is isolated."""
+"""Least singular value of the scaled equations at an isolated zero."""
 
 
 class Unresolved(ArithmeticError):
-    """The branches that leave a multiple branch point are not found; the sentence says why, and the dimension."""
+    """Branches at a multiple branch point were not found; the message says why."""
 
 
 @frozen(eq=False)
 class Leaving:
-    """A branch that leaves a point.
-
-    Attributes
-    ----------
-    u : ndarray, shape (N + 1,)
-        A point of it nearby.
-    ray : ndarray, shape (N + 1,)
-        Its direction at the branch point, away from it, of unit length in the metric.
-    tangent : ndarray, shape (N + 1,)
-        That at u.
-    """
+    """A branch: a nearby point `u`, its `tangent`, the unit `ray` at the branch point."""
 
     u: Array
     ray: Array
@@ -72,7 +60,7 @@ class Leaving:
 
 @frozen(eq=False)
 class Reduced:
-    """The equations g(a) = 0 that are left of H = 0 near a point, in units of the path."""
+    """The reduced equations g(a) = 0, in units of the path."""
 
     evaluator: Evaluator
     u: Array
@@ -83,7 +71,7 @@ class Reduced:
     bordered: Bordered
 
     def at(self, a: Array) -> tuple[Array, Array]:
-        """The point on the graph over the kernel, in units of the path from u, and g there."""
+        """The point over the kernel, from u, and g."""
         n, size = self.sizes.size, float(np.linalg.norm(a))
         w, g = self.kernel @ a, np.zeros(self.left.shape[1])
         for _ in range(CHORD):
@@ -95,12 +83,12 @@ class Reduced:
         return w, g
 
     def slopes(self, a: Array, radius: float) -> Array:
-        """Derivatives of g, by central differences."""
+        """Derivatives of g."""
         h = DIFFERENCE * radius
         return np.column_stack([(self.at(a + h * e)[1] - self.at(a - h * e)[1]) / (2.0 * h) for e in np.eye(a.size)])
 
     def newton(self, a: Array, radius: float) -> Array | None:
-        """A zero on the sphere from a guess; None where Newton's method does not come to one."""
+        """A zero on the sphere, by Newton's method, or None."""
         a = a * (radius / np.linalg.norm(a))
         for _ in range(NEWTON):
             step = _onto_sphere(self.at(a)[1], self.slopes(a, radius), a, radius)
@@ -113,14 +101,13 @@ class Reduced:
 
 
 def _equations(slopes: Array, a: Array, radius: float) -> tuple[Array, Array]:
-    """The derivatives of g = 0 and |a| = radius at points a, each divided by its size, and these."""
+    """Derivatives of g = 0 and |a| = radius, divided by their sizes, and the sizes."""
     rows = np.concatenate([slopes, 2.0 * a[..., None, :] / radius], axis=-2)
     sizes = np.maximum(np.linalg.norm(rows, axis=-1), np.finfo(float).tiny)
     return rows / sizes[..., None], sizes
 
 
 def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> Array:
-    """Newton's increments for these equations."""
     rows, sizes = _equations(slopes, a, radius)
     off = np.concatenate([g, ((a**2).sum(axis=-1, keepdims=True) - radius**2) / radius], axis=-1)
     step: Array = -(np.linalg.pinv(rows, rcond=1e-12) @ (off / sizes)[..., None])[..., 0]
@@ -129,14 +116,14 @@ def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> Array:
 
 @frozen(eq=False)
 class Polynomials:
-    """g on a sphere and within, as polynomials of degree two to four without lower terms: least squares."""
+    """g near zero as polynomials of degree two to four."""
 
     powers: Array
     coefficients: Array
 
     @classmethod
     def of(cls, reduced: Reduced, radius: float) -> Polynomials:
-        """Fitted to points on two spheres."""
+        """Least squares on two spheres."""
         m = reduced.kernel.shape[1]
         sums = [c for degree in (2, 3, 4) for c in combinations_with_replacement(range(m), degree)]
         powers = np.array([[c.count(i) for i in range(m)] for c in sums])
@@ -147,7 +134,7 @@ class Polynomials:
         return cls(powers, np.linalg.lstsq(terms, values, rcond=None)[0])
 
     def at(self, a: Array) -> tuple[Array, Array]:
-        """The values, shape (points, k), and derivatives, shape (points, k, m), in units of the radius."""
+        """Values, shape (points, k), and derivatives, shape (points, k, m), in radii."""
         raised = a[:, None, :] ** self.powers
         slopes = []
         for i in range(a.shape[1]):
@@ -157,7 +144,7 @@ class Polynomials:
         return np.prod(raised, axis=2) @ self.coefficients, np.stack(slopes, axis=2)
 
     def zeros(self) -> list[Array]:
-        """Zeros on the unit sphere, by Newton's method from many points."""
+        """Zeros on the unit sphere."""
         found: list[Array] = []
         a = _spread(STARTS, self.powers.shape[1], 2)
         for _ in range(NEWTON):
@@ -172,7 +159,6 @@ class Polynomials:
 
 
 def _spread(count: int, m: int, seed: int) -> Array:
-    """Points on the unit sphere, in general position."""
     points = np.random.default_rng(seed).standard_normal((count, m))
     unit: Array = points / np.linalg.norm(points, axis=1)[:, None]
     return unit
@@ -184,24 +170,14 @@ def _add(found: list[Array], a: Array) -> None:
 
 
 def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step: float) -> list[Leaving]:
-    """All branches that leave a multiple branch point: first the one back, then the one onward.
+    """All branches that leave a multiple branch point: first the path's, back and onward.
 
-    Parameters
-    ----------
-    evaluator : Evaluator
-    u : ndarray, shape (N + 1,)
-        The point.
-    heading : ndarray, shape (N + 1,)
-        The direction in which the path came to it.
-    weights : ndarray, shape (N + 1,)
-        The metric there.
-    step : float
-        The radius of the sphere, in the metric.
+    `heading`: direction of the arriving path. `step`: radius of the sphere, in the metric.
 
     Raises
     ------
     Unresolved
-        If the kernel has too many dimensions, or the branches do not leave one by one.
+        If the kernel is too large, or branches do not leave one by one.
     """
     extent = 1.0 / np.sqrt(weights)
     sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
@@ -217,7 +193,6 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         branches = [_branch(reduced, a, step, weights) for a in found]
     except (EvaluationError, np.linalg.LinAlgError, RuntimeError) as error:
         raise Unresolved(f"the branching equations could not be solved there: {error}") from error
-    # The path's own first, back and onward.
     branches.sort(key=lambda b: -abs(float(np.dot(weights * heading, b.ray))))
     branches[:2] = sorted(branches[:2], key=lambda b: float(np.dot(weights * heading, b.ray)))
     return branches
@@ -241,7 +216,7 @@ def _on_sphere(reduced: Reduced, radius: float) -> list[Array]:
 
 
 def _flat(reduced: Reduced, a: Array, radius: float) -> bool:
-    """Whether the zeros on the sphere are no isolated points there."""
+    """Whether a zero is not isolated."""
     rows, _ = _equations(reduced.slopes(a, radius), a, radius)
     return bool(np.linalg.svd(rows, compute_uv=False)[-1] < ISOLATED)
 
@@ -252,7 +227,7 @@ def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leavin
     ray = w / np.linalg.norm(w)
     if nearer is not None:
         half = reduced.at(nearer)[0]
-        # Extrapolated: a branch that is curved leaves along its tangent.
+        # Extrapolated, as branches may curve.
         ray = 2.0 * half / np.linalg.norm(half) - ray
     ray = still(reduced.extent * ray, weights)
     u = without_noise(reduced.u, reduced.extent * w, weights)
@@ -261,22 +236,12 @@ def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leavin
 
 
 def still(v: Array, weights: Array) -> Array:
-    """A direction in which unknowns stand still that do: else a path that begins so would measure them by their noise.
-
-    Parameters
-    ----------
-    v, weights : ndarray, shape (N + 1,)
-    """
+    """A direction without round-off, which a path would take for scale."""
     size = np.abs(v) * np.sqrt(weights)
     return np.where(size > NOISE * size.max(), v, 0.0)
 
 
 def without_noise(u: Array, way: Array, weights: Array) -> Array:
-    """The point at the end of a way, where what stands still is where it was, and what is zero but for round-off zero.
-
-    Parameters
-    ----------
-    u, way, weights : ndarray, shape (N + 1,)
-    """
+    """The point u + way without round-off."""
     there = u + still(way, weights)
     return np.where(np.abs(there) * np.sqrt(weights) > ZERO, there, 0.0)

@@ -1,4 +1,4 @@
-"""What lies on an accepted arc: events in order, and whether the path ends on it."""
+"""Events on an accepted arc, in order, and whether the path ends there."""
 
 from __future__ import annotations
 
@@ -16,16 +16,13 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
 SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
-"""Their monitors are constants; the tracer itself looks for what they stand for."""
+"""The tracer finds these itself; their monitors are constants."""
 
 
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """What events that look for themselves find on an arc, by `found_on`; and whether, by `accounts_for`, that is all.
-
-    `arc`: Up to where the path ends, if it does. `found`: What the monitors of others found on it.
-    """
+    """Points found by events with `found_on`, and whether these and `found`, from monitors, explain the arc."""
     watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]
@@ -33,7 +30,7 @@ def found_by_events(
 
 
 def monitored(event: Event, point: Linearization) -> float:
-    """The event's monitor at a point; an IndexError names the component that does not exist."""
+    """The monitor at a point; an IndexError names the missing component."""
     try:
         return event.monitor(point.u, point.tangent)
     except IndexError as error:
@@ -43,9 +40,9 @@ def monitored(event: Event, point: Linearization) -> float:
 def scan_events(
     solver: PathSolver, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
-    """All events on the arc, in order, and the monitors' values at its end; but for those with `found_on`.
+    """Events on the arc in order, without those of `found_on`, and the monitors' values at its end.
 
-    A zero exactly at the arc's beginning was found there before; the sign just behind it takes its place.
+    A zero at the beginning was counted before; the sign just behind it replaces it.
     """
     found: list[tuple[int, Linearization]] = []
     values = []
@@ -66,13 +63,13 @@ def scan_events(
         if resolution is not None:
             if noise is None:
                 noise = solver.noise_by_component(arc.a)
-            # Signs of round-off are no crossings: a component that is zero all along, to the last digits.
+            # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue
         try:
             points = list(zeros(solver, event.monitor, arc, first, g, direction=event.direction))
         except EvaluationError:
-            # The arc is on the path, its interior could not be evaluated: the crossing is reported at its end.
+            # The interior cannot be evaluated: the end stands for the crossing.
             points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []
         if isinstance(event, TargetValue):
             points = [on_value(solver, point, event.component, event.value) for point in points]
@@ -84,7 +81,7 @@ def scan_events(
 def first_terminal(
     events: tuple[Event, ...], counted: tuple[int, ...], found: list[tuple[int, Linearization]]
 ) -> tuple[int | None, tuple[int, ...]]:
-    """At which of the events found the path stops, if at any, and how often each has occurred up to there."""
+    """Index of the event that stops the path, or None, and counts up to it."""
     counts = list(counted)
     for k, (i, _) in enumerate(found):
         counts[i] += 1

@@ -1,7 +1,6 @@
-"""Simple branch points as regular zeros: Newton's method on a minimally augmented system, and the two directions there.
+"""Simple branch points and their directions, by Newton's method on a minimally augmented system.
 
-All of it is done in the units of the path: columns are multiplied by the extents of the metric, rows divided by what
-they are made of, so that neither units nor the place of zero count.
+Columns are multiplied by extents and rows divided by their sizes.
 """
 
 from __future__ import annotations
@@ -20,42 +19,37 @@ from continuation.linear.entries import extended
 from continuation.metric import inner, norm
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
-"""Newton's method from a guess: its first increments may grow, and where it goes is checked afterwards."""
+"""First increments may grow; the result is checked."""
 
 POLISHED, POLISHED_NEARLY = 1e-14, 1e-6
-"""The last increment, in extents; and the size below which increments that no longer halve are round-off."""
+"""Last increment, in extents; below the second, stalled increments are round-off."""
 
 SECOND = 1e-5
-"""Of an extent: the step of second derivatives, a central difference of first ones; ten digits of the path."""
+"""Step, in extents, of central differences of H': ten digits."""
 
 DISTINCT_DIRECTIONS = 1e-9
-"""The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
+"""Least relative discriminant of two directions: the digits of SECOND."""
 
 HALTED = 1e-9, 100.0
-"""A simple branch point is a regular zero of the system: increments no longer halve at round-off, below the first even
-where zero is a million extents away. Where they halve, and no more, several ranks are lost: the next singular value was
-two to four times the last increment (Bratu's problem on a square, in any units)."""
+"""At a simple branch point increments fall below HALTED[0], even a million extents from the origin. Linear convergence
+means several lost ranks: the next singular value was two to four last increments (Bratu's problem on a square)."""
 
 IMPERFECT = 1e-8
-"""What the augmented system may add to H, relative to its terms: more, and H has no zero where H' loses its rank."""
+"""Largest relative term that the system adds to H; beyond, H has no zero where H' loses rank."""
 
 
 @frozen(eq=False)
 class SimpleBranchPoint:
-    """A point where H vanishes and H' has rank N - 1.
+    """A zero of H where H' has rank N - 1.
 
-    Attributes
-    ----------
-    u : ndarray, shape (N + 1,)
-    directions : tuple of two ndarrays, shape (N + 1,)
-        Of the two branches, of unit length in the metric.
+    `directions`: of the two branches, of unit length in the metric.
     """
 
     u: Array
     directions: tuple[Array, Array]
 
     def rays(self, heading: Array, weights: Array) -> Array:
-        """Back, onward and both ways of the other branch, shape (4, N + 1), for a path that comes along `heading`."""
+        """Rays back and onward along `heading`, and both ways of the other branch, shape (4, N + 1)."""
         along = [inner(weights, heading, d) for d in self.directions]
         k = int(np.argmax(np.abs(along)))
         onward, other = self.directions[k] * np.sign(along[k]), self.directions[1 - k]
@@ -64,23 +58,14 @@ class SimpleBranchPoint:
 
 @frozen(eq=False)
 class ScaledDerivative:
-    """H' in the units of a path.
-
-    Attributes
-    ----------
-    evaluator : Evaluator
-    extent : ndarray, shape (N + 1,)
-        By which columns are multiplied.
-    rows : ndarray, shape (N,)
-        By which rows are divided.
-    """
+    """H' in units of a path: columns times `extent`, rows divided by `rows`."""
 
     evaluator: Evaluator
     extent: Array
     rows: Array
 
     def at(self, u: Array) -> Matrix:
-        """H' at u, shape (N, N + 1), dense or sparse."""
+        """H', shape (N, N + 1), dense or sparse."""
         full = full_derivative(self.evaluator, u)
         if sp.issparse(full):
             full.data *= np.repeat(self.extent, np.diff(full.indptr)) / self.rows[full.indices]
@@ -88,7 +73,7 @@ class ScaledDerivative:
         return full * self.extent / self.rows[:, None]
 
     def second(self, u: Array, phi: Array, w: Array) -> Array:
-        """The row phi' H''[w, .], shape (N + 1,), by a central difference of H' along w."""
+        """The row phi' H''[w, .], by a central difference."""
         eps = SECOND / float(np.linalg.norm(w))
         move = eps * w * self.extent
         row: Array = (self.at(u + move).T @ phi - self.at(u - move).T @ phi) / (2.0 * eps)
@@ -96,7 +81,7 @@ class ScaledDerivative:
 
 
 def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
-    """H' = [H_y, H_lam], shape (N, N + 1), dense or sparse, an array of its own."""
+    """H' = [H_y, H_lam] as a new array, shape (N, N + 1), dense or sparse."""
     H_y, H_lam = evaluator.derivative(u[:-1], float(u[-1]))
     evaluator.counts.jacobians += 1
     column = np.asarray(H_lam, dtype=float)
@@ -110,7 +95,7 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
 
 
 def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> Array:
-    """The largest entry of each row of H' at some points, its columns in units of the path; 1 where there is none."""
+    """Largest entry of each row of H', in units of the path; 1 for a zero row."""
     sizes = np.zeros(extent.size - 1)
     for u in points:
         full = abs(full_derivative(evaluator, u))
@@ -124,20 +109,10 @@ def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) ->
 def branch_point_near(
     evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
 ) -> SimpleBranchPoint | None:
-    """Newton's method on H(u) + beta b = 0, gamma(u) = 0; None where that fails or finds no simple branch point.
+    """Solve H(u) + beta b = 0, gamma(u) = 0 by Newton's method; None if that finds no simple branch point.
 
-    The system is regular at a simple branch point, where beta = 0 (Govaerts, Section 8.1, with the imperfection as an
-    unknown). One factorisation and five evaluations of H' for each increment.
-
-    Parameters
-    ----------
-    evaluator : Evaluator
-    guess, heading : ndarray, shape (N + 1,)
-        About where; and about where a branch leads, as long as the point may be off the guess.
-    weights : ndarray, shape (N + 1,)
-        Of the metric of the path.
-    rows : ndarray, shape (N,)
-        What the rows of H' are made of; see `row_sizes`.
+    The system is regular at one, with beta = 0 (Govaerts, Section 8.1). An increment takes one factorisation and five
+    H'. `guess`, `heading`: approximate point and direction; |heading| bounds the correction. `rows`: see `row_sizes`.
     """
     extent, n = 1.0 / np.sqrt(weights), guess.size - 1
     scaled = ScaledDerivative(evaluator, extent, rows)
@@ -169,12 +144,12 @@ def branch_point_near(
 
     def done(size: float) -> bool:
         lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
-        # So near to a regular zero increments that no longer halve are round-off; if they grow, several ranks are lost.
+        # Here stalled increments are round-off; if they grow, several ranks are lost.
         near = size < POLISHED_NEARLY * max(newton.ratio, 1.0)
         return lost or size <= POLISHED or (near and newton.ratio >= HALVING)
 
     try:
-        # A matrix that is nearly singular may give what is not finite: no number of it is believed unchecked.
+        # Nearly singular matrices may give non-finite numbers.
         with np.errstate(all="ignore"):
             if not newton.run(increment, measure, done) or not newton.size <= POLISHED_NEARLY:
                 return None
@@ -182,13 +157,13 @@ def branch_point_near(
             here = at(u)
             if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
-            # Where Newton's method came to a halt early the point is known to its last increment only, and so is H'.
+            # After an early halt H' is known only to the last increment.
             if kernels(here.matrix, max(RANK, HALTED[1] * newton.size))[0].shape[1] > 2:
-                # Several ranks are lost: no border of one column and two rows makes that regular.
+                # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
             if newton.size > HALTED[0]:
-                # From near a regular zero the first increments may not halve; the next one is round-off. Where it is
-                # not, the zero is a multiple one: branches touch there, or more than two cross.
+                # At a regular zero one more increment is round-off; at a multiple one branches touch, or more than two
+                # cross.
                 newton.run(increment, measure, lambda size: True)
                 if newton.size > HALTED[0]:
                     return None
@@ -204,13 +179,11 @@ def branch_point_near(
 
 
 def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Array) -> tuple[Array, Array] | None:
-    """The directions of the two branches, in units of the path; None where no two branches cross transversally.
+    """Directions of two branches, in units of the path; None unless they cross transversally.
 
-    The roots of the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel
-    (Keller 1977; Allgower and Georg, Section 8.1).
+    The roots of sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 (Keller 1977; Allgower and Georg, Section 8.1).
     """
-    # The path's own direction first: it nearly is a root, and so no large term has to cancel where nothing is known of
-    # the size of an unknown that stands still.
+    # The path's direction, nearly a root, comes first to avoid cancellation.
     kernel = np.linalg.qr(here.right[0])[0]
     w = np.linalg.qr(kernel @ np.column_stack([kernel.T @ heading, generic_vector(2)]))[0]
     rows = [scaled.second(u, here.left[0][:, 0], w[:, i]) for i in range(2)]
@@ -218,7 +191,7 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     discriminant = b * b - a * c
     if not discriminant > DISTINCT_DIRECTIONS * (b * b + abs(a * c)):
         return None
-    # The two roots of a alpha^2 + 2 b alpha beta + c beta^2, in homogeneous coordinates, without cancellation.
+    # Homogeneous coordinates, without cancellation.
     root = np.sqrt(discriminant)
     q = -(b + (root if b >= 0 else -root))
     return w @ np.array([q, a]), w @ np.array([c, q])

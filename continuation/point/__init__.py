@@ -1,1 +1,1 @@
-"""A point of the path and the arc between two: linearization, projection onto the path, segments."""
+"""Points and arcs: linearisation, projection, segments."""

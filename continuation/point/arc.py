@@ -1,4 +1,4 @@
-"""The path between two accepted points: its segment, its length, its angle, and where on it a point lies."""
+"""The path between two accepted points."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from continuation.predictors import Prediction
 
 @frozen(eq=False)
 class Arc:
-    """The path from a to b, both linearized, in the pseudo-arclength parameter border . (u - a.u).
+    """The path from a to b, in the pseudo-arclength border . (u - a.u).
 
-    `length`: That parameter at b. `guide`: The segment, or what looks at the path made of it: where events are sought.
+    `length`: pseudo-arclength of b. `guide`: the segment or a better model, on which events are sought.
     """
 
     a: Linearization
@@ -30,7 +30,7 @@ class Arc:
 
     @property
     def samples(self) -> list[tuple[Array, Array]]:
-        """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
+        """Points inside the arc with tangents of about unit length, from the guide."""
         if not self._samples:
             guide = self.guide
             if isinstance(guide, PolynomialSegment):
@@ -42,44 +42,44 @@ class Arc:
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:
-        """The same just behind the beginning."""
+        """A point just behind the beginning."""
         return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
-    """The arc up to a point on it."""
+    """The arc up to a point."""
     if isinstance(arc.segment, SeriesSegment):
         return Arc(arc.a, end, arc.border, arc.segment.until(position(arc, end.u), end.u))
     return cubic_between(arc.a, end, arc.border)
 
 
 def position(arc: Arc, u: Array) -> float:
-    """Pseudo-arclength of a point on the arc, from its beginning."""
+    """Pseudo-arclength of a point from the arc's beginning."""
     return dot(arc.border, u - arc.a.u)
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
-    """The path between the two: the prediction where it is good enough for that, else the Hermite cubic."""
+    """The prediction's own segment, else the Hermite cubic."""
     border = a.border
-    # By name: an isinstance check of a Protocol costs more here than the rest of the function.
+    # hasattr is faster than isinstance of a Protocol.
     if hasattr(prediction, "segment"):
         return Arc(a, b, border, prediction.segment(dot(border, b.u - a.u), b.u))
     return cubic_between(a, b, border)
 
 
 def cubic_between(a: Linearization, b: Linearization, border: Array) -> Arc:
-    """The arc of the Hermite cubic, whose parameter is the pseudo-arclength along `border`."""
+    """The Hermite cubic's arc, in pseudo-arclength along `border`."""
     return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
 def angle_between(a: Linearization, b: Linearization) -> float:
-    """The angle between the tangents in the metric of a, radians."""
+    """Angle between tangents in the metric of a, radians."""
     cosine = inner(a.weights, a.tangent, b.tangent) / norm(a.weights, b.tangent)
     return math.acos(min(max(cosine, -1.0), 1.0))
 
 
 def length_between(a: Linearization, b: Linearization, angle: float) -> float:
-    """Arclength from a to b out of the chord: exact for a circle, an error of fifth order in the step otherwise."""
+    """Arclength from the chord: exact for a circle, else with an error of fifth order."""
     half = 0.5 * angle
     chord = norm(a.weights, b.u - a.u)
     return chord * (half / math.sin(half)) if half > 1e-8 else chord

@@ -1,4 +1,4 @@
-"""A point of the path with its factored derivative: tangent, orientation, and every later solve come from here."""
+"""A point of the path with its factored derivative."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from continuation.evaluation.evaluator import CountedSystem, Evaluator
 from continuation.metric import norm
 
 REFINED = 1e-14
-"""The last increment of a tangent that is refined as far as it goes, relative to its size: 50 units of round-off."""
+"""Relative last increment of a fully refined tangent: 50 units of round-off."""
 
 ROUND_OFF_LEFT = 1e3
-"""Where round-off ends the contraction earlier, a last increment within this factor of the one wanted will do."""
+"""A last increment within this factor is accepted if round-off ends the contraction."""
 
 TANGENT_LEAVES = 1e-6
-"""What an exact solve may find left of a tangent that was refined by another: six digits, as a step's tangent has."""
+"""Allowed defect, by an exact solve, of a tangent refined by an approximate solver: six digits."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
-"""The last increment of a refined solve, relative to its solution, and the one that will do where round-off ends the
-contraction: a series of order 30 at half its range still has nine digits with it."""
+"""Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
+at half its range."""
 
 NEAR_SINGULAR = 1e10
-"""How much longer than usual a solution may be before the matrix counts as singular: six digits are left then."""
+"""Growth of a solution that means a singular matrix; six digits remain."""
 
 TANGENT_REFINEMENT = Contraction(iterations=20, ratio=RELIABLE, first=MONOTONE)
-"""The first increment is of an error in general position, the second of what the factorisation leaves of it: that
-ratio need only be below one."""
+"""The first increment is of a general error, the second of what the factorisation leaves: their ratio need only be
+below one."""
 
 SOLVE_REFINEMENT = Contraction(iterations=8, ratio=RELIABLE)
 
 
 @frozen(eq=False)
 class Anchor:
-    """A factorisation and where it was made: the point and the border, from which it can be made again."""
+    """A factorisation, and what it can be remade from."""
 
     u: Array
     border: Array
@@ -50,12 +50,10 @@ class Anchor:
 
 @frozen(eq=False)
 class Linearization:
-    """A point, its tangent, and a factorisation of [H_y, H_lam] made there or nearby.
+    """A point u = (y, lam), its tangent, and a factorisation of [H_y, H_lam] made there (`exact`) or nearby.
 
-    `u`, of shape (N + 1,): The point (y, lam). `weights`, of shape (N + 1,): The metric there. `anchor`: The
-    factorisation. Where `exact` is false it was made at a point nearby: right for corrections, not for series.
-    `tangent`, of shape (N + 1,): Of unit length in the metric, H' tangent = 0, oriented. `orientation`: Sign of det
-    [[H'], [(W tangent)']]; 0 if the structure cannot tell.
+    `weights`: metric. `tangent`: unit, H' tangent = 0, oriented. `orientation`: sign of det [[H'], [(W tangent)']], 0
+    if unknown. Series need `exact`.
     """
 
     u: Array
@@ -64,7 +62,7 @@ class Linearization:
     tangent: Array
     orientation: int
     border: Array = field(init=False)
-    """The tangent in the dual metric, W tangent: border . tangent = 1."""
+    """W tangent, so border . tangent = 1."""
 
     @border.default
     def _border(self) -> Array:
@@ -73,12 +71,12 @@ class Linearization:
 
     @property
     def exact(self) -> bool:
-        """Whether the factorisation was made at the point itself."""
+        """Whether the factorisation was made at the point."""
         return np.array_equal(self.anchor.u, self.u)
 
     @property
     def y(self) -> Array:
-        """The unknowns, shape (N,)."""
+        """Unknowns, shape (N,)."""
         return self.u[:-1]
 
     @property
@@ -87,20 +85,19 @@ class Linearization:
         return float(self.u[-1])
 
     def solve(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
-        """Solve ``H' z = r, border . z = rho`` with the factorisation at hand, whatever the border.
+        """Solve ``H' z = r, border . z = rho`` for any border.
 
-        All solutions of H' z = r differ by multiples of the tangent, so another border costs one inner product and
-        no factorisation. The default border is W tangent: then z is the shortest solution when rho = 0, that is, the
-        Moore-Penrose inverse applied to r.
+        Solutions of H' z = r differ by multiples of the tangent. By default z with rho = 0 is the shortest
+        (Moore-Penrose).
         """
         return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
 
     def approximate(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
-        """The same for estimates, and for iterations that measure their own residual: see `CountedSystem`."""
+        """`solve` for iterations that measure their residual: see `CountedSystem`."""
         return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
 
     def blur(self, noise: Array) -> float:
-        """The length of what noise of the equations, shape (N,), makes of a correction, in two samples of its signs."""
+        """Length of a correction by noise of the equations, shape (N,): two samples of signs."""
         samples = (self.approximate(signs * noise) for signs in (1.0, np.sign(generic_vector(noise.size))))
         return max(norm(self.weights, sample) for sample in samples)
 
@@ -114,16 +111,16 @@ class Linearization:
         return corrected
 
     def with_weights(self, weights: Array) -> Linearization:
-        """The same point measured in another metric: the tangent keeps its direction, the factorisation stays."""
+        """The point in another metric."""
         tangent = self.tangent / norm(weights, self.tangent)
         return Linearization(self.u, weights, self.anchor, tangent, self.orientation)
 
 
 def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array) -> Linearization:
-    """Factor at u with the border `reference`; the tangent makes an acute angle with it.
+    """Factor at u; the tangent makes an acute angle with the border `reference`.
 
-    With M = [[H'], [reference']] and M v = e_{N+1}: det [[H'], [v']] = det(M) |v|^2, so the sign of the one
-    factorisation is the tangent's orientation (Allgower and Georg, Section 2.1).
+    With M = [[H'], [reference']] and M v = e_{N+1}, det [[H'], [v']] = det(M) |v|^2: one factorisation gives the
+    orientation (Allgower and Georg, Section 2.1).
     """
     system = evaluator.factor(u, reference)
     raw = system.solve(np.zeros(u.size - 1), 1.0)
@@ -140,14 +137,13 @@ def relinearize(
     accuracy: float = REFINED,
     guess: Array | None = None,
 ) -> Linearization:
-    """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
+    """Linearize at u with a nearby factorisation; the tangent v is refined to `accuracy`, with along . v > 0.
 
-    It begins with that of the factorisation, or with a multiple of `guess`, where somebody knows it better.
+    `guess`: about a multiple of the tangent.
 
-    Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
-    only if it contracts reliably, else u gets factors of its own. Where the determinant's sign counts
-    (`signed`), the refinement begins with an error in general position, of the metric's size in each component: if
-    M~^{-1} M had a negative eigenvalue, that part of the error would not shrink, so det M~ and det M have one sign.
+    Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. If
+    `signed`, it begins with a general error, which does not shrink if M~^{-1} M has a negative eigenvalue: so det M~
+    and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
@@ -162,7 +158,7 @@ def relinearize(
         tangent = _refined(apply, anchor, begin, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
-    # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
+    # The anchor's border may differ from `along`.
     flip = dot(along, tangent) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
@@ -171,10 +167,7 @@ def relinearize(
 def _refined(
     apply: Callable[[Array], Array], anchor: Anchor, guess: Array, weights: Array, accuracy: float
 ) -> Array | None:
-    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails.
-
-    Measured in the metric: the largest component is that of the smallest unit, and knows nothing of the others.
-    """
+    """The solution of M v = e_{N+1}, or None; measured in the metric, as the largest component depends on units."""
     refinement = Iteration(guess, TANGENT_REFINEMENT)
     solve, border = anchor.system.approximate, anchor.border
     v, longest = guess, norm(weights, guess)
@@ -186,14 +179,14 @@ def _refined(
                 break
             return None
         v = refinement.x
-        # The sum of lengths is a bound: the vector itself is measured only where that is met.
+        # A cheap bound of the norm comes first.
         longest += size
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
             break
         if refinement.count == TANGENT_REFINEMENT.iterations:
             return None
     if anchor.system.approximates:
-        # Increments of a solver that is not exact may be small because it does not see what is left.
+        # Small increments of an inexact solver may hide a defect.
         left = anchor.system.solve(-apply(v), 1.0 - dot(border, v))
         if norm(weights, left) > TANGENT_LEAVES * norm(weights, v):
             return None
@@ -202,7 +195,7 @@ def _refined(
 
 @frozen(eq=False)
 class RefinedSystem:
-    """A factorisation from nearby, made to solve with the matrix of the point itself by iterative refinement."""
+    """Refinement of a nearby factorisation for the point's own matrix."""
 
     near: CountedSystem
     apply: Callable[[Array], Array]
@@ -210,11 +203,11 @@ class RefinedSystem:
 
     @property
     def sign(self) -> int:
-        """As that of the factorisation: refinement converges only if the signs agree."""
+        """The factorisation's sign: refinement converges only if signs agree."""
         return self.near.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The bordered solve, to round-off; EvaluationError where refinement does not contract."""
+        """Solve to round-off; EvaluationError without contraction."""
         refinement = Iteration(self.near.solve(r, rho), SOLVE_REFINEMENT)
 
         def increment() -> Array:
@@ -228,9 +221,9 @@ class RefinedSystem:
 
 
 def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The same point with a system that solves for its own matrix: refined where a factorisation from nearby allows it.
+    """The point with exact solves for its own matrix.
 
-    What a series needs, since the error of each coefficient enters all the later ones.
+    Series need them: an error in a coefficient enters later ones.
     """
     if point.exact:
         return point
@@ -243,13 +236,13 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
         except EvaluationError:
             pass
         else:
-            # Its solves are counted by the factorisation nearby.
+            # The nearby factorisation counts its solves.
             return evolve(point, anchor=Anchor(point.u, near.border, CountedSystem(trial, Counts())))
     return factored(evaluator, point)
 
 
 def factored(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The same point, tangent and orientation with a factorisation of its own."""
+    """The point with its own factorisation."""
     return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border).anchor)
 
 

@@ -1,4 +1,4 @@
-"""The path between two accepted points, as a function of t in [0, 1]: cubic Hermite, or the predictor's own series."""
+"""The path between two accepted points as a function of t in [0, 1]."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ class Segment(Protocol):
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Where in (0, 1) to sample it so that no oscillation of it is missed."""
+        """Places in (0, 1) that miss no oscillation."""
         ...
 
     def at(self, t: float) -> Array:
-        """The point at t in [0, 1], shape (N + 1,)."""
+        """The point, shape (N + 1,)."""
         ...
 
     def derivative(self, t: float) -> Array:
-        """Its derivative with respect to t, shape (N + 1,)."""
+        """Derivative in t, shape (N + 1,)."""
         ...
 
 
 _QUARTERS = (0.25, 0.5, 0.75)
 CUBIC = len(_QUARTERS)
-"""How many samples a cubic has; a series has more."""
+"""Samples of a cubic; a series has more."""
 
 _POWERS = np.arange(1.0, 6.0)
 _SAMPLED = np.array(_QUARTERS)[:, None] ** _POWERS, _POWERS * np.array(_QUARTERS)[:, None] ** (_POWERS - 1.0)
-"""Powers of t from the first to the fifth at the quarters, and their derivatives."""
+"""Powers of t, first to fifth, at the quarters, and their derivatives."""
 
 
 @frozen(eq=False)
 class PolynomialSegment:
-    """``begin + c_1 t + c_2 t^2 + ...``, a cubic or a quintic: of a term that is a row of `coefficients`.
+    """``begin + c_1 t + c_2 t^2 + ...``; rows of `coefficients` are terms.
 
-    From the beginning, so that round-off is that of the way, not of a sum of large parts.
+    Relative to the beginning, so that round-off is that of the way.
     """
 
     begin: Array
@@ -50,7 +50,7 @@ class PolynomialSegment:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Quarters: the derivative of a cubic changes sign twice at most."""
+        """Quarters: a cubic's derivative changes sign at most twice."""
         return _QUARTERS
 
     def at(self, t: float) -> Array:
@@ -59,24 +59,24 @@ class PolynomialSegment:
         return point
 
     def derivative(self, t: float) -> Array:
-        """Its derivative at t."""
+        """Derivative at t."""
         powers = _POWERS[: len(self.coefficients)]
         slope: Array = (powers * t ** (powers - 1.0)) @ self.coefficients
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """All at once: a product of matrices costs less than one point by itself."""
+        """Points and derivatives inside, by one matrix product."""
         points, slopes = (list(table[:, : len(self.coefficients)] @ self.coefficients) for table in _SAMPLED)
         return [self.begin + point for point in points], slopes
 
     def bent(self, c: Array, d: Array) -> PolynomialSegment:
-        """The cubic and s^2 (c + d t), s = t (1 - t), which leaves the ends and the tangents there as they are."""
+        """The cubic plus s^2 (c + d t), s = t (1 - t): ends and tangents stay."""
         first, second, third = self.coefficients
         return PolynomialSegment(self.begin, np.array([first, second + c, third + d - 2.0 * c, c - 2.0 * d, d]))
 
 
 def cubic(u0: Array, u1: Array, d0: Array, d1: Array) -> PolynomialSegment:
-    """The cubic through two points with given derivatives with respect to t."""
+    """The cubic through two points with given derivatives in t."""
     way = u1 - u0
     return PolynomialSegment(u0, np.array([d0, 3.0 * way - 2.0 * d0 - d1, d0 + d1 - 2.0 * way]))
 
@@ -85,11 +85,11 @@ _SIXTEENTHS = tuple(k / 16 for k in range(1, 16))
 
 
 class Curve(Protocol):
-    """A series in pseudo-arclength, trusted up to `reach`."""
+    """A series in pseudo-arclength."""
 
     @property
     def reach(self) -> float:
-        """The longest step for which it is trusted."""
+        """Longest trusted step."""
         ...
 
     def __call__(self, h: float) -> Array:
@@ -97,16 +97,15 @@ class Curve(Protocol):
         ...
 
     def derivative(self, h: float) -> Array:
-        """du/dh."""
+        """Derivative du/dh."""
         ...
 
 
 @frozen(eq=False)
 class SeriesSegment:
-    """The path between two accepted points by a series at the first, made to end on the second.
+    """A series at the first point, made to end on the second.
 
-    What the series leaves at the end is its first neglected term, so it is restored as t^power times the gap, which is
-    worth one more order in between.
+    Its gap there is the first neglected term; t^power times the gap gains an order.
     """
 
     curve: Curve
@@ -116,7 +115,7 @@ class SeriesSegment:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Sixteenths: a series may turn several times within its range."""
+        """Sixteenths: a series may turn several times."""
         return _SIXTEENTHS
 
     def at(self, t: float) -> Array:
@@ -125,34 +124,30 @@ class SeriesSegment:
         return point
 
     def derivative(self, t: float) -> Array:
-        """Its derivative at t."""
+        """Derivative at t."""
         slope: Array = self.length * self.curve.derivative(t * self.length)
         return slope + self.power * t ** (self.power - 1) * self.gap
 
     def until(self, sigma: float, end: Array) -> SeriesSegment:
-        """The same series to the new end."""
+        """The series up to a new end."""
         return SeriesSegment(self.curve, sigma, end - self.curve(sigma), self.power)
 
 
 def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> PolynomialSegment:
-    """The cubic of Hermite in the pseudo-arclength parameter sigma = border . (u - u0), rescaled to [0, 1].
+    """The Hermite cubic in sigma = border . (u - u0), rescaled to [0, 1].
 
-    The derivative of the path with respect to sigma is v / (border . v), which needs no estimate of the arclength.
+    du/dsigma is v / (border . v), without an estimate of arclength.
     """
     sigma = dot(border, u1 - u0)
     return cubic(u0, u1, v0 * (sigma / dot(border, v0)), v1 * (sigma / dot(border, v1)))
 
 
 _NODES, _WEIGHTS = (tuple(map(float, values)) for values in np.polynomial.legendre.leggauss(8))
-"""Gauss' rule on [-1, 1]: its nodes are eigenvalues, not to be computed for every point."""
+"""Gauss' rule on [-1, 1], computed once."""
 
 
 def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
-    """The t at which a fraction of the segment's arclength lies behind.
-
-    The speed is integrated by Gauss' rule on the piece, and t found by Newton's method, which that speed makes
-    quadratic; three rounds serve segments that turn by a right angle.
-    """
+    """The t at a fraction of the arclength, by Newton's method on Gauss quadrature."""
     if fraction <= 0.0 or fraction >= 1.0:
         return min(max(fraction, 0.0), 1.0)
 
