@@ -180,7 +180,15 @@ class InteriorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """As those of Wang's homotopy for an LCP; of directions the pairs alone."""
+        """As those of Wang's homotopy for an LCP; of directions the pairs alone.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        one : float
+            1 at a point; 0 for a direction, of which constants are no part.
+        """
         n, sides = self.problem.n, self.sides
         x, forces = y[:n], y[n:]
         if not one:

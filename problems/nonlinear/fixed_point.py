@@ -59,7 +59,14 @@ class FixedPointHomotopy:
 
     @quiet
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y), at the price of one evaluation of F."""
+        """(H_y, H_lam) from slope = F'(y), at the price of one evaluation of F.
+
+        Parameters
+        ----------
+        slope : ndarray or sparse array, shape (n, n)
+        y : ndarray, shape (n,)
+        lam : float
+        """
         return blend_with_identity(slope, lam), y - self.a - self.F(y)
 
 

@@ -62,7 +62,14 @@ class NewtonHomotopy:
         return self.F(y) - lam * self.value
 
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y)."""
+        """(H_y, H_lam) from slope = F'(y).
+
+        Parameters
+        ----------
+        slope : ndarray or sparse array, shape (n, n)
+        y : ndarray, shape (n,)
+        lam : float
+        """
         return slope, -self.value
 
 

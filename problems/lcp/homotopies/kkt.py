@@ -206,7 +206,15 @@ class KKTHomotopy:
         return self.rows.split(y)
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Stationarity and x - x0; factors z1, z2, up - low - z2, and distances, w, t."""
+        """Stationarity and x - x0; factors z1, z2, up - low - z2, and distances, w, t.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        one : float
+            1 at a point; 0 for a direction, of which constants are no part.
+        """
         rows, start = self.rows, self.origin
         n, m, k = rows.ends
         x, z1, z2, t = y[:n], y[n:m], y[m:k], y[k:]

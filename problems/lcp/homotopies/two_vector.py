@@ -122,7 +122,15 @@ class TwoVectorHomotopy:
         return np.concatenate([x, forces])
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Ax + q - y and its blend at lambda = 1; factors y and distances."""
+        """Ax + q - y and its blend at lambda = 1; factors y and distances.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        one : float
+            1 at a point; 0 for a direction, of which constants are no part.
+        """
         n, blend, sides = self.n, self.blend, self.sides
         x, y = y[:n], y[n:]
         if one:
