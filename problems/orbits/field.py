@@ -24,8 +24,7 @@ CENTRAL_STEP = float(np.cbrt(np.finfo(float).eps))
 
 @frozen(eq=False)
 class Field:
-    """`function` takes x of shape (n,), or (n, k) if `columns`, complex if `complexes`. `own`: the user's (f_x, f_p).
-    """
+    """`function` takes x of shape (n,), or (n, k) if `columns`, complex if `complexes`. `own`: given (f_x, f_p)."""
 
     function: Callable[..., Any]
     columns: bool
