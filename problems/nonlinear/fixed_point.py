@@ -18,21 +18,19 @@ from problems.options import quiet
 class FixedPointHomotopy:
     """H(x, lam) = (1 - lam) F(x) + lam (x - a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
-    It has no `jacobian`; `fixed_point` adds one where F has a derivative.
-
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)`` for x of shape (n,).
+        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start. For almost every one the path is a regular curve.
+        Start; for almost every a the path is regular.
 
     Raises
     ------
     TypeError
-        If F is not callable, or returns no numpy array.
+        If F does not return an array.
     ValueError
-        If `a` or F(a) is no finite real vector, or their shapes differ.
+        If `a` or F(a) is not finite, or shapes differ.
 
     References
     ----------
@@ -59,24 +57,21 @@ class FixedPointHomotopy:
 
     @quiet
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y), at the price of one evaluation of F."""
+        """(H_y, H_lam) from slope = F'(y); evaluates F once."""
         return blend_with_identity(slope, lam), y - self.a - self.F(y)
 
 
 def fixed_point(
     F: Function, a: Any, jacobian: Jacobian | None = None
 ) -> FixedPointHomotopy | Differentiable[FixedPointHomotopy]:
-    """The fixed-point homotopy of F from `a`, see `FixedPointHomotopy`.
+    """The fixed-point homotopy of F, see `FixedPointHomotopy`.
 
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start.
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``, F' as a dense array, a scipy sparse array, `Banded`, `Symmetric` or a
-        LinearOperator; without it the homotopy has no `jacobian` either.
+        ``jacobian(x) -> (n, n)``: dense or scipy sparse, `Banded`, `Symmetric` or LinearOperator.
     """
     homotopy = FixedPointHomotopy(F, a)
     return homotopy if jacobian is None else Differentiable(homotopy, jacobian)
