@@ -1,8 +1,8 @@
-"""The ten examples of the paper, and two counterexamples to its theorems, as data.
+"""The ten examples of the paper, and two counterexamples to its theorems.
 
-Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
-Matrices, starts, solutions and iteration counts are typed as printed; misprints are noted beside them. The class in
-`true_class` and the exact solutions were recomputed in rational arithmetic from all principal minors and all bases.
+Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems". Data are
+typed as printed, with misprints noted. `true_class` and exact solutions were recomputed in rational arithmetic from all
+principal minors and bases.
 """
 
 from __future__ import annotations
@@ -17,41 +17,41 @@ from problems.lcp import LCP
 
 
 def _array(value: object) -> Array:
-    """A read-only float array, so that the data shared by everybody stay what they are."""
+    """A read-only float array, since the data are shared."""
     array: Array = np.array(value, dtype=float)
     array.flags.writeable = False
     return array
 
 
 def _exact(*solutions: str) -> tuple[tuple[Fraction, ...], ...]:
-    """Each string is one solution, its components separated by blanks."""
+    """Convert solutions, one string each with components separated by blanks."""
     return tuple(tuple(Fraction(component) for component in solution.split()) for solution in solutions)
 
 
 @frozen(eq=False, kw_only=True)
 class Example:
-    """One numerical example of the paper.
+    """One example of the paper.
 
     Attributes
     ----------
     number : int
         1 to 10, in the paper's order.
     label : str
-        The paper's LaTeX label.
+        LaTeX label.
     stated_class, true_class : str
-        The matrix class as the paper states it, and what the principal minors and short proofs say.
+        Matrix class in the paper, and by principal minors and short proofs.
     A : Array of shape (n, n)
     q, x0, z1, z2 : Array of shape (n,)
-        The data and the paper's start, at which z1 = z2 = e.
+        Data and the paper's start, with z1 = z2 = e.
     printed_solution : Array of shape (n,)
-        The solution x that the paper prints, with its digits.
+        Printed x.
     printed_point : Array
-        The whole end point (x, z1, z2, lambda) as printed, misprints included.
+        Printed end point (x, z1, z2, lambda), with misprints.
     printed_iterations : int
     solutions : tuple of tuple of Fraction
-        All solutions of the LCP, exact for the decimals as printed; the one that the paper prints comes first.
+        All solutions, exact for the printed decimals; the printed one first.
     remarks : str
-        Misprints and corrections, empty if there are none.
+        Misprints and corrections.
     """
 
     number: int
@@ -69,12 +69,12 @@ class Example:
 
     @property
     def z1(self) -> Array:
-        """The paper's starting multiplier of x >= 0: all ones, shape (n,)."""
+        """The paper's start for the multiplier of x >= 0: ones, shape (n,)."""
         return np.ones(self.q.size)
 
     @property
     def z2(self) -> Array:
-        """The paper's starting multiplier of A x + q >= 0: all ones, shape (n,)."""
+        """The paper's start for the multiplier of A x + q >= 0: ones, shape (n,)."""
         return np.ones(self.q.size)
 
     @property
@@ -85,19 +85,18 @@ class Example:
 
 @frozen(eq=False, kw_only=True)
 class Counterexample:
-    """A strictly feasible LCP without solution, of a class on which the paper says that the path's end is one.
+    """A strictly feasible LCP without solution, of a class on which the paper claims that the path ends at one.
 
     Attributes
     ----------
     matrix_class : str
-        The class of A.
     A : Array of shape (n, n)
     q, x0 : Array of shape (n,)
-        The data and a strictly feasible start; z1 = z2 = e.
+        Data and strictly feasible start; z1 = z2 = e.
     end : Array of shape (n,)
-        x at the end of the KKT path, to the digits typed.
+        x at the KKT path's end, to the digits typed.
     refutes, why : str
-        The statement that fails, and the reason.
+        Refuted statement, and reason.
     """
 
     matrix_class: str
@@ -265,7 +264,7 @@ EXAMPLES: tuple[Example, ...] = (
         remarks="The path turns twice in lambda. The paper's matrix is not symmetric: -80, -70 against -70, -50.",
     ),
 )  # fmt: skip
-"""The ten examples in the paper's order."""
+"""In the paper's order."""
 
 COUNTEREXAMPLES: tuple[Counterexample, ...] = (
     Counterexample(
@@ -289,4 +288,4 @@ COUNTEREXAMPLES: tuple[Counterexample, ...] = (
         "w = (1, 0), where x_0 w_0 = 2; the proof takes W_q + X_q (A')_qq for a principal minor of A.",
     ),
 )
-"""Two strictly feasible LCPs without solution, whose KKT paths end at stationary points."""
+"""Their KKT paths end at stationary points."""

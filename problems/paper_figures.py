@@ -1,4 +1,4 @@
-"""The figures of the paper, drawn from accurately traced paths: x against lambda, one panel an example."""
+"""The paper's figures from accurate paths: x against lambda, one panel per example."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from continuation.plot.drawing import TURN, require_matplotlib
 from problems.paper import Example
 
 ZOOM = (0.1, 0.2, 0.5, 0.5)
-"""Where in a panel the neighbourhood of turning points is shown enlarged: left, bottom, width, height."""
+"""Inset that enlarges turning points: left, bottom, width, height."""
 
 
 def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: int = 5) -> Any:
-    """One panel an example, lambda from 1 on the left to 0 on the right, turning points as open circles.
+    """Draw one panel per example, lambda from 1 to 0, turning points as open circles.
 
-    `paths`: Their KKT paths, y = (x, z1, z2). `columns`: Panels in a row. Raises `ImportError` without matplotlib.
+    `paths`: KKT paths, y = (x, z1, z2). `columns`: panels per row. Raises `ImportError` without matplotlib.
     """
     require_matplotlib()
     from matplotlib.figure import Figure
@@ -38,7 +38,7 @@ def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: i
 
 
 def draw_example(example: Example, path: Path, axes: Any) -> None:
-    """The components of x into one panel, enlarged where the path turns; a title with the number and the class."""
+    """Draw x into one panel, with an inset where the path turns."""
     _draw_x(example, path, axes)
     axes.set_xlim(1.03, -0.03)
     axes.set_title(f"{example.number}: {_typeset(example.stated_class)}", fontsize="medium")
@@ -60,13 +60,13 @@ def _draw_x(example: Example, path: Path, axes: Any) -> None:
 
 
 def _key(figure: Any, fullest: Any) -> None:
-    """One legend below all panels: a component has the same line in each."""
+    """One legend below all panels."""
     handles, labels = fullest.get_legend_handles_labels()
     handles.append(figure.axes[0].plot([], [], **TURN)[0])
     figure.legend(handles, [*labels, "turning point"], loc="outside lower center", ncols=len(handles), frameon=False)
 
 
 def _typeset(matrix_class: str) -> str:
-    """The letters of a class as the literature sets them: N-bar with its bar, Q0 with its index."""
+    """TeX notation of a class: N-bar, E0^s, Q0."""
     text = matrix_class.replace("N-bar", r"$\bar{N}$").replace("E0^s", "$E_0^s$")
     return re.sub(r"\b([A-Z])0\b", r"$\1_0$", text)

@@ -1,4 +1,4 @@
-"""Who solves what: every method of the library on the ten examples, each from the paper's start where it takes one."""
+"""Compare every method on the ten examples, from the paper's start if it takes one."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ METHODS: Mapping[str, Method] = {
     **{name: direct(name, *DIRECT[title][1:]) for name, title in
        (("lemke", "Lemke"), ("modulus", "modulus"), ("min-newton", "min-Newton"))},
 }  # fmt: skip
-"""By the name that the command line takes."""
+"""Methods by command-line name."""
 
 
 def compare(examples: Iterable[Example], names: Sequence[str]) -> Results:
-    """Every named method on every example; the names are of `METHODS`."""
+    """Run named `METHODS` on every example."""
     problems = [
         Problem(str(one.number), one.problem, options={"x0": one.x0, "z": one.z1}, family="ten examples")
         for one in examples
@@ -49,7 +49,7 @@ def compare(examples: Iterable[Example], names: Sequence[str]) -> Results:
 
 
 def matrix(results: Results) -> str:
-    """A line a method, a column an example: the work of those that solve it, in words why the others do not."""
+    """A line per method, a column per example: work, or reason of failure."""
     lines = [(method, *map(_cell, results.of(method=method))) for method in results.methods]
     return Table(("example", *results.problems), lines).text()
 

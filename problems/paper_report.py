@@ -1,4 +1,4 @@
-"""The ten examples traced accurately from the paper's starts, beside its own algorithm: rows, table, archive."""
+"""The ten examples: accurate paths from the paper's starts, and the paper's algorithm."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ from problems.literal import LiteralRun, run_literally
 from problems.paper import Example
 
 SOLVED_TO = 1e-6
-"""Example 7 ends like the square root of lambda, so its pure path is good to about this; the others do far better."""
+"""Residual of a solution: example 7 ends like the square root of lambda, so its path is good to about this; others are
+far better."""
 
 TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
 
 
 @frozen(eq=False)
 class Row:
-    """One example: its accurate path, and the run of the literal algorithm."""
+    """An example with its accurate path and the literal algorithm's run."""
 
     example: Example
     path: Path
@@ -37,30 +38,30 @@ class Row:
 
     @property
     def x(self) -> Array:
-        """X at the end of the path, shape (n,)."""
+        """The path's last x, shape (n,)."""
         return self.path.endpoint.y[: self.example.q.size]
 
     @property
     def residual(self) -> float:
-        """The natural residual there."""
+        """Its natural residual."""
         return certify(self.example.problem, self.x).residual
 
     @property
     def solved(self) -> bool:
-        """Whether x solves the LCP, to `SOLVED_TO`."""
+        """Whether it solves the LCP to `SOLVED_TO`."""
         return certify(self.example.problem, self.x).solves(SOLVED_TO)
 
 
 def trace_example(example: Example, observers: tuple[Observer, ...] = ()) -> Path:
-    """The KKT path from the paper's start, by the engine's default parts."""
+    """The KKT path from the paper's start, with default parts."""
     return continuation.trace(KKTHomotopy(example.problem, example.x0, example.z1, example.z2), observers=observers)
 
 
 def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> list[Row]:
-    """Trace the examples, write all paths to one new archive, and run the literal algorithm.
+    """Trace the examples into a new archive, and run the literal algorithm.
 
-    `archive`: Must not exist. Besides the paths it holds a group `examples` with A, q and x0 of each. Raises
-    `ArchiveError` if it exists or cannot be written.
+    `archive`: also holds A, q and x0 of each example in group `examples`. Raises `ArchiveError` if it exists or cannot
+    be written.
     """
     unknowns = 3 * max(example.q.size for example in examples)
     with PathLog(archive, title=TITLE) as log:
@@ -73,7 +74,7 @@ def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> l
 
 
 def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> None:
-    """A, q and x0 of each example, so that each end can be certified again from the file alone."""
+    """Store A, q and x0, so that ends can be certified from the file alone."""
     with h5py.File(archive, "r+") as file:
         for example in examples:
             group = file.create_group(f"examples/{example.number}")
@@ -83,7 +84,7 @@ def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> No
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The rows as text: example, class, end, work, and the two iteration counts."""
+    """The rows as text."""
     head = ("#", "class", "x at the end", "residual", "steps", "factor.", "turns", "paper", "literal", "status")
     return Table(head, [_cells(row) for row in rows]).text()
 
@@ -105,7 +106,7 @@ def _cells(row: Row) -> Sequence[Cell]:
 
 
 def remarks(rows: Sequence[Row]) -> list[str]:
-    """Remarks below the table: false claims of the literal algorithm, paths that end before the target."""
+    """Remarks below the table: false claims of the literal algorithm, paths that stop early."""
     found = [
         f"* Example {row.example.number}: the algorithm as printed claims to solve it at x = {show(row.literal.x)}, "
         f"where the natural residual is {row.literal.residual:.2g}: it has jumped to another path."
@@ -121,11 +122,11 @@ def remarks(rows: Sequence[Row]) -> list[str]:
 
 
 def _true(literal: LiteralRun) -> bool:
-    """Whether the literal algorithm claims nothing false."""
+    """Whether the literal algorithm makes no false claim."""
     return literal.solved or not literal.claims_solution
 
 
 def show(x: Array, digits: int = 7) -> str:
-    """A vector as short text; components that are zero to the accuracy of a path as 0."""
+    """A vector as short text, negligible components as 0."""
     size = float(np.abs(x).max())
     return "(" + ", ".join("0" if abs(value) <= SOLVED_TO * size else f"{value:.{digits}g}" for value in x) + ")"
