@@ -1,8 +1,8 @@
-"""Degenerate branch points: where branches touch, more than two cross, or H' loses several ranks at once.
+"""Degenerate branch points: branches touch, more than two cross, or H' loses several ranks.
 
-There z, the real eigenvalue of M_a^-1 M along an arc, goes like (1 - t / s)^m with m > 1, or several eigenvalues vanish
-together, of which a Krylov space shows one. z over its slope has a simple zero at s whatever m is, and the slope 1 / m
-there: the secant method finds both. The path goes straight on, as it does along a branch that symmetry keeps.
+Near one, the eigenvalue z of `crossing` is like (1 - t / s)^m with m > 1, or several vanish together, of which a Krylov
+space shows one. The ratio of z to its slope has a simple zero at s with slope 1 / m: the secant method finds both. The
+path goes straight on, as along a branch with symmetry.
 """
 
 from __future__ import annotations
@@ -25,26 +25,25 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
 SECANTS_OF_Z = 20
-"""Of the secant method; four or five are usual."""
+"""Four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""The step of the slope of z, of the way that is left; the order that is assumed first, so that a double zero is not
-met at once; and the order of a zero beyond which it is no simple one."""
+"""Difference step relative to the distance from s; first order assumed, which avoids double zeros; largest order of a
+simple zero."""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""What round-off in H may make of z where it is said to vanish: more, and nothing is known of it; and what round-off in
-the products that tell z does."""
+"""Above the first, round-off in H leaves z unknown; the second is round-off of the products that give z."""
 
 FARTHEST = 3.0
-"""So far ahead, in arcs, it is looked for."""
+"""Search limit ahead, in arcs."""
 
 
 @frozen(eq=False)
 class BranchPointOnArc:
     """A branch point on an arc or ahead of it.
 
-    `simple`: None for a degenerate one. `order`: Of the zero of z. `lost`: How many ranks H' loses there. `alone`:
-    Whether no other branch point lies so near that its eigenvalue may be taken for one of these.
+    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no other branch point
+    nearby could be confused with it.
     """
 
     u: Array
@@ -55,11 +54,11 @@ class BranchPointOnArc:
 
     @property
     def odd(self) -> bool:
-        """Whether the determinant's sign changes there."""
+        """Whether the determinant changes sign."""
         return bool(round(self.order) * self.lost % 2)
 
     def expected(self, t: float, s: float) -> float:
-        """What is told at t of an eigenvalue that vanishes at s."""
+        """1 - z at t of an eigenvalue that vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -67,30 +66,28 @@ class BranchPointOnArc:
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point to which a look at t leads; None where there is none.
+    """The degenerate branch point to which a sample at t leads, or None.
 
-    Eigenvalues that vanish together may come to zero at different rates: that H' loses several ranks may be told at the
-    point alone.
+    Eigenvalues may vanish at different rates, so the loss of several ranks may show only at the point.
 
     Parameters
     ----------
     solver : PathSolver
     arc : Arc
     prediction : Prediction
-        Of the arc.
     t : float
-        Where on the arc z has fallen.
+        Position where z has fallen.
     z_at : callable
-        From a place on the arc and a point there to z; NaN where it is not told.
+        z from a position and a point; NaN if unknown.
     lost : int
-        How many eigenvalues are like z at t.
+        Number of eigenvalues like z.
 
     Returns
     -------
     u : ndarray, shape (N + 1,)
-        The point, as near as round-off in H allows.
+        The point, up to round-off in H.
     order : float
-        Of the zero of z, about.
+        Of the zero, about.
     """
 
     def beside(place: float) -> float:
@@ -99,7 +96,7 @@ def degenerate_point(
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
         if lost > 1 or order <= SIMPLE_ORDER:
-            # The symmetry that makes eigenvalues vanish together keeps the prediction from what they would magnify.
+            # Symmetry keeps predictions clear of the vanishing eigenvalues, which would magnify errors.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return solver.project(arc.a, u, arc.a.border)[0]
@@ -109,14 +106,14 @@ def degenerate_point(
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
         if ahead <= 0.0 > z:
-            # Far behind the point: it lies about where a straight line from 1 at the arc's beginning is zero.
+            # Far behind the point, a straight line from 1 at the arc's beginning estimates it.
             ahead = 0.5 * (t + t / (1.0 - z))
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        # A smooth z has a zero of the first order at least.
+        # A smooth zero has order 1 at least.
         order = max((ahead - t) / (beyond - left), 1.0)
-        # From here on the path: beside a degenerate point a place on it may cost factorisations.
+        # From here points lie on the path, which may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
@@ -124,7 +121,7 @@ def degenerate_point(
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                # Where M_a is itself nearly singular its round-off is what is left of z.
+                # A nearly singular M_a leaves its round-off in z.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
             if before:
                 order = max((t - before) / (left - last), 1.0)
@@ -132,13 +129,13 @@ def degenerate_point(
             if not 0.0 < t < FARTHEST:
                 return None
     except ArithmeticError:
-        # No value there, or two looks of the secant method that are one.
+        # No value, or coinciding secant points.
         pass
     return None
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """The pair of z at a place and z over its slope there, by a difference towards the beginning; 0 if that is none."""
+    """Pairs z and z over its slope at t, by a backward difference; 0 without slope."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
@@ -146,10 +143,7 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """What round-off in H makes of z: its change as far beside the path as H stays round-off; 0 if that is too much.
-
-    Near a degenerate point that is far, since H' has nearly lost its rank.
-    """
+    """Change of z by round-off in H, from a step across which H stays round-off; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)

@@ -1,9 +1,8 @@
-"""How far a path goes before it turns: the first scale of each component, and the first step.
+"""Initial scales of components, from the distance along which a path turns.
 
-Nothing here depends on units or on where zero is. The nonlinearity of H along the tangent v is measured, as Deuflhard's
-affine covariant theory does (Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1): at u + h v the simplified
-Newton corrections d and e are computed; |d_i| / (h |v_i|), in the median over the components, says how far the path has
-turned, and |e| / |d| how far the equations have changed. Both grow like h.
+Results are independent of units and origin. Simplified Newton corrections d and e at u + h v, v the tangent, measure
+nonlinearity (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1): the median of |d_i| / (h |v_i|)
+says how far the path has turned, |e| / |d| how far the equations have changed. Both grow like h.
 """
 
 from __future__ import annotations
@@ -21,50 +20,50 @@ from continuation.evaluation.noise import ENDLESS, allowed_along
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
-"""The nonlinearity at the extent. Between 0.1 and 0.5 factorisations on twelve problems differ by a tenth."""
+"""Nonlinearity at the extent. From 0.1 to 0.5, factorisations on twelve problems differ by a tenth."""
 
 AROUND = 1.001
-"""The search ends within this factor of TURN; from there the nonlinearity grows like a power of the length. The extent
-is then known to about the square of that: where the search began depends on where zero is, and where it ends must not.
-With 1.05 shifts changed the extent by a hundredth, and factorisations on Bratu's problem by a factor of two."""
+"""The search ends within this factor of TURN; a power law gives the rest, to about the square of this factor. The
+origin affects the search's start and must not affect its end: with 1.05, shifts changed extents by a hundredth and
+factorisations on Bratu's problem by a factor of two."""
 
 POWERS = 0.5, 4.0
-"""Between these that power is looked for: one is usual, two where the path is symmetric about its start."""
+"""Bounds of that power: one is usual, two on a path symmetric about its start."""
 
 FIRST_STEP = 0.3
-"""The first step, in extents: it turns by about a third of TURN, where the controllers aim at 0.4 radians."""
+"""First step in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
 
 SEARCH_START = 1e-3
-"""Where the search begins, in ways to the target: far enough inside that the first turn is not jumped over."""
+"""First length over the distance to the target, small enough not to jump over the first turn."""
 
 LENGTHS_TRIED = 40
-"""At most so many lengths are tried; five are usual."""
+"""Five are usual."""
 
 GROWTH = 30.0
-"""The next length is at most so many times the one before: the nonlinearity of a straight beginning says nothing."""
+"""Largest ratio of successive lengths: a straight beginning shows no nonlinearity."""
 
 STRAIGHT_LENGTH = 1e30
-"""A path without a target that is straight to this length, relative to its start, has no scale."""
+"""A path without target that is straight so far, relative to its start, has no scale."""
 
 STANDSTILL = 1e-60
-"""A component that moves by no more than this part of the one that moves most, whatever their units, stands still."""
+"""A component that moves by at most this part of the largest motion, in any units, stands still."""
 
 STILL_PIECEWISE = 1e-13
-"""The same on a piece of a piecewise smooth map, where components do stand still but for the last digits of others;
-units thirteen orders apart are no longer told from that."""
+"""STANDSTILL on smooth pieces, where components stand still up to others' round-off; units thirteen orders apart look
+alike."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
-refinement changes by more than the second are."""
+"""Tangent components below the first, relative to the largest, may be round-off; those that refinement changes by more
+than the second are."""
 
 UNCERTAIN = 100.0
-"""Corrections up to so many times what round-off makes of them, in two samples of its signs, say nothing."""
+"""Corrections below so many times their round-off, in two samples of signs, are ignored."""
 
 SWEEPS = 10
-"""Of Sinkhorn's iteration: units are known to a small factor then, which is all that a metric needs."""
+"""Of Sinkhorn's iteration: a metric needs units to a small factor only."""
 
 OTHER_UNITS = 1e4
-"""The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
+"""Nonlinearity above which a size has other units; six symmetric trunks in units of 1 gave 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -76,31 +75,29 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """How far each component goes while the path turns by about TURN, or to a nearer target; and its noise.
+    """Motion of each component until the path turns by about TURN, or to a nearer target; and its noise.
 
     Parameters
     ----------
     evaluator : Evaluator
     point : Linearization
-        At the start, in whatever metric.
+        Start, in any metric.
     target : float or None
     residual : ndarray, shape (N,)
-        H at the point: a start need not lie on the path to the last digit.
+        H at the start, which may lie slightly off the path.
     farthest : float
-        How far along the tangent is far where there is no target: a path of straight pieces has no other scale. Finite
-        for these alone.
+        Scale without a target, finite for piecewise straight paths alone.
     room : float
-        How far along the tangent the path ends on a value that was asked for, if it is straight.
+        Distance along the tangent to a requested end.
     sizes : ndarray, shape (N + 1,), optional
-        How large the components are, about: what moves by less than their round-off then stands still.
+        Component sizes; motion below their round-off is ignored.
 
     Returns
     -------
     extent : ndarray, shape (N + 1,)
-        Positive. A component that does not move, or by round-off alone, is given the median of the others, in their
-        sizes if these are known.
+        Positive. Still components get the median of the others, in their sizes if known.
     blur : ndarray, shape (N + 1,)
-        What noise in H, and in the last places of u, makes of each component: |H'^-1| times the noise.
+        |H'^-1| times the noise in H and in the last digits of u.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -116,11 +113,10 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
+    # Without a target, the nearest change of a component by its own size is safe.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # Zero has no last place: terms that vanish there, as those of a structure at rest do, have no noise, and have it
-    # where the search begins.
+    # Terms that vanish at zero, as for a structure at rest, have noise only away from it.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -128,8 +124,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Across the path: first with that component held which is known best beside its motion; one that stands still holds
-    # nothing, even where no noise is seen in it.
+    # Hold the moving component known best relative to its motion.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
@@ -142,9 +137,9 @@ def initial_extent(
         try:
             d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)))
         except Exception:
-            # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
+            # The step that needs this point reports exceptions.
             d, turned = off, np.inf
-        # From a fold the parameter moves by the correction alone.
+        # At a fold only the correction moves the parameter.
         turned = max(turned, TURN * abs((h * v[-1] + d[-1]) / gap))
         if before[1] > 0.0 and 0.0 < turned < np.inf and h != before[0]:
             power = min(max(float(np.log(turned / before[1]) / np.log(h / before[0])), POWERS[0]), POWERS[1])
@@ -160,7 +155,7 @@ def initial_extent(
             low = found = h
             off = d
             if h > STRAIGHT_LENGTH:
-                # Nothing but the start's own size is left to measure by.
+                # Only the start's size is left as a scale.
                 found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
                 break
         h *= min(max(rest, 0.1), GROWTH)
@@ -183,9 +178,8 @@ def initial_extent(
 
 
 def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
-    """The units of unknowns that stand still, beside each other: those in which their columns of H_y are of one size.
-
-    Found by Sinkhorn's iteration with the rows of H_y, whose units are unknown too. Ones where H_y is no matrix.
+    """Relative units of still unknowns that equalise their columns of H_y, by Sinkhorn's iteration; ones without a
+    matrix.
     """
     ones = np.ones(still.size)
     H_y = evaluator.matrix(u) if still.sum() > 1 else None
@@ -206,10 +200,10 @@ def _inverse(sums: Array) -> Array:
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """By what the size of components that stand still is multiplied, so that H is about linear that far from the path.
+    """Factor for sizes of still components that keeps H about linear so far from the path.
 
-    Sizes of others say nothing of their units. Where the path is a symmetric trunk, branches leave in these components:
-    measured by ever so much too much, what is round-off of others is a branch's whole length.
+    Branches leave a symmetric trunk in these components: with far too large sizes, others' round-off is longer than a
+    branch.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -221,17 +215,16 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
             turned = np.inf
         if turned <= OTHER_UNITS:
             break
-        # The terms that matter are of second order or of third; the root suits the latter.
+        # Second- or third-order terms matter; the root suits the latter.
         h *= max(np.sqrt(TURN / turned), TURN / GROWTH)
     return h
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
-    """The tangent, with zeros for components that are round-off.
+    """Set round-off components of the tangent to zero.
 
-    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells, with H' at a point that H
-    does not tell from this one: a few units in the last places away, and as far along the path as H stays round-off. It
-    replaces round-off, that of H' too, and what the path has next to a fold, and leaves what is known.
+    One step of refinement, with H' at a point that H does not distinguish from this one, replaces round-off and keeps
+    known components.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -253,7 +246,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
 
 
 def _across(v: Array, z: Array) -> Array:
-    """A correction without its part along v, in the median over the components that move."""
+    """A correction z without its part along v (median over moving components)."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * v
     return across
@@ -267,7 +260,7 @@ def _largest(samples: list[Array]) -> Array:
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
 ) -> tuple[Array, float]:
-    """The correction at u + h v, without its part along v, and how nonlinear the path is so far."""
+    """Correction at u + h v, across v, and nonlinearity so far."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -280,7 +273,7 @@ def _nonlinearity(
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
-        # Unknowns that all move alike turn against the parameter alone.
+        # Unknowns that move alike turn only against the parameter.
         turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
