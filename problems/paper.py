@@ -1,8 +1,7 @@
 """The ten examples of the paper, and two counterexamples to its theorems.
 
 Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems". Data are
-typed as printed, with misprints noted. `true_class` and exact solutions were recomputed in rational arithmetic from all
-principal minors and bases.
+as printed; `true_class` and solutions were recomputed in rational arithmetic from all principal minors and bases.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from problems.lcp import LCP
 
 
 def _array(value: object) -> Array:
-    """A read-only float array, since the data are shared."""
+    """A read-only float array."""
     array: Array = np.array(value, dtype=float)
     array.flags.writeable = False
     return array
 
 
 def _exact(*solutions: str) -> tuple[tuple[Fraction, ...], ...]:
-    """Convert solutions, one string each with components separated by blanks."""
+    """Convert one blank-separated string per solution."""
     return tuple(tuple(Fraction(component) for component in solution.split()) for solution in solutions)
 
 
@@ -35,21 +34,20 @@ class Example:
     Attributes
     ----------
     number : int
-        1 to 10, in the paper's order.
+        1 to 10.
     label : str
         LaTeX label.
     stated_class, true_class : str
-        Matrix class in the paper, and by principal minors and short proofs.
+        Matrix class in the paper, and proved.
     A : Array of shape (n, n)
     q, x0, z1, z2 : Array of shape (n,)
-        Data and the paper's start, with z1 = z2 = e.
+        Data and the paper's start, z1 = z2 = e.
     printed_solution : Array of shape (n,)
-        Printed x.
     printed_point : Array
-        Printed end point (x, z1, z2, lambda), with misprints.
+        End point (x, z1, z2, lambda), with misprints.
     printed_iterations : int
     solutions : tuple of tuple of Fraction
-        All solutions, exact for the printed decimals; the printed one first.
+        All exact solutions of the printed data; the printed one first.
     remarks : str
         Misprints and corrections.
     """
@@ -69,12 +67,12 @@ class Example:
 
     @property
     def z1(self) -> Array:
-        """The paper's start for the multiplier of x >= 0: ones, shape (n,)."""
+        """Starting multiplier of x >= 0: ones."""
         return np.ones(self.q.size)
 
     @property
     def z2(self) -> Array:
-        """The paper's start for the multiplier of A x + q >= 0: ones, shape (n,)."""
+        """Starting multiplier of A x + q >= 0: ones."""
         return np.ones(self.q.size)
 
     @property
@@ -85,7 +83,7 @@ class Example:
 
 @frozen(eq=False, kw_only=True)
 class Counterexample:
-    """A strictly feasible LCP without solution, of a class on which the paper claims that the path ends at one.
+    """A strictly feasible LCP without solution, though the paper claims that paths of its class end at one.
 
     Attributes
     ----------
@@ -94,9 +92,9 @@ class Counterexample:
     q, x0 : Array of shape (n,)
         Data and strictly feasible start; z1 = z2 = e.
     end : Array of shape (n,)
-        x at the KKT path's end, to the digits typed.
+        End of the KKT path.
     refutes, why : str
-        Refuted statement, and reason.
+        Refuted statement and reason.
     """
 
     matrix_class: str

@@ -16,9 +16,9 @@ ZOOM = (0.1, 0.2, 0.5, 0.5)
 
 
 def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: int = 5) -> Any:
-    """Draw one panel per example, lambda from 1 to 0, turning points as open circles.
+    """Draw a panel per example, lambda from 1 to 0.
 
-    `paths`: KKT paths, y = (x, z1, z2). `columns`: panels per row. Raises `ImportError` without matplotlib.
+    `paths`: KKT paths. `columns`: panels per row. Raises `ImportError` without matplotlib.
     """
     require_matplotlib()
     from matplotlib.figure import Figure
@@ -38,7 +38,7 @@ def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: i
 
 
 def draw_example(example: Example, path: Path, axes: Any) -> None:
-    """Draw x into one panel, with an inset where the path turns."""
+    """Draw x into a panel, with an inset of turning points."""
     _draw_x(example, path, axes)
     axes.set_xlim(1.03, -0.03)
     axes.set_title(f"{example.number}: {_typeset(example.stated_class)}", fontsize="medium")

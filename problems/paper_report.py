@@ -22,8 +22,7 @@ from problems.literal import LiteralRun, run_literally
 from problems.paper import Example
 
 SOLVED_TO = 1e-6
-"""Residual of a solution: example 7 ends like the square root of lambda, so its path is good to about this; others are
-far better."""
+"""Example 7 ends like the square root of lambda, so its path is good to this; others are far better."""
 
 TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
 
@@ -60,8 +59,7 @@ def trace_example(example: Example, observers: tuple[Observer, ...] = ()) -> Pat
 def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> list[Row]:
     """Trace the examples into a new archive, and run the literal algorithm.
 
-    `archive`: also holds A, q and x0 of each example in group `examples`. Raises `ArchiveError` if it exists or cannot
-    be written.
+    `archive`: also gets A, q and x0 in group `examples`. Raises `ArchiveError` if it exists or cannot be written.
     """
     unknowns = 3 * max(example.q.size for example in examples)
     with PathLog(archive, title=TITLE) as log:
@@ -74,7 +72,7 @@ def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> l
 
 
 def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> None:
-    """Store A, q and x0, so that ends can be certified from the file alone."""
+    """Store data to certify ends from the file alone."""
     with h5py.File(archive, "r+") as file:
         for example in examples:
             group = file.create_group(f"examples/{example.number}")
@@ -106,7 +104,7 @@ def _cells(row: Row) -> Sequence[Cell]:
 
 
 def remarks(rows: Sequence[Row]) -> list[str]:
-    """Remarks below the table: false claims of the literal algorithm, paths that stop early."""
+    """False claims of the literal algorithm, and paths that stop early."""
     found = [
         f"* Example {row.example.number}: the algorithm as printed claims to solve it at x = {show(row.literal.x)}, "
         f"where the natural residual is {row.literal.residual:.2g}: it has jumped to another path."

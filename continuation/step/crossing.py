@@ -1,10 +1,9 @@
 """Find branch points on an arc by the real eigenvalues z(t) of M_a^-1 M(t).
 
-M_a is the bordered matrix factored at the arc's beginning, M(t) that at its point t; M(t) is singular where a z is
-zero. An arc is *regular*, so both its ends lie on one branch, if from one sample to the next no z falls below a factor
-1/SPAN, none exceeds SPAN, and of three samples the outer two sum to at most SPAN times the middle one. An arc *crosses*
-a branch if one z vanishes at a simple branch point s about like 1 - t / s, or at a degenerate one like a power of that
-(`degenerate_point`), and no other comes near zero. Other arcs are too long, or no part of the path.
+M(t) is the bordered matrix at point t of the arc, M_a the one factored at its beginning. On a *regular* arc no z
+shrinks by more than SPAN between samples or exceeds SPAN, and of three samples the outer two sum to at most SPAN times
+the middle one: both ends lie on one branch. On a *crossing* arc one z vanishes at a branch point s like a power of 1 -
+t/s (the first power at a simple one), and no other comes near zero. Any other arc is rejected.
 """
 
 from __future__ import annotations
@@ -31,49 +30,47 @@ from continuation.step.degenerate import SIMPLE_ORDER, Z_ROUND_OFF, BranchPointO
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""Largest change of z between samples of a regular arc. Two crossings passed at once leave no sign change; but if a
-parabola touches zero between three samples, the outer two sum to at least four times the middle one."""
+"""Two crossings between samples leave no sign change, but if a parabola touches zero there, the outer two of three
+samples sum to at least four times the middle one."""
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
-"""SPAN as bounds for eigenvalues 1 - z of I - M_a^-1 M(t)."""
+"""Bounds of 1 - z on a regular arc."""
 
 TOLD = 0.25
-"""Least change 1 - z that a sample reports."""
+"""Least 1 - z that a sample reports."""
 
 ONWARD = 0.1
-"""Distance of a sample behind an arc on which z falls, in arc lengths. If z grows there by more than this part, H' was
-singular on the arc, seen from the branch of its end."""
+"""Distance of a sample behind an arc on which z falls, in arc lengths. If z is larger there by more than this part, H'
+was singular on the arc."""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
-"""Sample positions on a cubic, and on a series, whose steps reach farther."""
+"""Sample positions on a cubic, and on a series, which is longer."""
 
 NEAR_ARC = 2e-2
-"""Largest distance of a branch point from its arc, in arc lengths: five times an arc's allowed error."""
+"""Largest distance of a branch point from its arc, in arc lengths: five times an arc's error."""
 
 ON_PATH = 8 * float(np.finfo(float).eps)
-"""Round-off of H relative to the rows of H' over the arc, even where all terms vanish. True crossings have at most
-3e-16; with 1e-13, curves 2e-6 apart seemed to cross."""
+"""Round-off of H relative to the rows of H' over the arc. True crossings have at most 3e-16; with 1e-13, curves 2e-6
+apart seemed to cross."""
 
 AHEAD = 3.0
-"""A branch point is accepted up to so many arcs ahead: the next arc has it on its first two thirds."""
+"""Crossings farther ahead, in arcs, are ignored; nearer ones lie on the next arc's first two thirds."""
 
 NEAR_CROSSING = 0.1
-"""No arc ends so near to a crossing, in arc lengths: the next arc would begin with a factorisation of an eigenvalue ten
-times too small."""
+"""Least distance of an arc's end from a crossing, in arc lengths: the next arc's reference must not be nearly
+singular."""
 
 STEP_BACK = 0.7
-"""Step factor after an arrival so near to a crossing; largest factor of a step that should end behind one."""
+"""Step factor after arriving too near to a crossing, and largest factor of a step beyond one."""
 
 BEST = 4.0 / 3.0
-"""A step over a crossing at s ends at x s. A cubic is off by x^4 there, and the branches are x - 1 apart: this x
-minimises the ratio."""
+"""A step over a crossing at s ends at x s: x^4, a cubic's error, over x - 1, the branches' distance, is least."""
 
 SMALLEST = 2.0**-6
-"""No pair of crossings is sought nearer to the arc's beginning. Also the least step factor: a crossing beside the
-beginning may be round-off and would end the path."""
+"""Least step factor, and least position of crossings on an arc: nearer ones may be round-off."""
 
 AT_END = 1e-6
-"""A crossing so near to the arc's end, in arc lengths, is at the end, which is known to half the digits."""
+"""A crossing so near to the arc's end, in arc lengths, is at the end, known to half the digits."""
 
 
 @frozen(eq=False)
@@ -83,10 +80,9 @@ class Crossed:
     Attributes
     ----------
     point : Linearization
-        On the path, with the factorisation of the arc's beginning.
+        On the path, factored at the arc's beginning.
     rays : ndarray, shape (4, N + 1), or None
-        Unit directions of the branches, away from the point: back, onward, and both of the other branch. None if H'
-        loses several ranks.
+        Unit directions away from the point: back, onward, and both of the other branch. None if H' loses several ranks.
     """
 
     point: Linearization
@@ -96,7 +92,7 @@ class Crossed:
 def on_arc(
     solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
 ) -> Crossed | Rejected | None:
-    """The branch point on an arc, None if there is none, or a rejection of the arc.
+    """The branch point on an arc, None without one, or a rejection.
 
     Parameters
     ----------
@@ -110,14 +106,14 @@ def on_arc(
     ends : bool
         Whether the path ends with the arc.
     index : int
-        Of the step; it varies the start vectors.
+        Step number, varies start vectors.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()
     if isinstance(seen, Rejected) and not flipped and looks.blurred():
         return None
     if seen is None and flipped and _differential(solver, arc.b.u) is None:
-        # Without a differential only the sign is known: it changes at a branch point, or the arc is none.
+        # Without a differential only the sign is known: it changes at a branch point, or the arc is rejected.
         seen = looks.simple(arc.segment.at(0.5))
         looks.told.clear()
     if isinstance(seen, BranchPointOnArc):
@@ -144,10 +140,10 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 
 @define(eq=False)
 class _Looks:
-    """Samples of H' along one arc.
+    """Samples of H' along an arc.
 
-    `told`: by position, the sorted 1 - z beyond TOLD or LOWEST. `along`: sum of their eigenvectors in the last sample
-    with any; the next sample starts from it and finds these eigenvalues again.
+    `told`: by position, the sorted 1 - z beyond TOLD or LOWEST. `along`: sum of their last eigenvectors, which starts
+    the next sample so that it finds them again.
     """
 
     solver: PathSolver
@@ -165,12 +161,12 @@ class _Looks:
         return np.zeros(self.arc.a.u.size)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """Values 1 - z beyond TOLD or LOWEST at u, near t; none without H'."""
+        """Values 1 - z beyond TOLD or LOWEST at u, near t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []
         whole, first = generic_vector(size), (self.index + len(self.told)) % size
-        # One start vector in a thousand is almost orthogonal to an eigenvector, so it varies.
+        # One start vector in a thousand misses an eigenvector.
         start = np.concatenate((whole[first:], whole[:first]))
         start = start / math.sqrt(dot(start, start)) + self.along
         values, vectors = changes(self.arc.a, apply, self._border(t), TOLD, LOWEST, start, accuracy)
@@ -179,7 +175,7 @@ class _Looks:
         return values
 
     def _border(self, t: float) -> Array:
-        """The arc's tangent at t, in the dual metric."""
+        """Dual tangent at t."""
         tangent, weights = self.arc.segment.derivative(t), self.arc.a.weights
         border: Array = weights * tangent / norm(weights, tangent)
         return border
@@ -188,7 +184,7 @@ class _Looks:
         return self.prediction(t * self.arc.length)
 
     def first(self) -> BranchPointOnArc | Rejected | None:
-        """The first branch point to which samples lead; None on a regular arc."""
+        """First branch point, None on a regular arc."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
@@ -220,7 +216,7 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Sample at halved positions while z exceeds SPAN, as behind a pair of crossings near the beginning."""
+        """Sample at halved positions while z exceeds SPAN, as behind a pair of crossings."""
         t, places, told = 1.0, list[float](), self.told
         while told[t] and told[t][0] < LOWEST and t > SMALLEST:
             t *= 0.5
@@ -231,7 +227,7 @@ class _Looks:
         return places
 
     def over(self, seen: BranchPointOnArc) -> Crossed | Rejected | None:
-        """The branch point if the arc crosses it on its own branch; None if the arc ends before it."""
+        """The branch point, if the arc crosses it along its branch; None if it ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -256,19 +252,19 @@ class _Looks:
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
-        """Reject the arc; `factor` times its length is tried next."""
+        """Reject the arc; the next has `factor` times its length."""
         attempt = self.attempt
         factor = max(factor * self.arc.length / attempt.h, SMALLEST)
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether z is unknown: within tolerance of the arc's beginning some z differ from 1, as near a pole."""
+        """Whether some z differ from 1 within tolerance of the arc's beginning, as near a pole."""
         a = self.arc.a
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
     def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
-        """The branch point to which the sample at t leads: simple, near `place`, or degenerate."""
+        """The branch point indicated by the sample at t: simple, near `place`, or degenerate."""
         solver, arc = self.solver, self.arc
         lost = self._lost(self._point(t), t)
         found = self.simple(self._point(place)) if lost == 1 else None
@@ -291,7 +287,7 @@ class _Looks:
         return found
 
     def _lost(self, u: Array, t: float) -> int:
-        """Number of eigenvalues equal to the smallest z near t."""
+        """Multiplicity of the smallest z near t."""
         apply, told = _differential(self.solver, u), self.look(u, t, Z_ROUND_OFF)
         if apply is None or not told:
             return 1
@@ -308,7 +304,7 @@ class _Looks:
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> BranchPointOnArc | None:
-        """The simple branch point on or ahead of the arc, by Newton's method."""
+        """The simple branch point near the arc, by Newton's method."""
         arc, a = self.arc, self.arc.a
         try:
             rows = self._rows()
@@ -328,7 +324,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float, lost: int) -> bool:
-    """Whether the sampled eigenvalues vanish together as expected, and no other is near zero."""
+    """Whether the sample fits eigenvalues that vanish together, and no other is near zero."""
     first, *others = sorted(told, key=lambda mu: abs(mu - expected)) or [min(expected, TOLD)]
     others = [mu for k, mu in enumerate(others, 1) if k >= lost or abs(mu - first) > NEAR_CROSSING * abs(first)]
     near = abs(first - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

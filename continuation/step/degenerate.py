@@ -1,8 +1,8 @@
 """Degenerate branch points: branches touch, more than two cross, or H' loses several ranks.
 
-Near one, the eigenvalue z of `crossing` is like (1 - t / s)^m with m > 1, or several vanish together, of which a Krylov
-space shows one. The ratio of z to its slope has a simple zero at s with slope 1 / m: the secant method finds both. The
-path goes straight on, as along a branch with symmetry.
+Near one, the eigenvalue z of `crossing` is like (1 - t / s)^m, m > 1, or several vanish together, of which a Krylov
+space shows one. z over its slope has a simple zero at s with slope 1 / m: the secant method finds both. The path goes
+straight on.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
 SECANTS_OF_Z = 20
-"""Four or five are usual."""
+"""Iteration limit; four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""Difference step relative to the distance from s; first order assumed, which avoids double zeros; largest order of a
+"""Difference step relative to the distance from s; assumed order, which avoids meeting double zeros; largest order of a
 simple zero."""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""Above the first, round-off in H leaves z unknown; the second is round-off of the products that give z."""
+"""Largest accepted round-off of z from H; round-off of z from products."""
 
 FARTHEST = 3.0
 """Search limit ahead, in arcs."""
@@ -40,10 +40,10 @@ FARTHEST = 3.0
 
 @frozen(eq=False)
 class BranchPointOnArc:
-    """A branch point on an arc or ahead of it.
+    """A branch point on or ahead of an arc.
 
-    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no other branch point
-    nearby could be confused with it.
+    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no confusable branch
+    point is near.
     """
 
     u: Array
@@ -66,9 +66,7 @@ class BranchPointOnArc:
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point to which a sample at t leads, or None.
-
-    Eigenvalues may vanish at different rates, so the loss of several ranks may show only at the point.
+    """The degenerate branch point indicated by a sample at t, or None.
 
     Parameters
     ----------
@@ -78,14 +76,14 @@ def degenerate_point(
     t : float
         Position where z has fallen.
     z_at : callable
-        z from a position and a point; NaN if unknown.
+        z from position and point; NaN if unknown.
     lost : int
-        Number of eigenvalues like z.
+        Multiplicity of z at t; that at the point may be higher.
 
     Returns
     -------
     u : ndarray, shape (N + 1,)
-        The point, up to round-off in H.
+        The point, up to round-off.
     order : float
         Of the zero, about.
     """
@@ -96,7 +94,7 @@ def degenerate_point(
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
         if lost > 1 or order <= SIMPLE_ORDER:
-            # Symmetry keeps predictions clear of the vanishing eigenvalues, which would magnify errors.
+            # Symmetry keeps the prediction from errors that vanishing eigenvalues would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return solver.project(arc.a, u, arc.a.border)[0]
@@ -106,14 +104,14 @@ def degenerate_point(
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
         if ahead <= 0.0 > z:
-            # Far behind the point, a straight line from 1 at the arc's beginning estimates it.
+            # Far behind the point: take the zero of a line from 1 at the arc's beginning.
             ahead = 0.5 * (t + t / (1.0 - z))
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         # A smooth zero has order 1 at least.
         order = max((ahead - t) / (beyond - left), 1.0)
-        # From here points lie on the path, which may cost factorisations.
+        # Points on the path may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
@@ -135,7 +133,7 @@ def degenerate_point(
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """Pairs z and z over its slope at t, by a backward difference; 0 without slope."""
+    """Returns z and z over its slope at t, 0 without slope, by a backward difference."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
@@ -143,7 +141,7 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """Change of z by round-off in H, from a step across which H stays round-off; 0 if too large."""
+    """Round-off of z: its change across the path as far as H stays round-off; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)

@@ -1,8 +1,8 @@
-"""Initial scales of components, from the distance along which a path turns.
+"""Initial scales of components, from the length on which a path turns.
 
-Results are independent of units and origin. Simplified Newton corrections d and e at u + h v, v the tangent, measure
-nonlinearity (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1): the median of |d_i| / (h |v_i|)
-says how far the path has turned, |e| / |d| how far the equations have changed. Both grow like h.
+Results are independent of units and origin. Nonlinearity is measured with simplified Newton corrections d and e at u +
+h v, v the tangent (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1): the median of |d_i| / (h
+|v_i|) shows how far the path turns, |e| / |d| how far the equations change. Both grow like h.
 """
 
 from __future__ import annotations
@@ -20,50 +20,50 @@ from continuation.evaluation.noise import ENDLESS, allowed_along
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
-"""Nonlinearity at the extent. From 0.1 to 0.5, factorisations on twelve problems differ by a tenth."""
+"""Nonlinearity at the extent; from 0.1 to 0.5, factorisations on twelve problems differ by a tenth."""
 
 AROUND = 1.001
-"""The search ends within this factor of TURN; a power law gives the rest, to about the square of this factor. The
-origin affects the search's start and must not affect its end: with 1.05, shifts changed extents by a hundredth and
-factorisations on Bratu's problem by a factor of two."""
+"""The search ends within this factor of TURN, then a power law follows, so that the result does not depend on the
+search's start. With 1.05, shifts changed extents by a hundredth, factorisations on Bratu's problem by a factor of
+two."""
 
 POWERS = 0.5, 4.0
-"""Bounds of that power: one is usual, two on a path symmetric about its start."""
+"""Bounds of that power: one is usual, two if the path is symmetric."""
 
 FIRST_STEP = 0.3
-"""First step in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
+"""In extents: turns by a third of TURN; controllers aim at 0.4 radians."""
 
 SEARCH_START = 1e-3
-"""First length over the distance to the target, small enough not to jump over the first turn."""
+"""First length over the distance to the target; must not jump over the first turn."""
 
 LENGTHS_TRIED = 40
-"""Five are usual."""
+"""Limit; five are usual."""
 
 GROWTH = 30.0
-"""Largest ratio of successive lengths: a straight beginning shows no nonlinearity."""
+"""Largest ratio of lengths: straight beginnings show no nonlinearity."""
 
 STRAIGHT_LENGTH = 1e30
-"""A path without target that is straight so far, relative to its start, has no scale."""
+"""Paths without target that are straight so far, relative to the start, have no scale."""
 
 STANDSTILL = 1e-60
-"""A component that moves by at most this part of the largest motion, in any units, stands still."""
+"""Motion below this part of the largest, in any units, counts as none."""
 
 STILL_PIECEWISE = 1e-13
-"""STANDSTILL on smooth pieces, where components stand still up to others' round-off; units thirteen orders apart look
+"""STANDSTILL on smooth pieces, where still components have others' round-off; units thirteen orders apart look
 alike."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""Tangent components below the first, relative to the largest, may be round-off; those that refinement changes by more
-than the second are."""
+"""Smaller tangent components, relative to the largest, are round-off if refinement changes them by more than
+REPLACED."""
 
 UNCERTAIN = 100.0
-"""Corrections below so many times their round-off, in two samples of signs, are ignored."""
+"""Corrections below so many times their round-off, in two samples, are ignored."""
 
 SWEEPS = 10
-"""Of Sinkhorn's iteration: a metric needs units to a small factor only."""
+"""Of Sinkhorn's iteration: a metric needs only rough units."""
 
 OTHER_UNITS = 1e4
-"""Nonlinearity above which a size has other units; six symmetric trunks in units of 1 gave 0.2 to 1,100."""
+"""Nonlinearity of wrong units; six symmetric trunks in units of 1 gave 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -75,7 +75,7 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Motion of each component until the path turns by about TURN, or to a nearer target; and its noise.
+    """Motion of each component until the path turns by about TURN or meets a nearer target; and its noise.
 
     Parameters
     ----------
@@ -84,20 +84,20 @@ def initial_extent(
         Start, in any metric.
     target : float or None
     residual : ndarray, shape (N,)
-        H at the start, which may lie slightly off the path.
+        H at the start.
     farthest : float
-        Scale without a target, finite for piecewise straight paths alone.
+        Scale without a target; finite for piecewise straight paths alone.
     room : float
         Distance along the tangent to a requested end.
     sizes : ndarray, shape (N + 1,), optional
-        Component sizes; motion below their round-off is ignored.
+        Component sizes; motion below their round-off counts as none.
 
     Returns
     -------
     extent : ndarray, shape (N + 1,)
-        Positive. Still components get the median of the others, in their sizes if known.
+        Positive. Still components get the others' median, in their sizes if known.
     blur : ndarray, shape (N + 1,)
-        |H'^-1| times the noise in H and in the last digits of u.
+        |H'^-1| times the noise in H and in u's last digits.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -113,10 +113,10 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    # Without a target, the nearest change of a component by its own size is safe.
+    # Nearer is safer without a target: one component changes by its own size.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # Terms that vanish at zero, as for a structure at rest, have noise only away from it.
+    # Terms that vanish at zero have no noise there.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -124,7 +124,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Hold the moving component known best relative to its motion.
+    # Hold the component whose relative noise is least.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
@@ -178,9 +178,7 @@ def initial_extent(
 
 
 def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
-    """Relative units of still unknowns that equalise their columns of H_y, by Sinkhorn's iteration; ones without a
-    matrix.
-    """
+    """Units of still unknowns that equalise their columns of H_y, by Sinkhorn's iteration; ones without a matrix."""
     ones = np.ones(still.size)
     H_y = evaluator.matrix(u) if still.sum() > 1 else None
     if not (isinstance(H_y, np.ndarray) or sp.issparse(H_y)):
@@ -200,10 +198,10 @@ def _inverse(sums: Array) -> Array:
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """Factor for sizes of still components that keeps H about linear so far from the path.
+    """Factor for sizes of still components, so that H is nearly linear over them.
 
-    Branches leave a symmetric trunk in these components: with far too large sizes, others' round-off is longer than a
-    branch.
+    Branches leave symmetric trunks in these components; if sizes were far too large, a whole branch would count as
+    round-off.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -221,10 +219,9 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
-    """Set round-off components of the tangent to zero.
+    """Zero the tangent's round-off.
 
-    One step of refinement, with H' at a point that H does not distinguish from this one, replaces round-off and keeps
-    known components.
+    A refinement step with H' at a point that H cannot distinguish changes round-off, but not known components.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -246,7 +243,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
 
 
 def _across(v: Array, z: Array) -> Array:
-    """A correction z without its part along v (median over moving components)."""
+    """A correction z without its median part along v."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * v
     return across
@@ -260,7 +257,7 @@ def _largest(samples: list[Array]) -> Array:
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
 ) -> tuple[Array, float]:
-    """Correction at u + h v, across v, and nonlinearity so far."""
+    """Correction at u + h v, across v, and nonlinearity."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 

@@ -118,7 +118,7 @@ class MixedComplementarity:
 class InteriorHomotopy:
     """Wang's homotopy: ``(1-l) F(x) - y + l y0 = 0`` and ``y_i`` times its distance from a bound ``= l c_i``.
 
-    y is s - t, s at lower and t at upper bounds; an unknown without bounds adds l (x - x0).
+    y is s - t, s at lower and t at upper bounds; free unknowns add l (x - x0).
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ class InteriorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """See Wang's homotopy for an LCP; directions give the complementary pairs alone."""
+        """As for an LCP; directions give complementary pairs alone."""
         n, sides = self.problem.n, self.sides
         x, forces = y[:n], y[n:]
         if not one:
@@ -247,14 +247,14 @@ class ComplementaritySolution:
 
     @property
     def relative_residual(self) -> float:
-        """Natural residual, each row relative to its linearisation's terms."""
+        """Natural residual, each row relative to its terms."""
         return self.certificate.relative_residual
 
 
 def solve_complementarity(
     problem: MixedComplementarity, x0: Any = None, *, tolerance: float = 1e-10, budget: Budget | None = None
 ) -> ComplementaritySolution:
-    """Solve by Newton's method from x0 or, if that fails, from the end of Wang's path.
+    """Solve by Newton's method from x0 or, failing that, from the end of Wang's path.
 
     Parameters
     ----------
@@ -262,9 +262,8 @@ def solve_complementarity(
     x0 : array_like, shape (n,), optional
         Strictly between the bounds; default near zero.
     tolerance : float
-        For the relative residual.
+        Relative residual.
     budget : continuation.Budget, optional
-        For the path.
 
     Returns
     -------

@@ -21,7 +21,7 @@ H = TypeVar("H", bound="FixedPointHomotopy | NewtonHomotopy")
 
 @frozen(eq=False)
 class Differentiable(Generic[H]):
-    """A homotopy with `jacobian`; a type of its own, as presence declares a capability.
+    """A homotopy with `jacobian`: a separate type, as capabilities are found by presence.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def fixed_point(
     F : callable
     a : array_like, shape (n,)
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``: dense or scipy sparse, `Banded`, `Symmetric` or LinearOperator.
+        ``jacobian(x) -> (n, n)``: array, scipy sparse, `Banded`, `Symmetric` or LinearOperator.
     """
     homotopy = FixedPointHomotopy(F, a)
     return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

@@ -1,4 +1,4 @@
-"""Complementarity with a parameter as a piecewise smooth homotopy: Robinson's normal map."""
+"""Robinson's normal map: complementarity with a parameter."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ class AffineForce:
 class NormalMap:
     """Solutions x(lam) in [lower, upper]: F_i(x, lam) >= 0 at a lower bound, <= 0 at an upper one, else 0.
 
-    H(z, lam) = F(x, lam) + z - x, where x projects the unknown z onto the bounds. H is smooth where no z_i is on a
-    bound. Bordered systems reduce to the unknowns between bounds: one factorisation of order |alpha| + 1.
+    H(z, lam) = F(x, lam) + z - x, where x projects z onto the bounds; smooth while no z_i is on a bound. Bordered
+    systems reduce to the free unknowns.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class NormalMap:
     lower, upper : array_like, shape (n,), or float
         May be infinite; default 0 and inf.
     lower_rate, upper_rate : array_like, shape (n,), or float
-        Bounds are lower + lam * lower_rate and upper + lam * upper_rate, as for friction under a load lam.
+        Bounds are lower + lam * lower_rate and upper + lam * upper_rate, as for friction under a load.
     target : float or None, default 0
 
     Raises
@@ -115,7 +115,7 @@ class NormalMap:
 
     @classmethod
     def affine(cls, A: Matrix, q: Any, d: Any, **more: Any) -> NormalMap:
-        """F(x, lam) = A x + q + lam d: the LCP(q + lam d, A) with any bounds.
+        """F(x, lam) = A x + q + lam d, with any bounds.
 
         Parameters
         ----------
@@ -178,7 +178,7 @@ class NormalMap:
         Raises
         ------
         ValueError
-            If one is beyond both bounds.
+            If one is beyond both.
         """
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         m = int(below.sum())

@@ -35,8 +35,8 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
     """Bratu's u'' + lam e^u = 0 on (0, 1) with u <= psi, by second-order differences, from u = 0 at lam = 0.
 
     For psi > 1.1868421686, the maximum of u at the fold, the path meets the obstacle behind the fold at lam_c = 8
-    exp(-psi) arccosh(exp(psi/2))^2. In this corner it turns; u then rests on the obstacle between a(lam) and 1 -
-    a(lam), a = sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). For smaller psi there is no fold.
+    exp(-psi) arccosh(exp(psi/2))^2 and turns in a corner; u then rests on it between a(lam) and 1 - a(lam), a =
+    sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). Smaller psi give no fold.
 
     Parameters
     ----------

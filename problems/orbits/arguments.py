@@ -39,7 +39,7 @@ def as_table(value: Any) -> Array:
 
 
 def as_mesh(value: Any) -> Array:
-    """Convert a number of intervals, or mesh points, to a mesh."""
+    """Convert a number of intervals or mesh points."""
     found = np.linspace(0.0, 1.0, value + 1) if isinstance(value, int) and value > 1 else real_vector("mesh", value)
     if found.ndim != 1 or found.size < 3 or found[0] != 0.0 or found[-1] != 1.0 or not (np.diff(found) > 0.0).all():
         raise complain(ValueError, "mesh", "a number of intervals, at least 2, or times that rise from 0 to 1", value)
@@ -53,6 +53,6 @@ def check_times(times: Array, states: Array) -> None:
 
 
 def spread(states: Array) -> Array:
-    """Standard deviations over time, or `sizes` of constant components."""
+    """Standard deviations, or `sizes` of constant components."""
     spread = states.std(axis=0)
     return np.where(spread > 0.0, spread, sizes(states[0]))

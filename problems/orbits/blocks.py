@@ -1,8 +1,8 @@
-"""Condense an orbit's equations A_i x_i + B_i x_{i+1} = 0 to one block A x_0 + B x_N = 0.
+"""Condense an orbit's equations A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
 
-A QR factorisation eliminates the unknown between two blocks, for all pairs at once. No block is inverted or multiplied
-by another, so growing and decaying solutions lose no digits (Wright, Stable parallel algorithms for two-point boundary
-value problems, SIAM J. Sci. Stat. Comput. 13, 1992).
+QR factorisations eliminate unknowns between neighbouring blocks. No block is inverted or multiplied by another, so
+growing and decaying solutions lose no digits (Wright, Stable parallel algorithms for two-point boundary value problems,
+SIAM J. Sci. Stat. Comput. 13, 1992).
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from continuation.linear import SingularError
 
 @frozen(eq=False)
 class Condensed:
-    """Eliminations, that of interior nodes first, and the remaining block.
+    """Eliminations, and the remaining block.
 
-    `follows`: per elimination a map, shape (K, p, 2 n), from (left, right) to minus p unknowns of K blocks.
+    `follows`: maps, shape (K, p, 2 n), from (left, right) to minus p unknowns of K blocks.
     """
 
     follows: list[Array]
@@ -42,7 +42,7 @@ class Condensed:
         return cls(follows, rest[0, :, :n], rest[0, :, n:])
 
     def all_from(self, ends: Array) -> Array:
-        """All unknowns except x_N, shape (N m, n), from x_0 and x_N, shape (2, n)."""
+        """Unknowns before x_N, shape (N m, n), from (x_0, x_N)."""
         n = ends.shape[1]
         for level in reversed(self.follows):
             count = len(level)
@@ -54,7 +54,7 @@ class Condensed:
 
 
 def _eliminated(middle: Array, outer: Array) -> tuple[Array, Array]:
-    """Solution for `middle`'s unknowns in terms of `outer`'s, and remaining equations."""
+    """Express `middle`'s unknowns by `outer`'s; return the remaining equations too."""
     p = middle.shape[2]
     Q, R = np.linalg.qr(middle, mode="complete")
     both = Q.transpose(0, 2, 1) @ outer

@@ -16,7 +16,7 @@ from problems.orbits.grid import Grid
 from problems.orbits.here import Here
 
 PHASE_COSINE = 0.1
-"""Mean cosine between velocities of orbit and reference; at this value the phase condition has lost a digit."""
+"""Mean cosine between velocities of orbit and reference at which the phase condition has lost a digit."""
 
 ORBITS_KEPT = 4
 """Residual, factorisation, events and observations of a step share a cached point."""
@@ -24,7 +24,7 @@ ORBITS_KEPT = 4
 
 @frozen(eq=False, slots=False)
 class Equations:
-    """Collocation equations; `states`, shape (N m, n), is the phase condition's reference."""
+    """Collocation equations; `states`, shape (N m, n), is the phase reference."""
 
     flow: Field
     grid: Grid
@@ -37,7 +37,7 @@ class Equations:
         return self.grid.slopes(self.states) / self.scale**2
 
     def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
-        """Split unknowns into grid, X of shape (N m, n), and T."""
+        """Split into grid, X of shape (N m, n), and T."""
         size = self.states.size
         mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
         grid = self.grid if np.array_equal(mesh, self.grid.mesh) else Grid(mesh, self.grid.degree)
@@ -57,7 +57,7 @@ class Equations:
 
 @frozen
 class Watch:
-    """An event where `quantity`, an attribute path of `Here`, takes a value."""
+    """An event: `quantity`, an attribute path of `Here`, takes a value."""
 
     orbit: Any
     quantity: str

@@ -67,13 +67,13 @@ class Field:
 
 
 TRIED_ASIDE = 0.1
-"""Trial points lie off by this part of the component sizes: at an equilibrium nonlinear terms may vanish."""
+"""Offset of trial points in component sizes: at an equilibrium nonlinear terms may vanish."""
 
 
 def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Array, p: float) -> Field:
-    """Find by trial calls near a point, shape (n,), how to call and differentiate f.
+    """Find how to call and differentiate f by trial calls near a point, shape (n,).
 
-    Raises `TypeError`, `ValueError` unless f returns n real numbers.
+    Raises `TypeError`, `ValueError` unless f returns n numbers.
     """
     for name, given in (("f", function), ("jacobian", jacobian)):
         if not callable(given) and (name == "f" or given is not None):

@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 from continuation.arrays import Array
 
 MESH_FLOOR = 0.05
-"""Part of the mean mesh density added everywhere, so that motion that begins in a resting part is resolved. Van der
-Pol, mu = 10, 40 intervals, six meshes on: period error 1.2e-8 without it, 0.8e-8 with it, 2e-8 with twice as much;
-other exponents than 1 / (m + 1), or speeds in the density, give 1e-8 to 1e-6."""
+"""Part of the mean density added everywhere, so that motion in a resting part is resolved. Van der Pol, mu = 10, 40
+intervals, six meshes: period error 1.2e-8 without it, 0.8e-8 with it, 2e-8 with twice as much; other exponents than 1 /
+(m + 1) or speeds give 1e-8 to 1e-6."""
 
 
 BETWEEN_NODES = 8
-"""Samples between nodes for extreme values; a parabola through three has a fourth-order error."""
+"""Samples between nodes for extreme values; parabolas have fourth-order errors."""
 
 
 @frozen(eq=False, slots=False)
 class Grid:
-    """A mesh of [0, 1], shape (N + 1,), with continuous periodic polynomials of degree m on its intervals.
+    """A mesh of [0, 1], shape (N + 1,), with continuous periodic polynomials of degree m.
 
-    A function is an array of shape (N m, ...): values at m Chebyshev-Lobatto nodes of each interval, left end first.
+    Functions have shape (N m, ...): values at m Chebyshev-Lobatto nodes per interval, left end first.
     """
 
     mesh: Array
@@ -43,12 +43,12 @@ class Grid:
 
     @cached_property
     def inner(self) -> Array:
-        """The m + 1 nodes of [0, 1]."""
+        """Nodes of [0, 1], shape (m + 1,)."""
         return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(self.degree + 1) / self.degree))
 
     @cached_property
     def gauss(self) -> tuple[Array, Array]:
-        """The m Gauss points of [0, 1] and their weights."""
+        """The m Gauss points of [0, 1], and weights."""
         points, weights = leggauss(self.degree)
         return np.asarray(0.5 * points + 0.5), np.asarray(0.5 * weights)
 
@@ -94,7 +94,7 @@ class Grid:
         return np.asarray(self.slope @ X[self.index] / self.widths[:, None, None])
 
     def at(self, X: Array, t: Array) -> Array:
-        """Values at times of [0, 1], shape (len(t), n)."""
+        """Values at times, shape (len(t), n)."""
         t = np.asarray(t) % 1.0
         i = np.clip(np.searchsorted(self.mesh, t, side="right") - 1, 0, self.intervals - 1)
         powers = self._powers((t - self.mesh[i]) / self.widths[i]) @ self.coefficients
@@ -120,10 +120,9 @@ class Grid:
         return np.vander(t, self.degree + 1, increasing=True)
 
     def highest(self, X: Array) -> Array:
-        """Size of derivative m + 1, shape (N,), from jumps of derivative m.
+        """Size of derivative m + 1, shape (N,), from jumps of derivative m; X is scaled.
 
-        Components of X should be comparable. (de Boor, in: Conference on the Numerical Solution of Differential
-        Equations, 1973; as in AUTO.)
+        (de Boor, in: Conference on the Numerical Solution of Differential Equations, 1973; as in AUTO.)
         """
         top = np.einsum("k,ikn->in", self.coefficients[-1], X[self.index]) / self.widths[:, None] ** self.degree
         between = 0.5 * (self.widths + np.roll(self.widths, 1))
@@ -131,7 +130,7 @@ class Grid:
         return np.asarray(0.5 * (jumps + np.roll(jumps, -1)))
 
     def error(self, X: Array) -> float:
-        """Interpolation error bound, in X's units; the collocation error is far smaller at mesh points."""
+        """Interpolation error in X's units; the collocation error is far smaller at mesh points."""
         nodal = np.polynomial.polynomial.polyfromroots(self.inner)
         t = np.linspace(0.0, 1.0, 101)
         largest = np.abs(np.polynomial.polynomial.polyval(t, nodal)).max()
@@ -140,8 +139,8 @@ class Grid:
     def suited(self, X: Array, intervals: int, degree: int) -> tuple[Grid, Array]:
         """A grid with about equal errors on all intervals, and its nodes' times on this one.
 
-        It begins where the orbit is fastest: near an equilibrium, where a homoclinic orbit rests, velocity and growing
-        perturbations are nearly parallel, which hides multipliers.
+        It begins where the orbit is fastest: near an equilibrium, velocity and growing perturbations are nearly
+        parallel, which hides multipliers.
         """
         density = self.highest(X) ** (1.0 / (self.degree + 1))
         density = density + MESH_FLOOR * float(density @ self.widths) if density.any() else np.ones_like(density)

@@ -19,8 +19,8 @@ from problems.orbits.multipliers import Multipliers
 class Here:
     """Quantities at a point, each computed once.
 
-    `X`: shape (N m, n). `times`, shape (N - 1,): inner mesh points, unknowns that equations pin to the grid, so that a
-    point determines its orbit. `reference`, shape (N, m, n): the reference orbit's derivative over `scale` squared.
+    `X`: shape (N m, n). `times`, shape (N - 1,): inner mesh points, unknowns that equations pin to the grid.
+    `reference`, shape (N, m, n): the reference orbit's derivative over `scale` squared.
     """
 
     field: Field
@@ -38,17 +38,16 @@ class Here:
 
     @cached_property
     def _columns(self) -> Array:
-        """Values as columns, shape (n, N m)."""
         return np.ascontiguousarray(self._values.reshape(-1, self.scale.size).T)
 
     @cached_property
     def flow(self) -> Array:
-        """The vector field at the Gauss points, shape (N, m, n)."""
+        """The vector field, shape (N, m, n)."""
         return np.asarray(self.field(self._columns, self.p), dtype=float).T.reshape(self._values.shape)
 
     @cached_property
     def _derivatives(self) -> tuple[Array, Array]:
-        """(f_x, f_p) there, shapes (N, m, n, n) and (N, m, n)."""
+        """(f_x, f_p), shapes (N, m, n, n) and (N, m, n)."""
         by_x, by_p = self.field.derivatives(self._columns, self.p)
         shape = self._values.shape
         return by_x.reshape(*shape, shape[-1]), by_p.reshape(shape)
@@ -61,7 +60,7 @@ class Here:
 
     @cached_property
     def _blocks(self) -> Array:
-        """Derivatives by interval nodes, times lengths; shape (N, m, n, m + 1, n)."""
+        """Scaled derivatives by interval nodes, shape (N, m, n, m + 1, n)."""
         grid, n = self.grid, self.scale.size
         by_x = self.T * grid.widths[:, None, None, None] * self._derivatives[0]
         found = -grid.value[None, :, None, :, None] * by_x[:, :, :, None, :]

@@ -11,7 +11,7 @@ from scipy.linalg import eig
 from continuation.arrays import Array
 
 FOLD_ANGLE = 1e-4
-"""Pairs with smaller arguments are folds of cycles, not tori: round-off splits the double multiplier 1 by its square
+"""Pairs with smaller arguments belong to folds of cycles: round-off splits the double multiplier 1 by its square
 root."""
 
 OUTSIDE_CIRCLE = 1e-6
@@ -19,7 +19,7 @@ OUTSIDE_CIRCLE = 1e-6
 
 
 TRIVIAL_FOUND = 0.5
-"""If the trivial multiplier, 1, is off by more, all are lost."""
+"""If the trivial multiplier is off by more, all are lost."""
 
 
 TINY = float(np.finfo(float).tiny)
@@ -27,7 +27,7 @@ TINY = float(np.finfo(float).tiny)
 
 @frozen(eq=False, slots=False)
 class Multipliers:
-    """Eigenvalues of the pencil A + mu B by the QZ method, without inverses or products."""
+    """Eigenvalues of the pencil A + mu B by the QZ method, without inverses."""
 
     A: Array
     B: Array
@@ -60,9 +60,9 @@ class Multipliers:
 
     @property
     def doubling(self) -> float:
-        """Product of (mu + 1) / hypot(1, |mu|) over nontrivial mu: its sign changes at a period doubling.
+        """Product of (mu + 1) / hypot(1, |mu|) over nontrivial mu: negative after a period doubling.
 
-        Nearly homoclinic orbits have a multiplier so large that its round-off hides the trivial one.
+        Near homoclinic orbits the trivial one is lost in round-off of the largest.
         """
         if self.lost:
             return 1.0

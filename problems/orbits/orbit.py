@@ -34,21 +34,21 @@ class PeriodicOrbit:
 
     X is a continuous piecewise polynomial of degree m, collocated at m Gauss points of N intervals. Its error is of
     order m + 1 in their lengths, 2 m at mesh points and in the period (de Boor and Swartz, SIAM J. Numer. Anal. 10,
-    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, pinned by equations so that a stored point
-    determines its orbit. The parameter is p. The phase condition is int <X, X_ref'> = 0 with the given orbit X_ref.
+    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations pin, so that a stored point
+    determines its orbit. The phase condition is int <X, X_ref'> = 0, X_ref the given orbit.
 
     Construct by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
 
     Parameters
     ----------
     f : callable
-        ``f(x, p)`` or ``f(x, p, second)``, n numbers. If f accepts shape (n, k), one call serves all nodes.
+        ``f(x, p)`` or ``f(x, p, second)``, n numbers. If shape (n, k) is accepted, one call serves all nodes.
     states : array_like, shape (N m, n)
         Approximate orbit.
     period : float
     parameter : float
     mesh : int or array_like, shape (N + 1,)
-        Number of equal intervals, or mesh points from 0 to 1.
+        Number of equal intervals, or points from 0 to 1.
     degree : int
     jacobian : callable, optional
         ``jacobian(x, p)``: (f_x, f_p), shapes (n, n) and (n,), or (n, n, k) and (n, k). Default: complex steps, else
@@ -56,11 +56,11 @@ class PeriodicOrbit:
     second : float, optional
         Passed after p; curves of folds and period doublings vary it.
     smallest : float
-        Below this amplitude, in units of `scale`, the path ends at a Hopf point.
+        Amplitude, in units of `scale`, at which the path ends at a Hopf point.
     scale : array_like, shape (n,), optional
-        Component sizes; default: standard deviations.
+        Default: standard deviations.
     heading : array_like, shape (N m, n), optional
-        Change of X along a branch that begins here; default: growth.
+        Change of X along a new branch; default: growth.
     """
 
     f: Model | Callable[..., Any]
@@ -107,7 +107,7 @@ class PeriodicOrbit:
         ----------
         f : callable
         point : LocatedEvent or (x, p)
-            Hopf point, as `continuation.Stability` locates it.
+            As `continuation.Stability` locates it.
         radius : float
             Relative to the size of x (1 where x is 0).
         intervals, degree : int
@@ -117,7 +117,7 @@ class PeriodicOrbit:
         Raises
         ------
         ValueError, ArithmeticError
-            If the point is no Hopf point or Newton's method fails.
+            If this is no Hopf point or Newton's method fails.
         """
         x, p = as_point(point, "point")
         grid = Asked(intervals, degree, radius).grid
@@ -190,7 +190,7 @@ class PeriodicOrbit:
         ----------
         orbit : PeriodicOrbit
         at : LocatedEvent, Step or (y, p), optional
-            Point of its path, default its start. If it has a tangent, Newton's method searches across it.
+            Point of its path, default its start. Newton's method searches across its tangent, if any.
         intervals, degree : int, optional
             Default: unchanged.
         """
@@ -200,7 +200,7 @@ class PeriodicOrbit:
     def _remeshed(
         self, at: Any, intervals: int | None = None, degree: int | None = None, v: Array | None = None
     ) -> tuple[PeriodicOrbit, Array | None]:
-        """Interpolate orbit and path direction on an adapted mesh."""
+        """Interpolate on an adapted mesh."""
         y, lam = self.start() if at is None else as_point(at)
         old, X, T = self.equations.unknowns(y)
         new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
@@ -219,8 +219,7 @@ class PeriodicOrbit:
         at : LocatedEvent, Step or (y, p), optional
             The doubling, default the start.
         radius : float
-            Distance in units of `scale`; 0: the doubling itself on twice the mesh, where a `continuation.Curve` of
-            branch points begins.
+            Distance in units of `scale`; at 0, on the doubling itself, a `continuation.Curve` of branch points begins.
         """
         y, lam = self.start() if at is None else as_point(at)
         grid, X, T = self.equations.unknowns(y)
@@ -298,7 +297,7 @@ class PeriodicOrbit:
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
-        """A path's orbit on an adapted mesh, as its own reference; see `continuation.renewal`."""
+        """An orbit on an adapted mesh, its own reference; see `continuation.renewal`."""
         given, tangent = self._remeshed((u[:-1], float(u[-1])), v=v)
         assert tangent is not None
         new = given._corrected(tangent)
@@ -306,7 +305,7 @@ class PeriodicOrbit:
 
     @cached_property
     def metric(self) -> Weighted:
-        """Mean square of X over `scale`, relative T, and p by its effect on X in a period."""
+        """Mean square of scaled X, relative T, and p by its effect on X."""
         X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
         size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
         moved = self.equations.flow.derivatives(self.states.T, self.parameter)[1] / self.scale
@@ -321,7 +320,6 @@ class PeriodicOrbit:
         return np.append(y, lam), self._direction(away)
 
     def _direction(self, motion: Array) -> Array:
-        """A change of X alone as a direction of (y, p)."""
         return np.append(motion, np.zeros(self.mesh.size))
 
     @property

@@ -28,12 +28,12 @@ def plot_orbits(
     Parameters
     ----------
     orbit : PeriodicOrbit
-        The path's, or one of equally many intervals and the same degree.
+        The path's, or one with as many intervals and equal degree.
     points : iterable of Step, LocatedEvent or (y, p), optional
-        Orbits to draw, as ``path.steps[::5]``; default the start.
+        As ``path.steps[::5]``; default the start.
     axes : matplotlib Axes, optional
     over : int or "t", default 0
-        Horizontal component; "t": time in units of f.
+        Horizontal component, or time in units of f.
     of : int, default 1
         Vertical component.
 

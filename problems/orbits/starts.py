@@ -13,29 +13,28 @@ from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
 HOPF_PAIR = 1e-2
-"""Largest real part of a Hopf pair over its modulus; points may be known to few digits."""
+"""Largest real part over modulus of a Hopf pair known to few digits."""
 
 LEAST_MOTION = 1e-2
-"""Least relative scale of a component: one that does not oscillate at first must not be measured by round-off."""
+"""Least relative scale: a component that does not oscillate at first must not be measured by round-off."""
 
 ONE_RETURN = 1e-3
-"""A settled simulation returns after any number of periods: the last return that misses by at most twice the least miss
-plus this, in standard deviations, ends one period."""
+"""The last return that misses by at most twice the least miss plus this, in standard deviations, ends a period: settled
+simulations return repeatedly."""
 
 NO_RETURN = 0.3
-"""A simulation whose best return misses by more has not settled."""
+"""Simulations whose best return misses by more have not settled."""
 
 
 MESHES = 4
-"""Adaptations of a simulation's mesh; more change nothing (van der Pol)."""
+"""Meshes of a simulation's orbit; more change nothing (van der Pol)."""
 
 
 def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, float, Array]:
     """First-order orbits about a Hopf point: x + radius Re (q exp(2 pi i t)).
 
-    Returns Re q exp(2 pi i t) at the nodes, shape (N m, n), period and scale.
-
-    Raises `ValueError` if no pair of eigenvalues is near the imaginary axis.
+    Returns Re q exp(2 pi i t) at nodes, shape (N m, n), period and scale. Raises `ValueError` if no pair of eigenvalues
+    is near the imaginary axis.
     """
     matrix = field.derivatives(x[:, None], p)[0][0]
     values, vectors = np.linalg.eig(matrix)
@@ -53,7 +52,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, floa
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
     """A simulation's last period: states at nodes, period and grid.
 
-    `t`: shape (k,). `x`: shape (k, n). The mesh equidistributes the mean of time and arc length.
+    The mesh equidistributes the mean of time and arc length.
     """
     spline = CubicHermiteSpline(t, x, field(x.T, p).T)
     end, spread = x[-1], x.std(axis=0)

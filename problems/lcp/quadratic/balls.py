@@ -1,4 +1,4 @@
-"""Bounded products in single precision, and interval polynomials by middle and radius."""
+"""Single-precision products, and interval polynomials by middle and radius."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from continuation.numbers.ends import EPS, Ends, accumulated, up_sum
 Single = NDArray[np.float32]
 
 UNIT = float(np.finfo(np.float32).epsneg)
-"""Relative error of one operation in single precision."""
+"""Relative error in single precision."""
 
 SINGLE_UNDERFLOW = float(np.finfo(np.float32).tiny)
-"""Underflow error of one operation, even if subnormal numbers are flushed to zero."""
+"""Underflow error, even if subnormal numbers are flushed to zero."""
 
 
 def rounded(count: int) -> float:
-    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, with eight more operations."""
+    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, for eight more operations."""
     whole = (count + 8) * UNIT
     return whole / (1.0 - whole) * (1.0 + 8.0 * EPS) if whole < 0.5 else np.inf
 
 
 def image_of(matrix: Single, x: Array) -> Array:
-    """Bound of matrices >= 0 times vectors >= 0, slab by slab."""
+    """Bound of matrices >= 0 times vectors >= 0."""
     m = x.shape[1]
     unit = x.max(axis=1, keepdims=True)
     unit = np.where(unit == 0.0, 1.0, unit)
@@ -53,7 +53,7 @@ class Ball:
         return cls(middle, v.radius(middle))
 
     def through(self, matrix: Array, size: Array | None = None) -> Ball:
-        """Matrices times intervals; `size` is |matrix|, if known."""
+        """Matrices times intervals; `size`: |matrix|."""
         count = matrix.shape[-1] + 4
         room = self.radius + accumulated(count) * np.abs(self.middle)
         return Ball(
@@ -72,19 +72,19 @@ class Ball:
 
     @property
     def derivative(self) -> Ball:
-        """Derivative of polynomials, coefficients along the last axis."""
+        """Derivative of polynomials, coefficients last."""
         count = np.arange(1.0, self.middle.shape[-1])
         middle, radius = self.middle[..., 1:] * count, self.size[..., 1:] * (8.0 * EPS * count)
         return Ball(middle, up_by(radius + self.radius[..., 1:] * count, 4))
 
 
 POLYNOMIAL_PARTS = 8
-"""Parts of a slab that bound H along the cubic: H nearly vanishes at both ends of a cell, so one sum of coefficient
-sizes is several times too large."""
+"""Parts of a slab for the range of H along the cubic: H nearly vanishes at both ends, so one sum of coefficient sizes
+is several times too large."""
 
 
 def _shifts() -> Array:
-    """Exact map from coefficients of degree 8 on [-1, 1] to those on each part, (9, POLYNOMIAL_PARTS * 9)."""
+    """Exact map from degree-8 coefficients on [-1, 1] to those on parts, (9, POLYNOMIAL_PARTS * 9)."""
     out = np.zeros((9, POLYNOMIAL_PARTS, 9))
     for part in range(POLYNOMIAL_PARTS):
         middle = (2 * part + 1) / POLYNOMIAL_PARTS - 1.0
@@ -97,7 +97,7 @@ _SHIFTS = _shifts()
 
 
 def largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
-    """Bound of |v - x E v + x^2 C v| for |x| <= offset, for polynomials v, E v and C v."""
+    """Bound of |v - x E v + x^2 C v|, |x| <= offset, for polynomials v, E v, C v."""
     middle, room = (np.zeros((*image.middle.shape[:2], 9)) for _ in range(2))
     for power, sign, v in ((0, 1.0, image), (1, -1.0, by_E), (2, 1.0, by_C)):
         there = slice(power, power + v.middle.shape[-1])

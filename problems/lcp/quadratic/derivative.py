@@ -1,4 +1,4 @@
-"""A quadratic homotopy and its derivative along a cubic: polynomials of degree 6 and 3."""
+"""A quadratic homotopy and its derivative along a cubic, of degree 6 and 3."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 
 def _apply(part: Affine, q: Ends) -> Ends:
-    """The part along a cubic, shape (slabs, 4, N), from coefficients of shape (slabs, 4, N + 1)."""
+    """The part along a cubic, shape (slabs, 4, N), from coefficients (slabs, 4, N + 1)."""
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
     # Errors of the matrix, radius of q, rounding of products.
@@ -26,7 +26,7 @@ def _apply(part: Affine, q: Ends) -> Ends:
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
-"""Powers to which products of coefficients belong."""
+"""Assigns products of coefficients to powers."""
 
 
 def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
@@ -50,9 +50,9 @@ class Derivative:
     residual : Ends, shape (slabs, N, 7)
         Coefficients of H.
     a, b : ndarray, shape (slabs, 4, N)
-        Middles of alpha and beta.
+        Middles of alpha, beta.
     ra, rb : ndarray
-        Their radii.
+        Radii.
     """
 
     form: Quadratic
@@ -64,19 +64,19 @@ class Derivative:
 
     @classmethod
     def of(cls, form: Quadratic, cubic: Ends) -> Derivative:
-        """From the cubic's coefficients, shape (slabs, 4, N + 1)."""
+        """From cubic coefficients, shape (slabs, 4, N + 1)."""
         alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
         a, b = alpha.middle(), beta.middle()
         return cls(form, _coefficients(value, alpha, beta), a, b, alpha.radius(a), beta.radius(b))
 
     def matrix(self, k: int) -> Array:
-        """Coefficient k in floats, shape (slabs, N, N + 1)."""
+        """Coefficient k, shape (slabs, N, N + 1)."""
         form, a, b = self.form, self.a[:, k, :, None], self.b[:, k, :, None]
         out: Array = a * form.second.matrix + b * form.first.matrix
         return out + form.plain.matrix if k == 0 else out
 
     def image(self, x: Array) -> tuple[Array, Array]:
-        """Bounds of |exact| x and |exact - matrix| x for all coefficients; shape (slabs, 4, N)."""
+        """Bounds of |exact| x and |exact - matrix| x, shape (slabs, 4, N)."""
         form, count = self.form, 2 * x.shape[1]
         by_second, by_first = (part.linear_size(x)[:, None] for part in (form.second, form.first))
         error = self.ra * by_second + self.rb * by_first

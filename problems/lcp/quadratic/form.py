@@ -21,7 +21,7 @@ class Affine:
     constant : ndarray, shape (N,)
     matrix : ndarray, shape (N, N + 1)
     sizes : ndarray, shape (N, N + 1), optional
-        For entries that are rounded sums: absolute sums of their terms; zero for exact entries.
+        Sums of the absolute terms of rounded entries; zero for exact ones.
     constant_sizes : ndarray, shape (N,), optional
     """
 
@@ -32,7 +32,7 @@ class Affine:
 
     @cached_property
     def size(self) -> Array:
-        """Bounds of |entries| and their terms."""
+        """Bounds of entries and terms."""
         return np.abs(self.matrix) if self.sizes is None else np.maximum(self.sizes, np.abs(self.matrix))
 
     @cached_property
@@ -42,7 +42,7 @@ class Affine:
 
     @cached_property
     def _alone(self) -> Index | None:
-        """Columns of the entries if no row has two."""
+        """Columns of the entries, if no row has two."""
         there = self.size != 0.0
         return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
 
@@ -56,7 +56,7 @@ class Affine:
         return self._times(self.matrix, x)
 
     def linear_size(self, x: Array) -> Array:
-        """Entry sizes times vectors >= 0.
+        """Sizes times vectors >= 0.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class Affine:
         return self._times(self.size, x)
 
     def linear_error(self, x: Array) -> Array:
-        """Entry errors times vectors >= 0.
+        """Errors times vectors >= 0.
 
         Parameters
         ----------
@@ -88,12 +88,12 @@ class Affine:
 
 
 SUM_ROUNDING = 8.0 * EPS
-"""Error of a sum of up to eight exact terms relative to their sizes: seven roundings, and the bound's."""
+"""Relative error of a sum of up to eight exact terms: seven roundings, and the bound's."""
 
 
 @frozen(eq=False, slots=False)
 class Quadratic:
-    """H(u) = plain(u) + first(u) second(u), component by component, each part affine in u = (y, lam).
+    """H(u) = plain(u) + first(u) second(u), componentwise, u = (y, lam).
 
     Parameters
     ----------
@@ -105,17 +105,16 @@ class Quadratic:
     second: Affine
 
     def times(self, left: Array, a: Array, b: Array, chart: Array, scale: Array, powers: int) -> Array:
-        """`left` times the coefficients of G' along cubics, scaled; shape (powers, slabs, m, N + 1).
+        """`left` times scaled coefficients of G' along cubics, shape (powers, slabs, m, N + 1).
 
         Parameters
         ----------
         left : ndarray, shape (slabs, m, N + 1)
         a, b : ndarray, shape (slabs, 4, N)
-            Coefficients of `first` and `second`.
+            Coefficients of `first`, `second`.
         chart : ndarray, shape (slabs, N + 1)
             Last row of coefficient 0.
         scale : ndarray, shape (slabs, N + 1)
-            Units of the unknowns.
         powers : int
             Number of coefficients.
         """

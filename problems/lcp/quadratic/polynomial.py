@@ -1,8 +1,7 @@
-"""Krawczyk's test for quadratic homotopies: I - Y(s) G' as a polynomial in the offset x = s - middle.
+"""Krawczyk's test for quadratic homotopies: I - Y(s) G' as a polynomial in x = s - middle.
 
-The preconditioner is Y(s) = (I - x E + x^2 C) Y_0. Units d of the unknowns are powers of two near the radii. Y_0 and
-Y_0 G' are in double precision. E, C and the remainder need two digits: single precision, with bounded rounding, costs
-half.
+The preconditioner is Y(s) = (I - x E + x^2 C) Y_0. Units d are powers of two near the radii. E, C and the remainder
+need two digits: single precision, with bounded rounding, costs half.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, i
 from problems.lcp.quadratic.derivative import Derivative
 
 SHARE = 1e-3
-"""Rounding is bounded once, for a vector shaped like the misfit plus this part of its largest component."""
+"""Rounding is bounded once, for the misfit plus this part of its maximum."""
 
 TERMS = 6
-"""Terms of the tangent's series; the rest is bounded in the shape of the tube."""
+"""Terms of the tangent's series; the rest is bounded in the tube's shape."""
 
 STRETCHES = 32
-"""Parts of a slab on which the signs of the parameter's derivatives are bounded."""
+"""Parts of a slab for the signs of the parameter's derivatives."""
 
 
 @frozen(eq=False, slots=False)
@@ -40,13 +39,13 @@ class Polynomial:
     slabs : Slabs
     derivative : Derivative
     d : ndarray, shape (slabs, m)
-        The units.
+        Units.
     Y, off : ndarray
-        Y_0, and |I - Y_0 G_0|.
+        Y_0 and |I - Y_0 G_0|.
     E, C : ndarray
-        Preconditioner coefficients; None for slabs of no length.
+        None for slabs of no length.
     left : ndarray
-        Stacked: the third-order remainder, |F| and |H|; E, F and H are Y_0 times coefficients of G'.
+        Stacked third-order remainder, |F|, |H|; E, F, H are Y_0 times coefficients of G'.
     """
 
     slabs: Slabs
@@ -97,7 +96,7 @@ class Polynomial:
 
     @cached_property
     def _images(self) -> tuple[Ball, ...]:
-        """Y_0 H(p), E Y_0 H(p) and C Y_0 H(p), scaled polynomials of degree 6."""
+        """Y_0 H(p), E Y_0 H(p), C Y_0 H(p), of degree 6."""
         image = Ball.of(self.derivative.residual).through(self.Y[:, :, :-1], self.size_Y)
         if self.E is None or self.C is None:
             return (image,)
@@ -134,10 +133,10 @@ class Polynomial:
 
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
-        """A scaled vector x, and a bound of the errors of |I - Y G'| x from rounding and Y_0 G_0.
+        """A vector x, and bounds of |I - Y G'| x from rounding and Y_0 G_0, scaled.
 
-        Let B_k = Y_0 G_k; I, E, F and H are off by e_k, and C by e_C off E E - F. The bound is e_0 + t (e_1 + E e_0) +
-        t^2 (e_2 + E e_1 + C e_0 + e_C) + t^3 (...) and so on.
+        I, E, F and H are off by e_k, C by e_C from E E - F: e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) +
+        t^3 (...) and so on.
         """
         with np.errstate(all="ignore"):
             misfit = self.misfit / self.d
@@ -166,7 +165,7 @@ class Polynomial:
             return x, up_by(plain + image_of(self.sizes, np.concatenate([through_E, through_C], axis=1)), 64)
 
     def _pushed(self, defect: Array, x: Array | None = None) -> Array:
-        """Bound of |Y(s)| defect, scaled, plus terms of third and higher order times x >= 0."""
+        """Bound of |Y(s)| defect, plus third- and higher-order terms times x."""
         size = up_by(times(self.size_Y, defect), defect.shape[1])
         if self.E is None or self.left is None:
             return size
@@ -181,10 +180,8 @@ class Polynomial:
     def spread(self, x: Array, radius: Array) -> Array:
         """See `Judged.spread`.
 
-        Bounds I - (I - x E + x^2 C) Y_0 (G_0 + x G_1 + x^2 G_2 + x^3 G_3) and Y(s) 2 Q(d, .); C is about E E - F, and
-        the third order leaves E F - C E - H.
+        Bounds I - Y(s) (G_0 + x G_1 + x^2 G_2 + x^3 G_3), whose third order is E F - C E - H, and Y(s) 2 Q(d, .).
         """
-        # Callers ask several times for a tube alone.
         if not np.array_equal(x, radius):
             return self._spread(x, radius)
         key = x.tobytes()
@@ -201,11 +198,10 @@ class Polynomial:
             return up_by(self.d * found, 16)
 
     def _turned(self, radius: Array) -> Array:
-        """Scaled bound of |Y(s) 2 Q(d, p'(s))| for |d| <= radius.
+        """Scaled bound of |Y(s) 2 Q(d, p'(s))|, |d| <= radius.
 
-        2 Q(p', .) is the derivative of G' along the cubic, G_1 + 2 x G_2 + 3 x^2 G_3. Y(s) times it is E + x (F - C) +
-        x^2 (2 H - E F - (E F - C E - H)) + x^3 (2 C F - 3 E H) + 3 x^4 C H, with errors at most 3 / t times those of I
-        - Y(s) G'.
+        2 Q(p', .) = G_1 + 2 x G_2 + 3 x^2 G_3. Y(s) times it is E + x (F - C) + x^2 (2 H - E F - (E F - C E - H)) + x^3
+        (2 C F - 3 E H) + 3 x^4 C H, with errors at most 3 / t times those of I - Y(s) G'.
         """
         if self.E is None or self.left is None:
             return self._pushed(self.derivative.products(self.slabs.velocity.magnitude(), radius))
@@ -219,10 +215,10 @@ class Polynomial:
         return up_by(both + t * by_F + t**2 * (third + 2.0 * by_H) + 3.0 / t * share * errors, 64)
 
     def _solved(self, v: Array, radius: Array, tube: Array, terms: int) -> Array:
-        """Bound of |G'^{-1} b| within `radius` <= tube of the cubic, from a bound v of |Y(s) b|.
+        """Bound of |G'^{-1} b| within `radius` <= tube of the cubic, from v >= |Y(s) b|.
 
-        With E = I - Y G' and E r <= kappa r, (I - E)^{-1} v is at most the sum of the first E^k v plus theta / (1 -
-        kappa) r, if the next is at most theta r.
+        With E = I - Y G' and E r <= kappa r: the sum of the first E^k v, plus theta / (1 - kappa) r if the next is at
+        most theta r.
         """
         with np.errstate(all="ignore"):
             kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True) * (1.0 + 4.0 * EPS)
@@ -233,9 +229,9 @@ class Polynomial:
             return up_by(total + np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * tube, 4 * terms + 16)
 
     def _drift(self, radius: Array, tube: Array, terms: int) -> Array:
-        """Bound of |u'(s) - p'(s)| for a curve u(s) within `radius` of p(s).
+        """Bound of |u'(s) - p'(s)| for u(s) within `radius` of p(s).
 
-        H'(u) u' = 0 and c . (u' - p') = 0 give u' - p' = -G'^{-1} (H'(u) p', 0); H'(u) p' = (H(p))' + 2 Q(u - p, p').
+        u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' = (H(p))' + 2 Q(u - p, p').
         """
         with np.errstate(all="ignore"):
             return self._solved(self._slope + self.d * self._turned(radius), radius, tube, terms)
@@ -252,8 +248,7 @@ class Polynomial:
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
         """See `Judged.pace`.
 
-        With e = u' - p', u'' - p'' = -G'^{-1} (H''(u', u') + H'(u) p'', 0); the vector is (H(p))'' + 4 Q(p', e) + 2
-        Q(e, e) + 2 Q(u - p, p'').
+        With e = u' - p': u'' - p'' = -G'^{-1} (r, 0), r = (H(p))'' + 4 Q(p', e) + 2 Q(e, e) + 2 Q(u - p, p'').
         """
         t = self.slabs.offset[:, None]
         middle, half = (2.0 * np.arange(STRETCHES) + 1.0) / STRETCHES - 1.0, (1.0 + 1e-9) / STRETCHES
