@@ -16,7 +16,6 @@ from problems.lcp import LCP
 
 
 def _array(value: object) -> Array:
-    """A read-only float array."""
     array: Array = np.array(value, dtype=float)
     array.flags.writeable = False
     return array

@@ -120,7 +120,6 @@ def remarks(rows: Sequence[Row]) -> list[str]:
 
 
 def _true(literal: LiteralRun) -> bool:
-    """Whether the literal algorithm makes no false claim."""
     return literal.solved or not literal.claims_solution
 
 

@@ -175,7 +175,6 @@ class _Looks:
         return values
 
     def _border(self, t: float) -> Array:
-        """Dual tangent at t."""
         tangent, weights = self.arc.segment.derivative(t), self.arc.a.weights
         border: Array = weights * tangent / norm(weights, tangent)
         return border
@@ -294,12 +293,10 @@ class _Looks:
         return max(multiplicity(self.arc.a, apply, self._border(t), 1.0 / told[-1]), 1)
 
     def _rows(self) -> Array:
-        """Row sizes of H' over the arc."""
         a, b = self.arc.a, self.arc.b
         return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
-        """Whether H at u is round-off."""
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 

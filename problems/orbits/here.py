@@ -53,7 +53,7 @@ class Here:
         return by_x.reshape(*shape, shape[-1]), by_p.reshape(shape)
 
     def residual(self) -> Array:
-        """X' - T f at the Gauss points, phase condition, mesh deviation."""
+        """X' - T f, phase condition and mesh deviation."""
         equations = self.grid.slopes(self.X) - self.T * self.flow
         phase = np.einsum("ig,ign,ign->", self.grid.quadrature, self._values, self.reference)
         return np.concatenate([equations.ravel(), [phase], self.times - self.grid.mesh[1:-1]])
@@ -109,7 +109,7 @@ class Here:
 
     @property
     def amplitude(self) -> float:
-        """Root mean square deviation from the mean, scaled."""
+        """Scaled root mean square deviation from the mean."""
         X, weights = self.X / self.scale, np.zeros(len(self.X))
         np.add.at(weights, self.grid.index, self.grid.quadrature @ self.grid.value)
         return float(np.sqrt(np.abs(weights @ (X - weights @ X) ** 2).mean()))
