@@ -188,7 +188,7 @@ class _Looks:
         return self.prediction(t * self.arc.length)
 
     def first(self) -> BranchPointOnArc | Rejected | None:
-        """The first branch point that the eigenvalues along the arc lead to; None on a regular arc."""
+        """First branch point, None on a regular arc."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
@@ -230,7 +230,7 @@ class _Looks:
         return places
 
     def over(self, seen: BranchPointOnArc) -> Crossed | Rejected | None:
-        """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
+        """The branch point, if the arc crosses it along its branch; None if it ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -266,7 +266,7 @@ class _Looks:
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
     def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
-        """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
+        """The branch point indicated by the sample at t: simple, near `place`, or degenerate."""
         solver, arc = self.solver, self.arc
         lost = self._lost(self._point(t), t)
         found = self.simple(self._point(place)) if lost == 1 else None
@@ -289,7 +289,7 @@ class _Looks:
         return found
 
     def _lost(self, u: Array, t: float) -> int:
-        """How many eigenvalues are as the smallest z that is told at a point about t."""
+        """Multiplicity of the smallest z near t."""
         apply, told = _differential(self.solver, u), self.look(u, t, Z_ROUND_OFF)
         if apply is None or not told:
             return 1
@@ -304,7 +304,7 @@ class _Looks:
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> BranchPointOnArc | None:
-        """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
+        """The simple branch point near the arc, by Newton's method."""
         arc, a = self.arc, self.arc.a
         try:
             rows = self._rows()
@@ -324,7 +324,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float, lost: int) -> bool:
-    """Whether the changes told at a place are those of eigenvalues that vanish together as expected, and no other."""
+    """Whether the sample fits eigenvalues that vanish together, and no other is near zero."""
     first, *others = sorted(told, key=lambda mu: abs(mu - expected)) or [min(expected, TOLD)]
     others = [mu for k, mu in enumerate(others, 1) if k >= lost or abs(mu - first) > NEAR_CROSSING * abs(first)]
     near = abs(first - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

@@ -38,10 +38,10 @@ FARTHEST = 3.0
 
 @frozen(eq=False)
 class BranchPointOnArc:
-    """A branch point on an arc or ahead of it.
+    """A branch point on or ahead of an arc.
 
-    `simple`: None for a degenerate one. `order`: Of the zero of z. `lost`: How many ranks H' loses there. `alone`:
-    Whether no other branch point lies so near that its eigenvalue may be taken for one of these.
+    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no confusable branch
+    point is near.
     """
 
     u: Array
@@ -52,11 +52,11 @@ class BranchPointOnArc:
 
     @property
     def odd(self) -> bool:
-        """Whether the determinant's sign changes there."""
+        """Whether the determinant changes sign."""
         return bool(round(self.order) * self.lost % 2)
 
     def expected(self, t: float, s: float) -> float:
-        """What is told at t of an eigenvalue that vanishes at s."""
+        """1 - z at t of an eigenvalue that vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -64,10 +64,7 @@ class BranchPointOnArc:
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point to which a look at t leads; None where there is none.
-
-    Eigenvalues that vanish together may come to zero at different rates: that H' loses several ranks may be told at the
-    point alone.
+    """The degenerate branch point indicated by a sample at t, or None.
 
     Parameters
     ----------
@@ -94,7 +91,7 @@ def degenerate_point(
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
         if lost > 1 or order <= SIMPLE_ORDER:
-            # The symmetry that makes eigenvalues vanish together keeps the prediction from what they would magnify.
+            # Symmetry keeps the prediction from errors that vanishing eigenvalues would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return solver.project(arc.a, u, arc.a.border)[0]
@@ -110,7 +107,7 @@ def degenerate_point(
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         order = max((ahead - t) / (beyond - left), 1.0)
-        # From here on the path: beside a degenerate point a place on it may cost factorisations.
+        # Points on the path may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)

@@ -139,7 +139,7 @@ def initial_extent(
         except Exception:
             # H is probed beyond its domain.
             d, turned = off, np.inf
-        # From a fold the parameter moves by the correction alone.
+        # At a fold only the correction moves the parameter.
         turned = max(turned, TURN * abs((h * v[-1] + d[-1]) / gap))
         if before[1] > 0.0 and 0.0 < turned < np.inf and h != before[0]:
             power = min(max(float(np.log(turned / before[1]) / np.log(h / before[0])), POWERS[0]), POWERS[1])
@@ -178,10 +178,7 @@ def initial_extent(
 
 
 def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
-    """The units of unknowns that stand still, beside each other: those in which their columns of H_y are of one size.
-
-    Found by Sinkhorn's iteration with the rows of H_y, whose units are unknown too. Ones where H_y is no matrix.
-    """
+    """Units of still unknowns that equalise their columns of H_y, by Sinkhorn's iteration; ones without a matrix."""
     ones = np.ones(still.size)
     H_y = evaluator.matrix(u) if still.sum() > 1 else None
     if not (isinstance(H_y, np.ndarray) or sp.issparse(H_y)):

@@ -1,4 +1,4 @@
-"""Homotopies for F(x) = 0, with and without bounds, for any F: R^n -> R^n, and examples of them."""
+"""Homotopies for F(x) = 0, with and without bounds, and examples."""
 
 from problems.nonlinear.brown import BrownAlmostLinear, brown
 from problems.nonlinear.complementarity import (

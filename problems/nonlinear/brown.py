@@ -16,12 +16,9 @@ from problems.options import positive_integer, quiet
 class BrownAlmostLinear:
     """F_1 = prod_j x_j - 1, F_k = x_k + sum_j x_j - (n + 1) for k = 2..n; F(1, ..., 1) = 0.
 
-    ``F(x)`` is its value and ``F.jacobian(x)`` its derivative.
-
     Parameters
     ----------
     n : int
-        Number of equations and unknowns.
 
     References
     ----------
@@ -33,7 +30,7 @@ class BrownAlmostLinear:
 
     @quiet
     def __call__(self, x: Array) -> Array:
-        """F(x), shape (n,); ValueError unless x has that shape."""
+        """F(x), shape (n,)."""
         if x.shape != (self.n,):
             raise ValueError(f"x: expected shape {(self.n,)}, found {x.shape}")
         return np.concatenate((np.prod(x, keepdims=True) - 1.0, x[1:] + np.sum(x) - (self.n + 1.0)))
@@ -46,20 +43,17 @@ class BrownAlmostLinear:
         ----------
         x : Array of shape (n,)
         """
-        # Products of all but one, from both sides: dividing prod x by x_k would fail at x_k = 0.
+        # Dividing prod x by x_k would fail at x_k = 0.
         before = np.cumprod(np.concatenate((np.ones(1), x[:-1])))
         after = np.cumprod(np.concatenate((np.ones(1), x[:0:-1])))[::-1]
         return np.concatenate(((before * after)[None, :], np.eye(self.n)[1:] + 1.0))
 
 
 def brown(n: int) -> BrownAlmostLinear:
-    """Brown's almost linear function of n unknowns: ``F = brown(n)``, with ``F.jacobian``.
-
-    ``fixed_point(F, a, F.jacobian)`` is then the classical test path.
+    """Brown's almost linear function; ``fixed_point(F, a, F.jacobian)`` is the classical test path.
 
     Parameters
     ----------
     n : int
-        Number of equations and unknowns.
     """
     return BrownAlmostLinear(n)

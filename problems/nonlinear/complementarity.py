@@ -1,4 +1,4 @@
-"""Complementarity problems with a nonlinear F and bounds of any kind: Newton's method, and Wang's path."""
+"""Nonlinear complementarity problems with bounds: Newton's method and Wang's path."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_s
 from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
-"""Of Josephy's method; near a solution it takes four or five."""
+"""Of Josephy's method; near a solution four or five suffice."""
 
 AFFINE = Budget(steps=200, factorizations=400)
-"""For each of its problems: mostly a few active sets do, and one that is hard is not worth more."""
+"""Most affine problems need few active sets; a hard one is not worth more."""
 
 
 @frozen(eq=False, slots=False)
@@ -43,16 +43,16 @@ class MixedComplementarity:
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)`` for x of shape (n,).
+        ``F(x) -> (n,)``.
     jacobian : callable or None
-        ``jacobian(x) -> (n, n)``, dense or sparse. None: by truncated Taylor arithmetic, for an F in plain numpy.
+        ``jacobian(x) -> (n, n)``, dense or sparse. None: Taylor arithmetic, for F in plain numpy.
     lower, upper : array_like, shape (n,)
-        -inf and inf are none. At least one of them is a vector, which gives n.
+        May be infinite; at least one is a vector.
 
     Raises
     ------
     TypeError, ValueError
-        If F or `jacobian` cannot be used at a point between the bounds, or the bounds do not fit; naming the argument.
+        If F, `jacobian` or the bounds are unusable.
 
     References
     ----------
@@ -68,7 +68,7 @@ class MixedComplementarity:
         sizes = [np.size(bound) for bound in (self.lower, self.upper) if bound is not None and np.ndim(bound) == 1]
         if not sizes:
             raise ValueError("lower: expected a vector of bounds, lower or upper, found none")
-        # The bounds are checked where those of an affine problem are.
+        # MixedLCP checks the bounds.
         like = MixedLCP(sp.eye_array(sizes[0], format="csr"), np.zeros(sizes[0]), self.lower, self.upper)
         object.__setattr__(self, "lower", like.lower)
         object.__setattr__(self, "upper", like.upper)
@@ -99,7 +99,7 @@ class MixedComplementarity:
         return np.asarray(jets.jacobian(self.F, x))
 
     def linearized(self, x: Array) -> MixedLCP:
-        """The affine problem with F'(x) that has the same F at x.
+        """The affine problem with equal F and F' at x.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class MixedComplementarity:
         Raises
         ------
         ValueError
-            If F or F' is not finite there.
+            If F or F' is not finite.
         """
         slope = self.slope(x)
         return MixedLCP(slope, np.asarray(self.F(x.copy()), dtype=float) - slope @ x, self.lower, self.upper)
@@ -116,20 +116,20 @@ class MixedComplementarity:
 
 @frozen(eq=False, slots=False)
 class InteriorHomotopy:
-    """Wang's homotopy for F: ``(1-l) F(x) - y + l y0 = 0`` and ``y_i`` times its distance from a bound ``= l c_i``.
+    """Wang's homotopy: ``(1-l) F(x) - y + l y0 = 0`` and ``y_i`` times its distance from a bound ``= l c_i``.
 
-    y is s - t with s at lower bounds and t at upper ones; an unknown without bounds adds l (x - x0).
+    y is s - t, s at lower and t at upper bounds; free unknowns add l (x - x0).
 
     Parameters
     ----------
     problem : MixedComplementarity
     x0 : array_like, shape (n,), optional
-        Strictly between the bounds; by default near zero.
+        Strictly between the bounds; default near zero.
 
     Raises
     ------
     ValueError
-        If x0 is not between the bounds, naming the index.
+        If x0 is not.
     """
 
     problem: MixedComplementarity
@@ -149,7 +149,6 @@ class InteriorHomotopy:
 
     @cached_property
     def _shape(self) -> MixedLCP:
-        """The bounds, with a matrix that nobody asks for."""
         n = self.problem.n
         return MixedLCP(sp.csr_array((n, n)), np.zeros(n), self.problem.lower, self.problem.upper)
 
@@ -160,17 +159,17 @@ class InteriorHomotopy:
 
     @cached_property
     def y0(self) -> Array:
-        """The forces at the start: at least 1."""
+        """Forces at the start, at least 1."""
         return np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[self.sides.index]
 
     @cached_property
     def c(self) -> Array:
-        """Their products with the distances from the bounds."""
+        """`y0` times distances from the bounds."""
         return self.sides.gaps(self.x0) * self.y0
 
     @cached_property
     def own_metric(self) -> RelativeMetric:
-        """Relative changes, as for an LCP."""
+        """Relative changes."""
         if self._shape.standard:
             return RelativeMetric()
         return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
@@ -197,21 +196,20 @@ class InteriorHomotopy:
         return goal, sides.force(self.y0 - forces) + sides.free * (x - self.x0), forces, sides.gaps(x), 0.0
 
     def _linearized(self, y: Array) -> TwoVectorHomotopy:
-        """Wang's homotopy of the affine problem that has the same F and F' at a point."""
         problem, blend = self.problem.linearized(y[: self.problem.n]), Blend(sign=1, x=self.sides.free, y=1)
         found = TwoVectorHomotopy("Wang", problem, blend, self.x0, self.y0, self.references, Structure(problem))
-        # What the bounds and the start say is the same at all points.
+        # Bounds and start give these at all points.
         vars(found).update(sides=self.sides, c=self.c, own_metric=self.own_metric)
         return found
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix by way of one of order n + 1."""
+        """Factor, reduced to order n + 1."""
         return self._linearized(y).bordered(y, lam, border)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
+        """(H_y, H_lam) in full; the engine uses `bordered`."""
         return self._linearized(y).jacobian(y, lam)
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
@@ -223,16 +221,15 @@ class InteriorHomotopy:
 
 @frozen(eq=False)
 class ComplementaritySolution:
-    """The answer to a nonlinear complementarity problem.
+    """Result for a nonlinear complementarity problem.
 
     Attributes
     ----------
     success : bool
-        Whether x solves it to the tolerance, each row relative to the terms of its linearisation.
+        Whether the relative residual meets the tolerance.
     certificate : Certificate
-        Of the problem linearised at x, whose F there is the same.
+        For the problem linearised at x.
     path : Path or None
-        Of the homotopy, where one was traced.
     message : str
     """
 
@@ -243,7 +240,7 @@ class ComplementaritySolution:
 
     @property
     def x(self) -> Array:
-        """The solution, or the best point found, shape (n,)."""
+        """Solution, or best point found, shape (n,)."""
         return self.certificate.x
 
     @property
@@ -253,29 +250,28 @@ class ComplementaritySolution:
 
     @property
     def residual(self) -> float:
-        """The natural residual, absolute."""
+        """Absolute natural residual."""
         return self.certificate.residual
 
     @property
     def relative_residual(self) -> float:
-        """The same with each row relative to its terms."""
+        """Natural residual, each row relative to its terms."""
         return self.certificate.relative_residual
 
 
 def solve_complementarity(
     problem: MixedComplementarity, x0: Any = None, *, tolerance: float = 1e-10, budget: Budget | None = None
 ) -> ComplementaritySolution:
-    """Solve a nonlinear complementarity problem: by Newton's method from x0, else along Wang's path and so again.
+    """Solve by Newton's method from x0 or, failing that, from the end of Wang's path.
 
     Parameters
     ----------
     problem : MixedComplementarity
     x0 : array_like, shape (n,), optional
-        Strictly between the bounds; by default near zero.
+        Strictly between the bounds; default near zero.
     tolerance : float
-        Of the relative residual.
+        Relative residual.
     budget : continuation.Budget, optional
-        Of the path.
 
     Returns
     -------
@@ -284,7 +280,7 @@ def solve_complementarity(
     Raises
     ------
     TypeError, ValueError
-        For bad input, naming the argument.
+        For bad input.
 
     References
     ----------
@@ -311,7 +307,7 @@ def solve_complementarity(
 
 
 def _josephy(problem: MixedComplementarity, x: Array, tolerance: float) -> Certificate:
-    """The best point of Newton's method: solve the linearised problem, linearise at its solution."""
+    """Best iterate of Josephy's method."""
     with np.errstate(all="ignore"):
         affine = problem.linearized(x)
         best = certify(affine, np.clip(x, problem.lower, problem.upper))

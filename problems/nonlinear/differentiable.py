@@ -1,4 +1,4 @@
-"""A homotopy for F(x) = 0, completed by the derivative of F."""
+"""Add a Jacobian matrix to a homotopy for F(x) = 0."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class Differentiable:
     ----------
     homotopy : FixedPointHomotopy or NewtonHomotopy
     slope : callable
-        ``slope(x) -> (n, n)``, the derivative F'.
+        ``slope(x) -> (n, n)``, F'.
 
     Raises
     ------
     TypeError
-        If `slope` is not callable, or returns no matrix, or one of a type that the homotopy cannot use.
+        If `slope` does not return a usable matrix.
     ValueError
-        If it does not have the shape (n, n).
+        If its shape is not (n, n).
     """
 
     homotopy: Any
@@ -44,18 +44,18 @@ class Differentiable:
 
     @property
     def references(self) -> Sequence[str]:
-        """Those of the homotopy."""
+        """The homotopy's."""
         return self.homotopy.references
 
     def start(self) -> tuple[Array, float]:
-        """That of the homotopy."""
+        """The homotopy's."""
         return self.homotopy.start()
 
     def residual(self, y: Array, lam: float) -> Array:
-        """That of the homotopy."""
+        """The homotopy's."""
         return self.homotopy.residual(y, lam)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam), the matrix of the type that F' has."""
+        """(H_y, H_lam); H_y has the type of F'."""
         return self.homotopy.derivative(self.slope(y), y, lam)

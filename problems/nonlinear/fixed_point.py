@@ -18,21 +18,19 @@ from problems.options import quiet
 class FixedPointHomotopy:
     """H(x, lam) = (1 - lam) F(x) + lam (x - a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
-    It has no `jacobian`; `fixed_point` adds one where F has a derivative.
-
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)`` for x of shape (n,).
+        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start. For almost every one the path is a regular curve.
+        Start; for almost every a the path is regular.
 
     Raises
     ------
     TypeError
-        If F is not callable, or returns no numpy array.
+        If F does not return an array.
     ValueError
-        If `a` or F(a) is no finite real vector, or their shapes differ.
+        If `a` or F(a) is not finite, or shapes differ.
 
     References
     ----------
@@ -76,12 +74,9 @@ def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedP
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start.
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``, F' as a dense array, a scipy sparse array, `Banded`, `Symmetric` or a
-        LinearOperator; without it the homotopy has no `jacobian` either.
+        ``jacobian(x) -> (n, n)``: array, scipy sparse, `Banded`, `Symmetric` or LinearOperator.
     """
     homotopy = FixedPointHomotopy(F, a)
     return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

@@ -1,4 +1,4 @@
-"""The Newton homotopy, also called global homotopy."""
+"""The Newton or global homotopy."""
 
 from __future__ import annotations
 
@@ -18,21 +18,19 @@ from problems.options import quiet
 class NewtonHomotopy:
     """H(x, lam) = F(x) - lam F(a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
-    It has no `jacobian`; `newton` adds one where F has a derivative.
-
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)`` for x of shape (n,).
+        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start, where F' should be regular.
+        Start, with F' regular.
 
     Raises
     ------
     TypeError
-        If F is not callable, or returns no numpy array.
+        If F does not return an array.
     ValueError
-        If `a` or F(a) is no finite real vector, or their shapes differ.
+        If `a` or F(a) is not finite, or shapes differ.
 
     References
     ----------
@@ -79,12 +77,9 @@ def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomot
     Parameters
     ----------
     F : callable
-        ``F(x) -> (n,)``.
     a : array_like, shape (n,)
-        The start.
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``, F' as any matrix that `continuation.linear` factors; without it the homotopy has no
-        `jacobian` either.
+        ``jacobian(x) -> (n, n)``, any matrix that `continuation.linear` factors.
     """
     homotopy = NewtonHomotopy(F, a)
     return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

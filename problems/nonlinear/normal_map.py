@@ -1,4 +1,4 @@
-"""Mixed complementarity with a parameter as a piecewise smooth homotopy: Robinson's normal map."""
+"""Robinson's normal map: complementarity with a parameter."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from problems.nonlinear.start_checks import require_callable
 from problems.options import finite, finite_or_none, finite_vector, quiet, real_array
 
 Force = Callable[[Any, Any], Any]
-"""``F(x, lam) -> (n,)``; with plain numpy inside, jets pass through it."""
+"""``F(x, lam) -> (n,)``; jets pass through plain numpy."""
 
 Slope = Callable[[Array, float], tuple[Matrix, Array]]
 """``(F_x, F_lam)``: dense, scipy sparse or `Banded`, and a vector."""
@@ -44,40 +44,37 @@ class AffineForce:
         return self.A @ x + self.q + lam * self.d
 
     def slope(self, x: Array, lam: float) -> tuple[Matrix, Array]:
-        """(A, d), wherever."""
+        """(A, d)."""
         return self.A, self.d
 
 
 @frozen(eq=False, slots=False)
 class NormalMap:
-    """The path lam -> x of: x in [lower, upper], F_i(x, lam) >= 0 at a lower bound, <= 0 at an upper one, else 0.
+    """Solutions x(lam) in [lower, upper]: F_i(x, lam) >= 0 at a lower bound, <= 0 at an upper one, else 0.
 
-    The unknown is z, of which x is the projection onto the bounds: H(z, lam) = F(x, lam) + z - x. It is smooth where no
-    z_i is on a bound; the switches are the distances from those. On a piece the bordered systems reduce to the
-    unknowns between their bounds: one factorisation of order |alpha| + 1, of the type that F_x has.
+    H(z, lam) = F(x, lam) + z - x, where x projects z onto the bounds; smooth while no z_i is on a bound. Bordered
+    systems reduce to the free unknowns.
 
     Parameters
     ----------
     F : callable
         ``F(x, lam) -> (n,)``.
     jacobian : callable or None
-        ``jacobian(x, lam) -> (F_x, F_lam)``, F_x dense, sparse or `Banded`. None: by truncated Taylor arithmetic for an
-        F in plain numpy, else by differences.
+        ``jacobian(x, lam) -> (F_x, F_lam)``, F_x dense, sparse or `Banded`. None: Taylor arithmetic for F in plain
+        numpy, else differences.
     x0 : array_like, shape (n,)
-        A solution at `lam0`, or near one.
+        Approximate solution at `lam0`.
     lam0 : float
     lower, upper : array_like, shape (n,), or float
-        -inf and inf are none; 0 and none where nothing is said.
+        May be infinite; default 0 and inf.
     lower_rate, upper_rate : array_like, shape (n,), or float
-        How fast the bounds move: they are lower + lam * lower_rate and upper + lam * upper_rate, as the bounds on
-        friction under a load lam, or on the correlations of a lasso with the penalty lam. 0 where nothing is said.
+        Bounds are lower + lam * lower_rate and upper + lam * upper_rate, as for friction under a load.
     target : float or None, default 0
-        Where the path ends.
 
     Raises
     ------
     TypeError, ValueError
-        If F or its derivative cannot be used at x0, or the bounds do not fit; naming the argument.
+        If F, its derivative or the bounds are unusable.
 
     References
     ----------
@@ -118,14 +115,14 @@ class NormalMap:
 
     @classmethod
     def affine(cls, A: Matrix, q: Any, d: Any, **more: Any) -> NormalMap:
-        """With F(x, lam) = A x + q + lam d, the LCP(q + lam d, A) with any bounds.
+        """F(x, lam) = A x + q + lam d, with any bounds.
 
         Parameters
         ----------
         A : array_like, scipy sparse array or Banded, shape (n, n)
         q, d : array_like, shape (n,)
         **more
-            `x0`, `lam0` and the rest.
+            `x0`, `lam0` and others.
         """
         if not isinstance(A, Banded):
             A = sp.csc_array(A) if sp.issparse(A) else real_array("A", A)
@@ -136,7 +133,7 @@ class NormalMap:
         return cls(force, force.slope, **more)
 
     def bounds(self, lam: float) -> tuple[Array, Array]:
-        """The lower and the upper bounds at a value of the parameter.
+        """Lower and upper bounds at lam.
 
         Parameters
         ----------
@@ -145,18 +142,18 @@ class NormalMap:
         return self.lower + lam * self.lower_rate, self.upper + lam * self.upper_rate
 
     def x(self, z: Array, lam: float = 0.0) -> Array:
-        """The solution that z stands for: its projection onto the bounds.
+        """Project z onto the bounds.
 
         Parameters
         ----------
         z : ndarray, shape (n,)
         lam : float
-            Of no account where the bounds stand still.
+            Matters for moving bounds.
         """
         return np.clip(z, *self.bounds(lam))
 
     def start(self) -> tuple[Array, float]:
-        """The z of the start: x - F(x, lam), which is x where that is between its bounds."""
+        """Start at z = x - F(x, lam)."""
         x = self.x(self.x0, self.lam0)
         z = x - np.asarray(self.F(x, self.lam0), dtype=float)
         return z, self.lam0
@@ -169,19 +166,19 @@ class NormalMap:
         return value
 
     def switches(self, y: Any, lam: float) -> Any:
-        """Distances from the lower bounds that there are, then from the upper ones; negative beyond."""
+        """Distances from finite lower and upper bounds; negative beyond."""
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         lower = self.lower[below] + lam * self.lower_rate[below]
         upper = self.upper[above] + lam * self.upper_rate[above]
         return np.concatenate([y[below] - lower, upper - y[above]])
 
     def piece(self, signs: Array) -> NormalPiece:
-        """The unknowns whose switch is negative stay on that bound.
+        """The smooth map with unknowns of negative switch on their bounds.
 
         Raises
         ------
         ValueError
-            If one is beyond both of its bounds.
+            If one is beyond both.
         """
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         m = int(below.sum())
@@ -197,7 +194,7 @@ class NormalMap:
 
 @frozen(eq=False)
 class NormalPiece:
-    """The normal map with some unknowns on their bounds, clamped + lam * moving."""
+    """The normal map with some unknowns at clamped + lam * moving."""
 
     whole: NormalMap
     free: Any
@@ -205,25 +202,25 @@ class NormalPiece:
     moving: Array
 
     def start(self) -> tuple[Array, float]:
-        """That of the map."""
+        """The map's start."""
         return self.whole.start()
 
     @quiet
     def residual(self, y: Any, lam: Any) -> Any:
-        """F(x, lam) + z - x, x with some components on bounds."""
+        """F(x, lam) + z - x."""
         on, held = 1.0 * self.free, self.clamped + lam * self.moving
         return self.whole.F(y * on + held, lam) + y * (1.0 - on) - held
 
     @quiet
     def slope(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """F_x at x, and the derivative of the map by lam."""
+        """F_x, and the map's derivative by lam."""
         assert self.whole.jacobian_of_F is not None
         F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped + lam * self.moving), lam)
         column = np.asarray(F_lam, dtype=float)
         return F_x, column + F_x @ self.moving - self.moving if self.moving.any() else column
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Columns of F_x for the unknowns between their bounds, of the identity for the others."""
+        """Columns of F_x for free unknowns, else of the identity."""
         F_x, F_lam = self.slope(y, lam)
         on = 1.0 * self.free
         if isinstance(F_x, np.ndarray):
@@ -239,11 +236,11 @@ class NormalPiece:
         return change
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the equations of the unknowns between their bounds; the others follow by substitution."""
+        """Factor the equations of free unknowns."""
         return NormalSystem.of(*self.slope(y, lam), np.asarray(self.free), border)
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
-        """A straight line for an affine F, else by jets."""
+        """A straight line for an affine F, else jets."""
         if isinstance(self.whole.F, AffineForce):
             c = np.zeros((order + 1, point.u.size))
             c[0], c[1] = point.u, point.tangent

@@ -1,4 +1,4 @@
-"""Bordered systems of the normal map, reduced to the unknowns between their bounds."""
+"""Bordered systems of the normal map, reduced to the free unknowns."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from continuation.linear import Banded, BorderedSystem, SingularError, factor_bo
 
 @frozen(eq=False)
 class NormalSystem:
-    """[[F_aa, 0, F_a,lam], [F_ba, I, F_b,lam], [border]], with the rows of b eliminated.
+    """[[F_aa, 0, F_a,lam], [F_ba, I, F_b,lam], [border]] without the rows of b.
 
-    Rows and columns change their places alike, so that the determinant's sign is that of what is left.
+    A symmetric permutation keeps the determinant's sign.
     """
 
     inner: BorderedSystem | None
@@ -28,7 +28,7 @@ class NormalSystem:
 
     @classmethod
     def of(cls, F_x: Matrix, F_lam: Array, free: Any, border: Array) -> NormalSystem:
-        """Factor; SingularError where that cannot be done."""
+        """Factor, or raise SingularError."""
         on_bounds = np.where(free, 0.0, border[:-1])
         row = border[:-1] - (F_x.tosparse() if isinstance(F_x, Banded) else F_x).T @ on_bounds
         corner = float(border[-1] - on_bounds @ F_lam)
@@ -44,11 +44,11 @@ class NormalSystem:
 
     @property
     def sign(self) -> int:
-        """Of the determinant."""
+        """The determinant's sign."""
         return self.inner.sign if self.inner is not None else int(np.sign(self.corner))
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The unknowns between their bounds and the parameter first, then the others."""
+        """Solve for free unknowns and parameter, then the others."""
         rest = rho - float(self.on_bounds @ r)
         z = np.zeros(r.size + 1)
         if self.inner is None:
@@ -62,14 +62,13 @@ class NormalSystem:
 
 
 def _principal(F_x: Matrix, alpha: Any) -> Matrix:
-    """F_aa, of the same type."""
     if alpha.size == F_x.shape[0]:
         return F_x
     if isinstance(F_x, np.ndarray):
         return F_x[np.ix_(alpha, alpha)]
     if not isinstance(F_x, Banded):
         return sp.csc_array(sp.csr_array(F_x)[alpha][:, alpha])
-    # What is left between two rows brings them nearer: the band is no wider.
+    # Deleting rows and columns does not widen the band.
     kept = sp.coo_array(F_x.tosparse().tocsr()[alpha][:, alpha])
     rows, columns = kept.coords
     ab = np.zeros((F_x.lower + F_x.upper + 1, alpha.size))

@@ -1,4 +1,4 @@
-"""Bratu's problem under an obstacle: a fold that turns into a kink."""
+"""Bratu's problem under an obstacle: its fold becomes a corner."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from problems.nonlinear.normal_map import NormalMap
 
 @frozen
 class BratuForce:
-    """-(u'' + lam e^u), times h^2: what an obstacle that holds u has to bear, if it is negative."""
+    """-(u'' + lam e^u), times h^2; where negative, the obstacle bears it."""
 
     bratu: Bratu1D
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """The value at all interior points."""
+        """The value at interior points."""
         return -self.bratu.residual(x, lam)
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
-        """Tridiagonal, and shape (n,)."""
+        """Tridiagonal matrix and vector."""
         H_y, H_lam = self.bratu.jacobian(x, lam)
         return Banded(-H_y.ab, 1, 1), -H_lam
 
@@ -34,24 +34,21 @@ class BratuForce:
 def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0.0) -> NormalMap:
     """Bratu's u'' + lam e^u = 0 on (0, 1) with u <= psi, by second-order differences, from u = 0 at lam = 0.
 
-    Where psi is more than 1.1868421686, the maximum of u in the fold, the path comes to the obstacle behind the fold,
-    on its way back, at lam_c = 8 exp(-psi) arccosh(exp(psi/2))^2. It turns there a second time, in a kink, and lam
-    grows from then on, while u rests on the obstacle between a(lam) and 1 - a(lam),
-    a = sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). For a smaller psi there is no fold.
+    For psi > 1.1868421686, the maximum of u at the fold, the path meets the obstacle behind the fold at lam_c = 8
+    exp(-psi) arccosh(exp(psi/2))^2 and turns in a corner; u then rests on it between a(lam) and 1 - a(lam), a =
+    sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). Smaller psi give no fold.
 
     Parameters
     ----------
     n : int
-        Number of interior points, and of unknowns.
+        Number of interior points.
     psi : float
-        Positive.
     target : float or None
-        Where the path ends, if it comes there.
 
     Returns
     -------
     NormalMap
-        Its unknown is z; ``x(z)`` gives u.
+        ``x(z)`` gives u.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Checks before a path begins: the function, the start, and the value there."""
+"""Checks of F and of the start."""
 
 from __future__ import annotations
 
@@ -11,28 +11,27 @@ from continuation.arrays import Array, Matrix
 from problems.options import finite_vector, quiet
 
 EQUATIONS = "nonlinear equations F(x) = 0"
-"""What the homotopies for F are for."""
 
 Function = Callable[[Array], Array]
-"""A map R^n -> R^n on numpy arrays; with plain numpy inside, complex numbers and jets pass through it."""
+"""R^n -> R^n; complex numbers and jets pass through plain numpy."""
 
 Jacobian = Callable[[Array], Matrix]
-"""Its derivative, (n, n): dense, scipy sparse, or any other matrix that `continuation.linear` factors."""
+"""F', (n, n): any matrix that `continuation.linear` factors."""
 
 
 def require_callable(name: str, value: Any) -> None:
-    """Raise TypeError unless `value` can be called."""
+    """Raise TypeError unless `value` is callable."""
     if not callable(value):
         raise TypeError(f"{name}: expected a function, found {type(value).__name__}")
 
 
 def start_vector(a: Any) -> Array:
-    """A copy of the start a as a finite vector, or ValueError."""
+    """Copy a finite vector, or raise ValueError."""
     return finite_vector("a", a)
 
 
 def value_at(F: Function, a: Array) -> Array:
-    """F(a), finite and of the shape of `a`; else `TypeError` or `ValueError`, by name."""
+    """F(a), finite, of a's shape; else `TypeError` or `ValueError`."""
     require_callable("F", F)
     value: Any = quiet(F)(a.copy())
     if not isinstance(value, np.ndarray):
@@ -43,7 +42,7 @@ def value_at(F: Function, a: Array) -> Array:
 
 
 def check_jacobian_shape(jacobian: Jacobian, a: Array) -> None:
-    """Raise TypeError unless `jacobian` is a function of a matrix, ValueError unless that has shape (n, n)."""
+    """Raise TypeError unless `jacobian` returns a matrix, ValueError if not (n, n)."""
     require_callable("jacobian", jacobian)
     shape = getattr(quiet(jacobian)(a.copy()), "shape", None)
     if shape is None:

@@ -1,4 +1,4 @@
-"""Periodic orbits: a homotopy; `problems.orbits.models` has vector fields with known ones."""
+"""Periodic orbits; `problems.orbits.models` has examples."""
 
 from problems.orbits.named import from_model
 from problems.orbits.orbit import PeriodicOrbit

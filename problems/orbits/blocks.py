@@ -1,8 +1,8 @@
-"""An orbit's equations as blocks A_i x_i + B_i x_{i+1} = 0, condensed to one: A x_0 + B x_N = 0, two blocks at a time.
+"""Condense an orbit's equations A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
 
-Two neighbours give one by a QR factorisation of the columns of the unknown between them, all pairs at once. No block is
-inverted and none multiplied by its neighbour, so that growing and decaying solutions do no harm (Wright, Stable
-parallel algorithms for two-point boundary value problems, SIAM J. Sci. Stat. Comput. 13, 1992).
+QR factorisations eliminate unknowns between neighbouring blocks. No block is inverted or multiplied by another, so
+growing and decaying solutions lose no digits (Wright, Stable parallel algorithms for two-point boundary value problems,
+SIAM J. Sci. Stat. Comput. 13, 1992).
 """
 
 from __future__ import annotations
@@ -16,10 +16,9 @@ from continuation.linear import SingularError
 
 @frozen(eq=False)
 class Condensed:
-    """All eliminations: the finest one, of what is inside of the blocks, first.
+    """Eliminations, and the remaining block.
 
-    `follows`, each of shape (K, p, 2 n): How p unknowns of each of K blocks follow from (left, right), with the other
-    sign. `A`, `B`: Of the one block that is left.
+    `follows`: maps, shape (K, p, 2 n), from (left, right) to minus p unknowns of K blocks.
     """
 
     follows: list[Array]
@@ -28,7 +27,7 @@ class Condensed:
 
     @classmethod
     def of(cls, blocks: Array) -> Condensed:
-        """Blocks of shape (N, m n, (m + 1) n), of the nodes of each interval."""
+        """Condense blocks of shape (N, m n, (m + 1) n)."""
         rows, n = blocks.shape[1], blocks.shape[2] - blocks.shape[1]
         first, rest = _eliminated(blocks[:, :, n:rows], np.concatenate([blocks[:, :, :n], blocks[:, :, rows:]], axis=2))
         follows = [first]
@@ -43,7 +42,7 @@ class Condensed:
         return cls(follows, rest[0, :, :n], rest[0, :, n:])
 
     def all_from(self, ends: Array) -> Array:
-        """All unknowns but the last x_N, shape (N m, n), from x_0 and x_N, of shape (2, n)."""
+        """Unknowns before x_N, shape (N m, n), from (x_0, x_N)."""
         n = ends.shape[1]
         for level in reversed(self.follows):
             count = len(level)
@@ -55,7 +54,7 @@ class Condensed:
 
 
 def _eliminated(middle: Array, outer: Array) -> tuple[Array, Array]:
-    """How the unknowns of the columns `middle` follow from those of `outer`, and the equations that are left."""
+    """Express `middle`'s unknowns by `outer`'s; return the remaining equations too."""
     p = middle.shape[2]
     Q, R = np.linalg.qr(middle, mode="complete")
     both = Q.transpose(0, 2, 1) @ outer

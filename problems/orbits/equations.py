@@ -1,4 +1,4 @@
-"""The equations of periodic orbits near a given one, and what is watched along a path of them."""
+"""Collocation equations near an orbit, and events on its path."""
 
 from __future__ import annotations
 
@@ -16,16 +16,15 @@ from problems.orbits.grid import Grid
 from problems.orbits.here import Here
 
 PHASE_COSINE = 0.1
-"""The cosine between the orbit's velocity and that of the reference, in the mean over a period, below which the phase
-condition no longer tells orbits apart that differ in phase: a digit is lost to it there."""
+"""Mean cosine between velocities of orbit and reference at which the phase condition has lost a digit."""
 
 ORBITS_KEPT = 4
-"""Points that are kept: a step's residual, factorisation, events and what is observed there ask for the same one."""
+"""Residual, factorisation, events and observations of a step share a cached point."""
 
 
 @frozen(eq=False, slots=False)
 class Equations:
-    """Collocation on a grid, with a given orbit in the phase condition: `states`, of shape (N m, n)."""
+    """Collocation equations; `states`, shape (N m, n), is the phase reference."""
 
     flow: Field
     grid: Grid
@@ -38,14 +37,14 @@ class Equations:
         return self.grid.slopes(self.states) / self.scale**2
 
     def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
-        """What unknowns say, of this grid or another one of as many nodes: their grid, X of shape (N m, n), and T."""
+        """Split into grid, X of shape (N m, n), and T."""
         size = self.states.size
         mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
         grid = self.grid if np.array_equal(mesh, self.grid.mesh) else Grid(mesh, self.grid.degree)
         return grid, y[:size].reshape(self.states.shape), float(y[size])
 
     def here(self, y: Array, lam: float) -> Here:
-        """The equations at a point."""
+        """The equations at a point, cached."""
         key = np.append(y, lam).tobytes()
         if key not in self._recent:
             y, size = np.array(y, dtype=float), self.states.size
@@ -58,10 +57,7 @@ class Equations:
 
 @frozen
 class Watch:
-    """An event: where a quantity of an orbit takes a value.
-
-    `orbit`: A PeriodicOrbit. `quantity`: An attribute of `Here`, or of what that has.
-    """
+    """An event: `quantity`, an attribute path of `Here`, takes a value."""
 
     orbit: Any
     quantity: str
@@ -72,5 +68,5 @@ class Watch:
     kind: Kind = field(default=Kind.EVENT, init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The quantity less the value."""
+        """The quantity minus the value."""
         return float(attrgetter(self.quantity)(self.orbit.equations.here(u[:-1], float(u[-1])))) - self.value

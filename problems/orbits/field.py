@@ -1,4 +1,4 @@
-"""The right-hand side of x' = f(x, p), at many points at once, with its derivatives."""
+"""The right-hand side of x' = f(x, p) and its derivatives."""
 
 from __future__ import annotations
 
@@ -16,20 +16,15 @@ from continuation.evaluation.derivatives import AGREEMENT
 from continuation.evaluation.products import sizes
 
 COMPLEX_STEP = 1e-200
-"""The complex step: its square is below everything (Squire and Trapp 1998)."""
+"""Imaginary step; its square underflows (Squire and Trapp 1998)."""
 
 CENTRAL_STEP = float(np.cbrt(np.finfo(float).eps))
-"""Of central differences, beside the size of a component: the third root of round-off."""
+"""Relative step of central differences."""
 
 
 @frozen(eq=False)
 class Field:
-    """f of all columns, and how it is differentiated.
-
-    `function`: Of (x, p), x of shape (n,) or (n, k). `columns`: Whether it takes many columns. `complexes`: Whether it
-    is right on complex numbers. `own`: Its derivative (f_x, f_p) if there is one. `beside`: What is handed to both
-    behind p.
-    """
+    """`function` takes x of shape (n,), or (n, k) if `columns`, complex if `complexes`. `own`: given (f_x, f_p)."""
 
     function: Callable[..., Any]
     columns: bool
@@ -43,7 +38,7 @@ class Field:
         return (SQUIRE_TRAPP,) if self.complexes and self.own is None else ()
 
     def __call__(self, x: Array, p: Any) -> Array:
-        """f, shape (n, k)."""
+        """Evaluate f, shape (n, k)."""
         if self.columns:
             found: Array = np.asarray(self.function(x, p, *self.beside))
             return found
@@ -72,13 +67,13 @@ class Field:
 
 
 TRIED_ASIDE = 0.1
-"""How far from a point, in its components' sizes, f is tried: at an equilibrium what is not linear is not seen."""
+"""Offset of trial points in component sizes: at an equilibrium nonlinear terms may vanish."""
 
 
 def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Array, p: float) -> Field:
-    """How to call a function, and how to differentiate it: tried about a point, shape (n,).
+    """Find how to call and differentiate f by trial calls near a point, shape (n,).
 
-    Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
+    Raises `TypeError`, `ValueError` unless f returns n numbers.
     """
     for name, given in (("f", function), ("jacobian", jacobian)):
         if not callable(given) and (name == "f" or given is not None):
@@ -104,7 +99,7 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:
-    """Whether an array can be made, without complaints, and is another one but for errors of differences."""
+    """Whether `make` runs without errors and returns about `known`."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", np.exceptions.ComplexWarning)

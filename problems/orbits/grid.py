@@ -1,4 +1,4 @@
-"""Piecewise polynomials of one period: values at nodes, derivatives at Gauss points, and a mesh that suits an orbit."""
+"""Periodic piecewise polynomials and adapted meshes."""
 
 from __future__ import annotations
 
@@ -12,23 +12,20 @@ from numpy.typing import NDArray
 from continuation.arrays import Array
 
 MESH_FLOOR = 0.05
-"""Of the mean density of a mesh, added everywhere: no interval is longer than twenty on the average, so that an orbit
-that comes to move where it stood still is seen. Of van der Pol's, mu = 10, 40 intervals, six meshes on: the period is
-off by 1.2e-8 without it, 0.8e-8 with it, 2e-8 with twice as much. Other exponents than 1 / (m + 1), as 2 / (2 m + 1) of
-the mesh points' error, and speeds in the density give 1e-8 to 1e-6."""
+"""Part of the mean density added everywhere, so that motion in a resting part is resolved. Van der Pol, mu = 10, 40
+intervals, six meshes: period error 1.2e-8 without it, 0.8e-8 with it, 2e-8 with twice as much; other exponents than 1 /
+(m + 1) or speeds give 1e-8 to 1e-6."""
 
 
 BETWEEN_NODES = 8
-"""Times between neighbouring nodes at which extreme values are looked for: a parabola through three of them is off by
-the fourth power of their distance."""
+"""Samples between nodes for extreme values; parabolas have fourth-order errors."""
 
 
 @frozen(eq=False, slots=False)
 class Grid:
-    """A mesh of [0, 1], and polynomials of a degree m on its intervals, continuous and periodic.
+    """A mesh of [0, 1], shape (N + 1,), with continuous periodic polynomials of degree m.
 
-    A function of it is an array of shape (N m, ...): its values at m nodes of each interval, the left end first; they
-    crowd towards the ends, as zeros of Chebyshev polynomials do. `mesh`, of shape (N + 1,): from 0 to 1.
+    Functions have shape (N m, ...): values at m Chebyshev-Lobatto nodes per interval, left end first.
     """
 
     mesh: Array
@@ -46,35 +43,35 @@ class Grid:
 
     @cached_property
     def inner(self) -> Array:
-        """The nodes of [0, 1], m + 1 of them."""
+        """Nodes of [0, 1], shape (m + 1,)."""
         return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(self.degree + 1) / self.degree))
 
     @cached_property
     def gauss(self) -> tuple[Array, Array]:
-        """The m Gauss points of [0, 1], and their weights."""
+        """The m Gauss points of [0, 1], and weights."""
         points, weights = leggauss(self.degree)
         return np.asarray(0.5 * points + 0.5), np.asarray(0.5 * weights)
 
     @cached_property
     def coefficients(self) -> Array:
-        """From values at the nodes to coefficients of powers."""
+        """Maps nodal values to power coefficients."""
         return np.asarray(np.linalg.inv(np.vander(self.inner, increasing=True)))
 
     @cached_property
     def value(self) -> Array:
-        """From values at the nodes of an interval to those at its Gauss points."""
+        """Maps nodal values to values at Gauss points."""
         return self._powers(self.gauss[0]) @ self.coefficients
 
     @cached_property
     def slope(self) -> Array:
-        """From values at the nodes to derivatives at the Gauss points, for an interval of length one."""
+        """Maps nodal values to derivatives at Gauss points, for unit length."""
         powers = np.zeros((self.degree, self.degree + 1))
         powers[:, 1:] = self._powers(self.gauss[0])[:, :-1] * np.arange(1, self.degree + 1)
         return powers @ self.coefficients
 
     @cached_property
     def index(self) -> NDArray[np.intp]:
-        """Which nodes an interval has, shape (N, m + 1): the last of the last one is the first."""
+        """Nodes of each interval, shape (N, m + 1)."""
         found = np.arange(self.intervals)[:, None] * self.degree + np.arange(self.degree + 1)
         return found % (self.intervals * self.degree)
 
@@ -85,26 +82,26 @@ class Grid:
 
     @cached_property
     def quadrature(self) -> Array:
-        """Weights of the Gauss points, shape (N, m)."""
+        """Gauss weights, shape (N, m)."""
         return self.widths[:, None] * self.gauss[1]
 
     def values(self, X: Array) -> Array:
-        """At the Gauss points, shape (N, m, n)."""
+        """Values at the Gauss points, shape (N, m, n)."""
         return np.asarray(self.value @ X[self.index])
 
     def slopes(self, X: Array) -> Array:
-        """Derivatives there."""
+        """Derivatives at the Gauss points."""
         return np.asarray(self.slope @ X[self.index] / self.widths[:, None, None])
 
     def at(self, X: Array, t: Array) -> Array:
-        """The function at times of [0, 1], shape (len(t), n)."""
+        """Values at times, shape (len(t), n)."""
         t = np.asarray(t) % 1.0
         i = np.clip(np.searchsorted(self.mesh, t, side="right") - 1, 0, self.intervals - 1)
         powers = self._powers((t - self.mesh[i]) / self.widths[i]) @ self.coefficients
         return np.asarray(np.einsum("tk,tkn->tn", powers, X[self.index[i]]))
 
     def extremes(self, X: Array) -> tuple[Array, Array]:
-        """The least and the largest value of each component over the period."""
+        """Minimum and maximum of each component."""
         edges = np.append(self.nodes, 1.0)
         t = (edges[:-1, None] + np.diff(edges)[:, None] * np.arange(BETWEEN_NODES) / BETWEEN_NODES).ravel()
         X = self.at(X, t)
@@ -123,10 +120,9 @@ class Grid:
         return np.vander(t, self.degree + 1, increasing=True)
 
     def highest(self, X: Array) -> Array:
-        """The size of derivative m + 1, shape (N,): from the jumps of the m-th at the two ends of an interval.
+        """Size of derivative m + 1, shape (N,), from jumps of derivative m; X is scaled.
 
-        `X` of shape (N m, n), in units in which its components are alike. (de Boor, in: Conference on the Numerical
-        Solution of Differential Equations, 1973; as in AUTO.)
+        (de Boor, in: Conference on the Numerical Solution of Differential Equations, 1973; as in AUTO.)
         """
         top = np.einsum("k,ikn->in", self.coefficients[-1], X[self.index]) / self.widths[:, None] ** self.degree
         between = 0.5 * (self.widths + np.roll(self.widths, 1))
@@ -134,20 +130,17 @@ class Grid:
         return np.asarray(0.5 * (jumps + np.roll(jumps, -1)))
 
     def error(self, X: Array) -> float:
-        """A bound on the error of interpolation: the largest term of degree m + 1 over an interval, in X's units.
-
-        The collocation's own error is of that size between the mesh points, and far smaller at them.
-        """
+        """Interpolation error in X's units; the collocation error is far smaller at mesh points."""
         nodal = np.polynomial.polynomial.polyfromroots(self.inner)
         t = np.linspace(0.0, 1.0, 101)
         largest = np.abs(np.polynomial.polynomial.polyval(t, nodal)).max()
         return float((self.highest(X) * self.widths ** (self.degree + 1)).max() * largest)
 
     def suited(self, X: Array, intervals: int, degree: int) -> tuple[Grid, Array]:
-        """A grid on which the error is the same in all intervals, about, and where its nodes are on this one.
+        """A grid with about equal errors on all intervals, and its nodes' times on this one.
 
-        It begins where the function is fastest: near an equilibrium, where a homoclinic orbit rests, its velocity and
-        what grows along it have nearly one direction, and multipliers cannot be told there.
+        It begins where the orbit is fastest: near an equilibrium, velocity and growing perturbations are nearly
+        parallel, which hides multipliers.
         """
         density = self.highest(X) ** (1.0 / (self.degree + 1))
         density = density + MESH_FLOOR * float(density @ self.widths) if density.any() else np.ones_like(density)

@@ -1,4 +1,4 @@
-"""An orbit's equations at one point (X, T, p): the residual, its derivative as a matrix, and condensed."""
+"""Residual, Jacobian matrix and multipliers at one point (X, T, p)."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from problems.orbits.multipliers import Multipliers
 
 @frozen(eq=False, slots=False)
 class Here:
-    """All that is known there, each worked out once.
+    """Quantities at a point, each computed once.
 
-    `X` of shape (N m, n). `times`, of shape (N - 1,): The mesh, as unknowns that the equations pin to that of the grid:
-    a point of a path then says all that is to be known of its orbit. `reference`, of shape (N, m, n): The derivative of
-    the orbit in the phase condition, divided by the square of `scale`.
+    `X`: shape (N m, n). `times`, shape (N - 1,): inner mesh points, unknowns that equations pin to the grid.
+    `reference`, shape (N, m, n): the reference orbit's derivative over `scale` squared.
     """
 
     field: Field
@@ -39,30 +38,29 @@ class Here:
 
     @cached_property
     def _columns(self) -> Array:
-        """The same as columns, shape (n, N m)."""
         return np.ascontiguousarray(self._values.reshape(-1, self.scale.size).T)
 
     @cached_property
     def flow(self) -> Array:
-        """F at the Gauss points, shape (N, m, n)."""
+        """The vector field, shape (N, m, n)."""
         return np.asarray(self.field(self._columns, self.p), dtype=float).T.reshape(self._values.shape)
 
     @cached_property
     def _derivatives(self) -> tuple[Array, Array]:
-        """(f_x, f_p) there, shapes (N, m, n, n) and (N, m, n)."""
+        """(f_x, f_p), shapes (N, m, n, n) and (N, m, n)."""
         by_x, by_p = self.field.derivatives(self._columns, self.p)
         shape = self._values.shape
         return by_x.reshape(*shape, shape[-1]), by_p.reshape(shape)
 
     def residual(self) -> Array:
-        """X' - T f at the Gauss points, the phase condition, and how far the mesh is off."""
+        """X' - T f, phase condition and mesh deviation."""
         equations = self.grid.slopes(self.X) - self.T * self.flow
         phase = np.einsum("ig,ign,ign->", self.grid.quadrature, self._values, self.reference)
         return np.concatenate([equations.ravel(), [phase], self.times - self.grid.mesh[1:-1]])
 
     @cached_property
     def _blocks(self) -> Array:
-        """The derivative by the nodes of each interval, shape (N, m, n, m + 1, n), times the interval's length."""
+        """Scaled derivatives by interval nodes, shape (N, m, n, m + 1, n)."""
         grid, n = self.grid, self.scale.size
         by_x = self.T * grid.widths[:, None, None, None] * self._derivatives[0]
         found = -grid.value[None, :, None, :, None] * by_x[:, :, :, None, :]
@@ -71,7 +69,6 @@ class Here:
 
     @cached_property
     def _phase_row(self) -> Array:
-        """The derivative of the phase condition by X, shape (N m n,)."""
         row = np.zeros_like(self.X)
         each = np.einsum("ig,ign,gk->ikn", self.grid.quadrature, self.reference, self.grid.value)
         np.add.at(row, self.grid.index, each)
@@ -79,7 +76,7 @@ class Here:
 
     @cached_property
     def matrices(self) -> tuple[sp.csc_array, Array]:
-        """The derivative by the unknowns, sparse, and by p."""
+        """Derivatives by the unknowns, sparse, and by p."""
         grid, n = self.grid, self.scale.size
         blocks = self._blocks / grid.widths[:, None, None, None, None]
         size = self.X.size
@@ -96,7 +93,6 @@ class Here:
 
     @cached_property
     def _condensed(self) -> Condensed:
-        """The blocks in units."""
         N, m, n = self._values.shape
         blocks = self._blocks * (self.scale / self.scale[:, None])[:, None, :]
         return Condensed.of(blocks.reshape(N, m * n, -1))
@@ -107,26 +103,26 @@ class Here:
         return Multipliers(self._condensed.A, self._condensed.B)
 
     def mode(self, mu: float) -> Array:
-        """How the linearised equation moves the orbit along the multiplier nearest to a number, shape (N m, n)."""
+        """Eigenfunction of the multiplier nearest to `mu`, shape (N m, n)."""
         x = self.multipliers.vector(mu)
         return self._condensed.all_from(np.stack([x, mu * x])) * self.scale
 
     @property
     def amplitude(self) -> float:
-        """The mean deviation from the mean, in units of the scale."""
+        """Scaled root mean square deviation from the mean."""
         X, weights = self.X / self.scale, np.zeros(len(self.X))
         np.add.at(weights, self.grid.index, self.grid.quadrature @ self.grid.value)
         return float(np.sqrt(np.abs(weights @ (X - weights @ X) ** 2).mean()))
 
     @property
     def phase_cosine(self) -> float:
-        """The cosine between the velocity and that of the orbit in the phase condition, in the mean over the period."""
+        """Mean cosine between velocities of orbit and reference."""
         root = np.sqrt(self.grid.quadrature)[:, :, None]
         own, reference = root * self.flow / self.scale, root * self.reference * self.scale
         return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
 
     def observed(self) -> dict[str, float]:
-        """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
+        """Period, extreme values, unstable multipliers and error estimates."""
         (low, high), values = self.grid.extremes(self.X), self.multipliers.values
         found = {"period": self.T}
         for k in range(self.scale.size):

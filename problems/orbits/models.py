@@ -1,4 +1,4 @@
-"""Vector fields with known periodic orbits: of textbooks, and in the units of their papers."""
+"""Vector fields with known periodic orbits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from continuation.arrays import Array
 
 
 def normal_form(z: Any, p: Any, second: Any = 1.0) -> Array:
-    """R' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, and a fold of cycles at p = -second^2 / 4."""
+    """R' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, a fold of cycles at p = -second^2 / 4."""
     x, y = z
     r = x * x + y * y
     a = p + second * r - r * r
@@ -26,7 +26,7 @@ def van_der_pol(z: Any, mu: Any) -> Array:
 
 
 def brusselator(z: Any, b: Any) -> Array:
-    """A chemical oscillation: equilibrium (1, b), a Hopf point at b = 2."""
+    """Equilibrium (1, b), Hopf point at b = 2."""
     x, y = z
     return np.stack([1.0 - (b + 1.0) * x + x * x * y, b * x - x * x * y])
 
@@ -38,14 +38,14 @@ def roessler(z: Any, c: Any, a: Any = 0.2) -> Array:
 
 
 def lorenz(z: Any, r: Any) -> Array:
-    """A Hopf point at r = 470 / 19, orbits that end on a homoclinic one at r = 13.9266."""
+    """Hopf point at r = 470 / 19; orbits end on a homoclinic one at r = 13.9266."""
     x, y, w = z
     return np.stack([10.0 * (y - x), r * x - y - x * w, x * y - 8.0 / 3.0 * w])
 
 
 @frozen
 class Model:
-    """A vector field by its name, so that an archive can say it; called with (x, p)."""
+    """A vector field stored in archives by its name."""
 
     name: str
 

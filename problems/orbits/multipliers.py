@@ -1,4 +1,4 @@
-"""Floquet multipliers, from one block A x_0 + B x_N = 0 that orthogonal transformations have left of an orbit's."""
+"""Floquet multipliers from the condensed block A x_0 + B x_N = 0."""
 
 from __future__ import annotations
 
@@ -11,16 +11,15 @@ from scipy.linalg import eig
 from continuation.arrays import Array
 
 FOLD_ANGLE = 1e-4
-"""A pair with less than this for its argument belongs to a fold of cycles, not to a torus: there two multipliers are 1,
-and round-off makes a pair of them whose argument is its root."""
+"""Pairs with smaller arguments belong to folds of cycles: round-off splits the double multiplier 1 by its square
+root."""
 
 OUTSIDE_CIRCLE = 1e-6
-"""A multiplier counts as unstable where its modulus is above 1 by more: at the folds of a family, where it is 1, it is
-known to the root of round-off, as the one that is always there is."""
+"""Unstable moduli exceed 1 by more: at folds multipliers are known to the square root of round-off."""
 
 
 TRIVIAL_FOUND = 0.5
-"""Multipliers of which the first, that is 1, is off by more are not known."""
+"""If the trivial multiplier is off by more, all are lost."""
 
 
 LEAST_NORMAL = float(np.finfo(float).tiny)
@@ -28,7 +27,7 @@ LEAST_NORMAL = float(np.finfo(float).tiny)
 
 @frozen(eq=False, slots=False)
 class Multipliers:
-    """The eigenvalues of the pencil A + mu B, by the QZ method: no block is inverted, none multiplied by another."""
+    """Eigenvalues of the pencil A + mu B by the QZ method, without inverses."""
 
     A: Array
     B: Array
@@ -40,7 +39,7 @@ class Multipliers:
 
     @cached_property
     def values(self) -> Array:
-        """All of them, that of the phase, which is 1, first; shape (n,), complex."""
+        """All, shape (n,), complex: the trivial one, then by falling modulus."""
         alpha, beta = self._pencil[0]
         # One that is beyond all numbers is the largest.
         found = alpha / np.where(np.abs(beta) < LEAST_NORMAL, LEAST_NORMAL, beta)
@@ -50,21 +49,20 @@ class Multipliers:
 
     @property
     def unstable(self) -> int:
-        """How many lie outside of the unit circle."""
+        """Number of multipliers outside the unit circle."""
         return int((np.abs(self.values[1:]) > 1.0 + OUTSIDE_CIRCLE).sum())
 
     @property
     def lost(self) -> bool:
-        """Whether multipliers of moderate size are round-off of another one: 1 is not among them, or by chance."""
+        """Whether round-off of the largest multiplier hides others."""
         eps = float(np.finfo(float).eps)
         return bool(abs(self.values[0] - 1.0) > TRIVIAL_FOUND or eps * np.abs(self.values).max() > 1.0)
 
     @property
     def doubling(self) -> float:
-        """The product of mu + 1 over all but the first, each divided by its size: it changes its sign where one is -1.
+        """Product of (mu + 1) / hypot(1, |mu|) over nontrivial mu: negative after a period doubling.
 
-        The first, 1, is left out, since orbits that are nearly homoclinic have another that is larger than the inverse
-        of round-off, beside which it is lost.
+        Near homoclinic orbits the trivial one is lost in round-off of the largest.
         """
         if self.lost:
             return 1.0
@@ -73,7 +71,7 @@ class Multipliers:
 
     @property
     def torus(self) -> float:
-        """Of the pair nearest to the unit circle how far outside it lies; -1 where there is no pair."""
+        """Log modulus of the complex pair nearest to the unit circle, or -1."""
         if self.lost:
             return -1.0
         pairs = self.values[(self.values.imag > 0.0) & (np.angle(self.values) > FOLD_ANGLE)]
@@ -83,7 +81,7 @@ class Multipliers:
         return float(outside[np.argmin(np.abs(outside))])
 
     def vector(self, mu: float) -> Array:
-        """The real eigenvector of the multiplier nearest to a number, x_0."""
+        """Real eigenvector x_0 of the multiplier nearest to `mu`."""
         alpha, beta = self._pencil[0]
         nearest = int(np.argmin(np.abs(alpha - mu * beta) / np.hypot(np.abs(alpha), np.abs(beta))))
         x = self._pencil[1][:, nearest]

@@ -1,4 +1,4 @@
-"""Newton's method for an orbit that is known about."""
+"""Newton's method for a periodic orbit."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from continuation.linear import factor_bordered
 from continuation.metric import norm
 
 ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
-"""From a guess, whose first increments may grow; the last increment in the metric of the orbit, and the one below which
-increments that no longer halve are round-off."""
+"""First increments may grow; the last is below ORBIT_FOUND in the orbit's metric, or below ORBIT_NEAR if they no longer
+halve (round-off)."""
 
 
 def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
-    """The point (y, p) of an orbit near u, with the border's product as it is there.
+    """The point (y, p) of an orbit near u with the same product with `border`.
 
-    Raises `ArithmeticError` if the method comes to none.
+    Raises `ArithmeticError` without convergence.
     """
     found = Iteration(u, ORBIT_NEWTON)
 

@@ -1,4 +1,4 @@
-"""Periodic orbits of x' = f(x, p) as a homotopy: orthogonal collocation, with the period for an unknown."""
+"""Periodic orbits of x' = f(x, p) by orthogonal collocation."""
 
 from __future__ import annotations
 
@@ -30,40 +30,37 @@ from problems.orbits.starts import MESHES, circle_at, one_period
 
 @frozen(eq=False, slots=False)
 class PeriodicOrbit:
-    """Periodic orbits of x' = f(x, p): X' = T f(X, p), X(0) = X(1), in time scaled to [0, 1], and a phase condition.
+    """Periodic orbits of x' = f(x, p): X' = T f(X, p), X(0) = X(1), and a phase condition.
 
-    X is a continuous piecewise polynomial of degree m on N intervals that satisfies the equation at the m Gauss points
-    of each; its error is of order m + 1 in their lengths, of order 2 m at the mesh points and in the period (de Boor
-    and Swartz, SIAM J. Numer. Anal. 10, 1973). Unknowns are X at the N m nodes, one after another, T, and the N - 1
-    inner points of the mesh, which equations of their own pin: a point of a path, in a file too, says what orbit it is.
-    The path's parameter is p. The phase condition is int <X, X_ref'> = 0, with X_ref the orbit that is given.
+    X is a continuous piecewise polynomial of degree m, collocated at m Gauss points of N intervals. Its error is of
+    order m + 1 in their lengths, 2 m at mesh points and in the period (de Boor and Swartz, SIAM J. Numer. Anal. 10,
+    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations pin, so that a stored point
+    determines its orbit. The phase condition is int <X, X_ref'> = 0, X_ref the given orbit.
 
-    Make one by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
+    Construct by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
 
     Parameters
     ----------
     f : callable
-        ``f(x, p)``, n numbers, or ``f(x, p, second)``. One that takes x of shape (n, k), as formulas do that begin with
-        ``u, v = x``, is called once for all nodes.
+        ``f(x, p)`` or ``f(x, p, second)``, n numbers. If shape (n, k) is accepted, one call serves all nodes.
     states : array_like, shape (N m, n)
-        An orbit, about.
+        Approximate orbit.
     period : float
     parameter : float
-        Where it is one.
     mesh : int or array_like, shape (N + 1,)
-        Number of intervals, or where they begin and end, from 0 to 1.
+        Number of equal intervals, or points from 0 to 1.
     degree : int
     jacobian : callable, optional
-        ``jacobian(x, p)``, the pair (f_x, f_p), of shapes (n, n) and (n,), or (n, n, k) and (n, k). Without it
-        derivatives come from complex steps, else from differences.
+        ``jacobian(x, p)``: (f_x, f_p), shapes (n, n) and (n,), or (n, n, k) and (n, k). Default: complex steps, else
+        differences.
     second : float, optional
-        A second parameter, handed to f and `jacobian` behind p; curves of folds and period doublings go along it.
+        Passed after p; curves of folds and period doublings vary it.
     smallest : float
-        An orbit whose amplitude falls below this, in units of `scale`, has shrunk to a Hopf point: the path ends.
+        Amplitude, in units of `scale`, at which the path ends at a Hopf point.
     scale : array_like, shape (n,), optional
-        How large the components are, about: by default their standard deviations over the given orbit.
+        Default: standard deviations.
     heading : array_like, shape (N m, n), optional
-        How X changes where a branch leads that begins here; by default orbits become larger that way.
+        Change of X along a new branch; default: growth.
     """
 
     f: Model | Callable[..., Any]
@@ -92,12 +89,11 @@ class PeriodicOrbit:
         assert self.equations
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is worked out again when it is needed is left out."""
         return {name: getattr(self, name) for name in fields_dict(PeriodicOrbit)}
 
     @cached_property
     def equations(self) -> Equations:
-        """The same as equations for other unknowns."""
+        """The collocation equations."""
         f = field_of(self.f, self.jacobian_of_f, self.second, self.states[0], self.scale, self.parameter)
         return Equations(f, Grid(self.mesh, self.degree), self.scale, self.states)
 
@@ -105,25 +101,23 @@ class PeriodicOrbit:
     def from_hopf(
         cls, f: Any, point: Any, *, radius: float = 1e-2, intervals: int = 20, degree: int = 4, **beside: Any
     ) -> PeriodicOrbit:
-        """The small orbit that leaves a Hopf point; its path also leads back to it, so trace from `leaving`.
+        """The small orbit near a Hopf point; its path also leads back, so trace from `leaving`.
 
         Parameters
         ----------
         f : callable
-            As for the class.
         point : LocatedEvent or (x, p)
-            The Hopf point, as `continuation.Stability` locates it on a path of equilibria.
+            As `continuation.Stability` locates it.
         radius : float
-            Of the orbit, beside the size of x (1 where that is 0).
+            Relative to the size of x (1 where x is 0).
         intervals, degree : int
-            Of the collocation.
         **beside
-            `jacobian` and `second`, as for the class.
+            `jacobian` and `second`.
 
         Raises
         ------
         ValueError, ArithmeticError
-            If it is no Hopf point, or Newton's method does not reach the orbit.
+            If this is no Hopf point or Newton's method fails.
         """
         x, p = as_point(point, "point")
         grid = Asked(intervals, degree, radius).grid
@@ -139,24 +133,23 @@ class PeriodicOrbit:
     def from_solution(
         cls, f: Any, t: Any, x: Any, parameter: float, *, intervals: int = 20, degree: int = 4, **beside: Any
     ) -> PeriodicOrbit:
-        """The orbit on which a simulation ends: its last period is cut out where it comes back to its end.
+        """The orbit on which a simulation settles.
 
         Parameters
         ----------
         f : callable
-            As for the class.
         t : array_like, shape (k,)
         x : array_like, shape (k, n)
-            The simulation, a row for each time; settled on the orbit, and two periods long at least.
+            One row per time: settled, at least two periods.
         parameter : float
         intervals, degree : int
         **beside
-            `jacobian` and `second`, as for the class.
+            `jacobian` and `second`.
 
         Raises
         ------
         ValueError, ArithmeticError
-            If it does not come back, or Newton's method does not reach an orbit.
+            If the simulation does not return or Newton's method fails.
         """
         times, states = real_vector("t", t), as_table(x)
         check_times(times, states)
@@ -169,7 +162,7 @@ class PeriodicOrbit:
 
     @classmethod
     def from_point(cls, f: Any, point: Any, components: int, *, degree: int = 4, **beside: Any) -> PeriodicOrbit:
-        """The orbit that a point of a path says, as of one that was read from a file.
+        """The orbit that a point of a path contains, as one read from a file.
 
         Parameters
         ----------
@@ -191,15 +184,15 @@ class PeriodicOrbit:
     def from_orbit(
         cls, orbit: PeriodicOrbit, at: Any = None, *, intervals: int | None = None, degree: int | None = None
     ) -> PeriodicOrbit:
-        """An orbit on a mesh that suits it: the error is the same in all intervals, about.
+        """An orbit on an adapted mesh.
 
         Parameters
         ----------
         orbit : PeriodicOrbit
         at : LocatedEvent, Step or (y, p), optional
-            A point of its path, by default its start: the orbit is found across the path's tangent if it has one.
+            Point of its path, default its start. Newton's method searches across its tangent, if any.
         intervals, degree : int, optional
-            Others than before.
+            Default: unchanged.
         """
         given, tangent = orbit._remeshed(at, intervals, degree, getattr(at, "tangent", None))
         return given._corrected(tangent)
@@ -207,7 +200,7 @@ class PeriodicOrbit:
     def _remeshed(
         self, at: Any, intervals: int | None = None, degree: int | None = None, v: Array | None = None
     ) -> tuple[PeriodicOrbit, Array | None]:
-        """The orbit, interpolated, and a direction of the path in its unknowns."""
+        """Interpolate on an adapted mesh."""
         y, lam = self.start() if at is None else as_point(at)
         old, X, T = self.equations.unknowns(y)
         new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
@@ -219,15 +212,14 @@ class PeriodicOrbit:
         return given, np.concatenate([way.ravel(), v[X.size : X.size + 1], np.zeros(new.intervals - 1), v[-1:]])
 
     def doubled(self, at: Any = None, radius: float = 1e-2) -> PeriodicOrbit:
-        """The orbit of twice the period that leaves a period doubling; trace from `leaving`.
+        """The orbit of twice the period at a period doubling; trace from `leaving`.
 
         Parameters
         ----------
         at : LocatedEvent, Step or (y, p), optional
-            The period doubling, by default the start.
+            The doubling, default the start.
         radius : float
-            How far from it, in units of `scale`; 0 for the doubling itself on twice the mesh, at which a
-            `continuation.Curve` of branch points begins.
+            Distance in units of `scale`; at 0, on the doubling itself, a `continuation.Curve` of branch points begins.
         """
         y, lam = self.start() if at is None else as_point(at)
         grid, X, T = self.equations.unknowns(y)
@@ -239,7 +231,7 @@ class PeriodicOrbit:
         return given._corrected(way, radius) if radius else given
 
     def _corrected(self, heading: Array | None = None, ahead: float = 0.0) -> PeriodicOrbit:
-        """The orbit by Newton's method, at its parameter, or across a heading at a distance from here."""
+        """Newton's orbit at fixed p, or across `heading` at distance `ahead`."""
         u = np.append(*self.start())
         weights, border = self.metric.weights(u, u, None), np.append(np.zeros(u.size - 1), 1.0)
         if heading is not None:
@@ -250,28 +242,28 @@ class PeriodicOrbit:
         return evolve(self, states=X, period=T, parameter=float(u[-1]))
 
     def start(self) -> tuple[Array, float]:
-        """The given orbit and its period, and the parameter."""
+        """The given orbit's unknowns and p."""
         return np.concatenate([self.states.ravel(), [self.period], self.mesh[1:-1]]), self.parameter
 
     @property
     def period_index(self) -> int:
-        """Where T is among the unknowns: for ``TargetValue(50.0, component=orbit.period_index)``."""
+        """Index of T: for ``TargetValue(50.0, component=orbit.period_index)``."""
         return self.states.size
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """X' - T f(X, p) at the Gauss points, and the phase condition; shape (N m n + N,)."""
+        """X' - T f(X, p), phase condition and mesh equations; shape (N m n + N,)."""
         if not isinstance(y, np.ndarray) or y.dtype == object:
             raise TypeError("the residual of periodic orbits runs on arrays of floats alone")
         return self.equations.here(y, lam).residual()
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
-        """The derivative by (X, T), sparse, and by p."""
+        """Derivatives by the unknowns, sparse, and by p."""
         return self.equations.here(y, lam).matrices
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
-        """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
+        """The Floquet multipliers of an orbit.
 
         Parameters
         ----------
@@ -285,18 +277,18 @@ class PeriodicOrbit:
         Parameters
         ----------
         y, t : array_like
-            The unknowns, and times in periods.
+            Unknowns, and times in periods.
         """
         grid, X, _ = self.equations.unknowns(y)
         return grid.at(X, np.asarray(t, dtype=float))
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
+        """Period, extreme values, unstable multipliers and error estimates."""
         return self.equations.here(y, lam).observed()
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """Period doublings and tori; where orbits shrink to a Hopf point, and where the phase condition fails."""
+        """Period doubling, torus, Hopf point, failure of the phase condition."""
         return (
             Watch(self, "multipliers.doubling", "period doubling"),
             Watch(self, "multipliers.torus", "torus"),
@@ -305,7 +297,7 @@ class PeriodicOrbit:
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
-        """An orbit of the path on a mesh that suits it, in its own phase condition; see `continuation.renewal`."""
+        """An orbit on an adapted mesh, its own reference; see `continuation.renewal`."""
         given, tangent = self._remeshed((u[:-1], float(u[-1])), v=v)
         assert tangent is not None
         new = given._corrected(tangent)
@@ -313,7 +305,7 @@ class PeriodicOrbit:
 
     @cached_property
     def metric(self) -> Weighted:
-        """The mean square of X in units of `scale`, T beside its size, p by how far it moves X by that in a period."""
+        """Mean square of scaled X, relative T, and p by its effect on X."""
         X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
         size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
         moved = self.equations.flow.derivatives(self.states.T, self.parameter)[1] / self.scale
@@ -322,16 +314,15 @@ class PeriodicOrbit:
 
     @property
     def leaving(self) -> tuple[Array, Array]:
-        """The start and a direction, for ``trace(orbit, start=orbit.leaving)``: that of `heading`, else of growth."""
+        """Start and direction for ``trace(orbit, start=orbit.leaving)``: `heading`, else growth."""
         y, lam = self.start()
         away = self.states - self.states.mean(axis=0) if self.heading is None else self.heading
         return np.append(y, lam), self._direction(away)
 
     def _direction(self, motion: Array) -> Array:
-        """A change of X alone, as one of (y, p)."""
         return np.append(motion, np.zeros(self.mesh.size))
 
     @property
     def references(self) -> tuple[str, ...]:
-        """Of collocation, of the multipliers, and of derivatives where f has none."""
+        """For collocation, multipliers and derivatives."""
         return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

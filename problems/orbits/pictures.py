@@ -1,4 +1,4 @@
-"""Pictures of orbits: in the plane of two components, or over a period. matplotlib is imported when one is drawn."""
+"""Plots of orbits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from problems.orbits.orbit import PeriodicOrbit
 
 DRAWN_TIMES = 500
-"""Points of a drawn orbit: beside a screen's 2000 pixels its corners are not seen."""
+"""Times per orbit: corners are invisible on 2000 pixels."""
 
 
 def plot_orbits(
@@ -23,19 +23,19 @@ def plot_orbits(
     over: int | str = 0,
     of: int = 1,
 ) -> Axes:
-    """Draw orbits of a path: one component over another one, or over time.
+    """Draw orbits of a path: one component against another, or against time.
 
     Parameters
     ----------
     orbit : PeriodicOrbit
-        Of the path, or another one with as many intervals and of the same degree.
+        The path's, or one with as many intervals and equal degree.
     points : iterable of Step, LocatedEvent or (y, p), optional
-        Which of them, as ``path.steps[::5]``; by default the one that it starts from.
+        As ``path.steps[::5]``; default the start.
     axes : matplotlib Axes, optional
     over : int or "t", default 0
-        The horizontal component; "t" for time, in the units of f.
+        Horizontal component, or time in units of f.
     of : int, default 1
-        The vertical one.
+        Vertical component.
 
     Raises
     ------

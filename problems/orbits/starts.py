@@ -1,4 +1,4 @@
-"""Where orbits come from: the circles round a Hopf point, and one period of a simulation."""
+"""First orbits, from Hopf points or simulations."""
 
 from __future__ import annotations
 
@@ -13,30 +13,28 @@ from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
 HOPF_PAIR = 1e-2
-"""The real part of a Hopf point's pair of eigenvalues, beside its modulus: that of a point known to a few digits."""
+"""Largest real part over modulus of a Hopf pair known to few digits."""
 
 LEAST_MOTION = 1e-2
-"""Of its own size a component counts as moving so far at least: one that does not take part in the oscillation at first
-is not measured by round-off."""
+"""Least relative scale: a component that does not oscillate at first must not be measured by round-off."""
 
 ONE_RETURN = 1e-3
-"""A return within this, in standard deviations, of where the simulation ends is one period: of those that miss by less
-the last one is taken, since a simulation that has settled comes back to round-off after any number of periods."""
+"""The last return that misses by at most twice the least miss plus this, in standard deviations, ends a period: settled
+simulations return repeatedly."""
 
 NO_RETURN = 0.3
-"""A best return that misses by more is no period: the simulation has not settled."""
+"""Simulations whose best return misses by more have not settled."""
 
 
 MESHES = 4
-"""Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
+"""Meshes of a simulation's orbit; more change nothing (van der Pol)."""
 
 
 def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, float, Array]:
-    """The orbits about a Hopf point to first order: x + radius Re (q exp(2 pi i t)), with q in units of `scale`.
+    """First-order orbits about a Hopf point: x + radius Re (q exp(2 pi i t)).
 
-    Returns Re q exp(2 pi i t) at the nodes, shape (N m, n), the period and `scale`.
-
-    Raises `ValueError` if no pair of eigenvalues is near the imaginary axis.
+    Returns Re q exp(2 pi i t) at nodes, shape (N m, n), period and scale. Raises `ValueError` if no pair of eigenvalues
+    is near the imaginary axis.
     """
     matrix = field.derivatives(x[:, None], p)[0][0]
     values, vectors = np.linalg.eig(matrix)
@@ -52,9 +50,9 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, floa
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
-    """The last period of a simulation: its states at the nodes of a grid, its period, and the grid.
+    """A simulation's last period: states at nodes, period and grid.
 
-    `t` of shape (k,), rising. `x` of shape (k, n). Half of the mesh is spent on time, half on the way.
+    The mesh equidistributes the mean of time and arc length.
     """
     spline = CubicHermiteSpline(t, x, field(x.T, p).T)
     end, spread = x[-1], x.std(axis=0)

@@ -1,4 +1,4 @@
-"""Proofs of paths of homotopies that are quadratic in all unknowns and the parameter, as those of LCPs are."""
+"""Path proofs for homotopies quadratic in all unknowns and the parameter."""
 
 from problems.lcp.quadratic.engine import ByProducts
 from problems.lcp.quadratic.form import Affine, Quadratic

@@ -1,4 +1,4 @@
-"""Products of matrices in single precision, and polynomials of intervals by middle and radius: what tests add up."""
+"""Single-precision products, and interval polynomials by middle and radius."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from continuation.numbers.ends import EPS, Ends, accumulated, up_sum
 Single = NDArray[np.float32]
 
 UNIT = float(np.finfo(np.float32).epsneg)
-"""Relative error of one operation in single precision."""
+"""Relative error in single precision."""
 
 SINGLE_UNDERFLOW = float(np.finfo(np.float32).tiny)
-"""What underflow costs one operation there, also where such numbers are flushed to zero."""
+"""Underflow error, even if subnormal numbers are flushed to zero."""
 
 
 def rounded(count: int) -> float:
-    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, with eight more operations."""
+    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, for eight more operations."""
     whole = (count + 8) * UNIT
     return whole / (1.0 - whole) * (1.0 + 8.0 * EPS) if whole < 0.5 else np.inf
 
 
 def image_of(matrix: Single, x: Array) -> Array:
-    """A bound of matrices >= 0 times vectors >= 0, slab by slab."""
+    """Bound of matrices >= 0 times vectors >= 0."""
     m = x.shape[1]
     unit = x.max(axis=1, keepdims=True)
     unit = np.where(unit == 0.0, 1.0, unit)
-    # What is clamped does not underflow on its way to single precision.
+    # Clamped numbers do not underflow in single precision.
     scaled = np.maximum(x / unit, 2.0**-60).astype(np.float32)
     image: Array = np.matmul(matrix, scaled[..., None])[..., 0].astype(float)
     bound: Array = (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * SINGLE_UNDERFLOW) * unit * (1.0 + 4.0 * EPS)
@@ -48,12 +48,12 @@ class Ball:
 
     @classmethod
     def of(cls, v: Ends) -> Ball:
-        """Those of these ends."""
+        """Convert ends."""
         middle = v.middle()
         return cls(middle, v.radius(middle))
 
     def through(self, matrix: Array, size: Array | None = None) -> Ball:
-        """Matrices times them; `size` are the absolute values of the entries, where they are known already."""
+        """Matrices times intervals; `size`: |matrix|."""
         count = matrix.shape[-1] + 4
         room = self.radius + accumulated(count) * np.abs(self.middle)
         return Ball(
@@ -62,29 +62,29 @@ class Ball:
 
     @property
     def size(self) -> Array:
-        """The largest absolute value."""
+        """Largest absolute value."""
         return (np.abs(self.middle) + self.radius) * (1.0 + 4.0 * EPS)
 
     @property
     def ends(self) -> Ends:
-        """As ends."""
+        """Convert to ends."""
         return Ends(-up_sum(self.radius - self.middle), up_sum(self.middle + self.radius))
 
     @property
     def derivative(self) -> Ball:
-        """Of polynomials, the coefficients being the last axis."""
+        """Derivative of polynomials, coefficients last."""
         count = np.arange(1.0, self.middle.shape[-1])
         middle, radius = self.middle[..., 1:] * count, self.size[..., 1:] * (8.0 * EPS * count)
         return Ball(middle, up_by(radius + self.radius[..., 1:] * count, 4))
 
 
 POLYNOMIAL_PARTS = 8
-"""Into so many parts a slab is cut for the range of H along the cubic: it all but vanishes at both ends of a cell, so
-that the sum of its coefficients' sizes is several times as much."""
+"""Parts of a slab for the range of H along the cubic: H nearly vanishes at both ends, so one sum of coefficient sizes
+is several times too large."""
 
 
 def _shifts() -> Array:
-    """For polynomials of degree 8 on [-1, 1], their coefficients on each part; exact, (9, POLYNOMIAL_PARTS * 9)."""
+    """Exact map from degree-8 coefficients on [-1, 1] to those on parts, (9, POLYNOMIAL_PARTS * 9)."""
     out = np.zeros((9, POLYNOMIAL_PARTS, 9))
     for part in range(POLYNOMIAL_PARTS):
         middle = (2 * part + 1) / POLYNOMIAL_PARTS - 1.0
@@ -97,7 +97,7 @@ _SHIFTS = _shifts()
 
 
 def largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
-    """A bound of |v - x E v + x^2 C v| for |x| <= offset, of polynomials v, E v and C v, part by part."""
+    """Bound of |v - x E v + x^2 C v|, |x| <= offset, for polynomials v, E v, C v."""
     middle, room = (np.zeros((*image.middle.shape[:2], 9)) for _ in range(2))
     for power, sign, v in ((0, 1.0, image), (1, -1.0, by_E), (2, 1.0, by_C)):
         there = slice(power, power + v.middle.shape[-1])
@@ -105,5 +105,5 @@ def largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
         room[..., there] += v.radius + 64.0 * EPS * np.abs(v.middle)
     powers = offset[:, :, None] ** np.arange(9.0)
     parts = np.abs(np.matmul(middle * powers, _SHIFTS)).reshape(*middle.shape[:2], POLYNOMIAL_PARTS, 9)
-    # Rounding of a part is within that of the sizes: |middle of it| + 1 / POLYNOMIAL_PARTS is at most 1.
+    # Rounding is within that of the sizes: |part's middle| + 1 / POLYNOMIAL_PARTS is at most 1.
     return up_by(parts.sum(axis=-1).max(axis=-1) + (room * powers).sum(axis=-1), 64)

@@ -1,4 +1,4 @@
-"""A quadratic homotopy and its derivative along a cubic: polynomials of degree 6 and 3 in the offset."""
+"""A quadratic homotopy and its derivative along a cubic, of degree 6 and 3."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 
 def _apply(part: Affine, q: Ends) -> Ends:
-    """The part along a cubic, shape (slabs, 4, N) for coefficients of shape (slabs, 4, N + 1)."""
+    """The part along a cubic, shape (slabs, 4, N), from coefficients (slabs, 4, N + 1)."""
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
-    # The matrix is off by its errors, q by its radius; products are rounded.
+    # Errors of the matrix, radius of q, rounding of products.
     room = part.linear_size(q.radius(middle) + accumulated(count) * size)
     if part.sizes is not None:
         room = room + part.linear_error(size + q.radius(middle))
@@ -26,11 +26,11 @@ def _apply(part: Affine, q: Ends) -> Ends:
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
-"""Which products of coefficients belong to which power."""
+"""Assigns products of coefficients to powers."""
 
 
 def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
-    """Of H along the cubic: shape (slabs, N, 7)."""
+    """H along the cubic, shape (slabs, N, 7)."""
     products = alpha[:, :, None] * beta[:, None, :]
     count, n = alpha.shape[0], alpha.shape[2]
     flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))
@@ -48,11 +48,11 @@ class Derivative:
     ----------
     form : Quadratic
     residual : Ends, shape (slabs, N, 7)
-        The coefficients of H along the cubic.
+        Coefficients of H.
     a, b : ndarray, shape (slabs, 4, N)
-        About alpha and beta.
+        Middles of alpha, beta.
     ra, rb : ndarray
-        How far those may be off.
+        Radii.
     """
 
     form: Quadratic
@@ -64,19 +64,19 @@ class Derivative:
 
     @classmethod
     def of(cls, form: Quadratic, cubic: Ends) -> Derivative:
-        """By middle and radius, from the coefficients of the cubic, shape (slabs, 4, N + 1)."""
+        """From cubic coefficients, shape (slabs, 4, N + 1)."""
         alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
         a, b = alpha.middle(), beta.middle()
         return cls(form, _coefficients(value, alpha, beta), a, b, alpha.radius(a), beta.radius(b))
 
     def matrix(self, k: int) -> Array:
-        """Coefficient k in floats, shape (slabs, N, N + 1)."""
+        """Coefficient k, shape (slabs, N, N + 1)."""
         form, a, b = self.form, self.a[:, k, :, None], self.b[:, k, :, None]
         out: Array = a * form.second.matrix + b * form.first.matrix
         return out + form.plain.matrix if k == 0 else out
 
     def image(self, x: Array) -> tuple[Array, Array]:
-        """Bounds of |exact| x, and of |exact - matrix| x, for all coefficients; shape (slabs, 4, N)."""
+        """Bounds of |exact| x and |exact - matrix| x, shape (slabs, 4, N)."""
         form, count = self.form, 2 * x.shape[1]
         by_second, by_first = (part.linear_size(x)[:, None] for part in (form.second, form.first))
         error = self.ra * by_second + self.rb * by_first
@@ -90,7 +90,7 @@ class Derivative:
         return up_by(size, count), up_by(error + 4.0 * EPS * size, count)
 
     def products(self, x: Array, radius: Array) -> Array:
-        """A bound of |2 Q(d, x)| for |d| <= radius."""
+        """Bound of |2 Q(d, x)| for |d| <= radius."""
         first, second = self.form.first.linear_size, self.form.second.linear_size
         if x is radius:
             crossed = 2.0 * first(x) * second(x)

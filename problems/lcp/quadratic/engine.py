@@ -1,8 +1,7 @@
-"""Krawczyk's test for homotopies that are quadratic in all unknowns and the parameter: exact in the tube's width.
+"""Krawczyk's test for quadratic homotopies, exact in the tube's width.
 
-H(p + d) = H(p) + H'(p) d + Q(d, d), so that the derivative needs no interval arithmetic, only bounds of rounding; and
-along a cubic H is a polynomial of degree 6, H' one of degree 3. The preconditioner follows the path, its inverse's
-series to second order: terms of third order are left. No tensor of third order is formed.
+H(p + d) = H(p) + H'(p) d + Q(d, d): only rounding needs bounds. Along a cubic, H has degree 6 and H' degree 3. The
+preconditioner is the inverse's second-order series, so third-order terms remain.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from problems.lcp.quadratic.form import Quadratic
 from problems.lcp.quadratic.polynomial import Polynomial
 
 CACHED_NUMBERS = 200_000
-"""Numbers of one array of matrices at a time, 1.6 MB: a few of them are to be in a cache of several."""
+"""Numbers in an array of matrices, 1.6 MB: a few fit in cache."""
 
 
 @frozen(eq=False)
@@ -41,6 +40,6 @@ class ByProducts:
         return max(1, CACHED_NUMBERS // (m * m))
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """As `Engine.judge`; valid for all radii."""
+        """See `Engine`; valid for all radii."""
         with np.errstate(all="ignore"):
             return Polynomial.of(slabs, Derivative.of(self.form, slabs.cubic), radius)

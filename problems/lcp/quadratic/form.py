@@ -1,4 +1,4 @@
-"""Residuals that are quadratic in all unknowns and the parameter: their affine parts, and products of these."""
+"""Quadratic residuals from products of affine parts."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from continuation.numbers.ends import EPS, Ends, thin
 
 @frozen(eq=False, slots=False)
 class Affine:
-    """u -> constant + matrix u, for u = (y, lam); where an entry is a rounded sum, `sizes` are those of its terms.
+    """u -> constant + matrix u, for u = (y, lam).
 
     Parameters
     ----------
     constant : ndarray, shape (N,)
     matrix : ndarray, shape (N, N + 1)
     sizes : ndarray, shape (N, N + 1), optional
-        Sums of the absolute values of what an entry is the sum of; zero where it is exact.
+        Sums of the absolute terms of rounded entries; zero for exact ones.
     constant_sizes : ndarray, shape (N,), optional
     """
 
@@ -32,17 +32,17 @@ class Affine:
 
     @cached_property
     def size(self) -> Array:
-        """Of each entry, at least."""
+        """Bounds of entries and terms."""
         return np.abs(self.matrix) if self.sizes is None else np.maximum(self.sizes, np.abs(self.matrix))
 
     @cached_property
     def error(self) -> Array:
-        """Of each entry."""
+        """Error bounds of the entries."""
         return np.zeros_like(self.matrix) if self.sizes is None else SUM_ROUNDING * self.sizes
 
     @cached_property
     def _alone(self) -> Index | None:
-        """Columns of the entries, where no row has two: then nothing needs to be summed."""
+        """Columns of the entries, if no row has two."""
         there = self.size != 0.0
         return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
 
@@ -56,7 +56,7 @@ class Affine:
         return self._times(self.matrix, x)
 
     def linear_size(self, x: Array) -> Array:
-        """The sizes of its entries times vectors >= 0.
+        """Sizes times vectors >= 0.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class Affine:
         return self._times(self.size, x)
 
     def linear_error(self, x: Array) -> Array:
-        """Their errors times vectors >= 0.
+        """Errors times vectors >= 0.
 
         Parameters
         ----------
@@ -76,12 +76,11 @@ class Affine:
     def _times(self, matrix: Array, x: Array) -> Array:
         if self._alone is not None:
             return np.asarray(x[..., self._alone] * matrix[np.arange(len(matrix)), self._alone])
-        # One product for all vectors.
         return np.asarray(np.matmul(x.reshape(-1, x.shape[-1]), matrix.T).reshape(*x.shape[:-1], -1))
 
     @cached_property
     def constant_ends(self) -> Ends:
-        """The constant."""
+        """The constant as ends."""
         if self.constant_sizes is None:
             return thin(self.constant)
         room = SUM_ROUNDING * self.constant_sizes
@@ -89,12 +88,12 @@ class Affine:
 
 
 SUM_ROUNDING = 8.0 * EPS
-"""Error of a sum of up to eight exact terms, against the sum of their sizes: seven roundings, and that of the bound."""
+"""Relative error of a sum of up to eight exact terms: seven roundings, and the bound's."""
 
 
 @frozen(eq=False, slots=False)
 class Quadratic:
-    """H(u) = plain(u) + first(u) second(u), component by component, each part affine in u = (y, lam).
+    """H(u) = plain(u) + first(u) second(u), componentwise, u = (y, lam).
 
     Parameters
     ----------
@@ -106,19 +105,18 @@ class Quadratic:
     second: Affine
 
     def times(self, left: Array, a: Array, b: Array, chart: Array, scale: Array, powers: int) -> Array:
-        """Products with the coefficients of G' along cubics, in units of the unknowns, shape (powers, slabs, m, N + 1).
+        """`left` times scaled coefficients of G' along cubics, shape (powers, slabs, m, N + 1).
 
         Parameters
         ----------
         left : ndarray, shape (slabs, m, N + 1)
         a, b : ndarray, shape (slabs, 4, N)
-            Coefficients of `first` and of `second`.
+            Coefficients of `first`, `second`.
         chart : ndarray, shape (slabs, N + 1)
-            The last row of the coefficient of power 0.
+            Last row of coefficient 0.
         scale : ndarray, shape (slabs, N + 1)
-            The units.
         powers : int
-            How many coefficients.
+            Number of coefficients.
         """
         out = np.empty((powers, *left.shape[:2], chart.shape[1]))
         for k in range(powers):

@@ -1,8 +1,7 @@
-"""Krawczyk's test for quadratic homotopies: what is left of I - Y(s) G', as a polynomial in the offset from the middle.
+"""Krawczyk's test for quadratic homotopies: I - Y(s) G' as a polynomial in x = s - middle.
 
-The preconditioner is Y(s) = (I - x E + x^2 C) Y_0, x = s - middle. Everything is in units d of the unknowns, powers of
-two near the radii. Y_0 and its product with G' are in double precision. E, C and what is left of the test need two
-digits: they are in single precision, which costs half, and whose rounding is bounded as that of any other products.
+The preconditioner is Y(s) = (I - x E + x^2 C) Y_0. Units d are powers of two near the radii. E, C and the remainder
+need two digits: single precision, with bounded rounding, costs half.
 """
 
 from __future__ import annotations
@@ -22,31 +21,31 @@ from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, i
 from problems.lcp.quadratic.derivative import Derivative
 
 SHARE = 1e-3
-"""Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""
+"""Rounding is bounded once, for the misfit plus this part of its maximum."""
 
 TERMS = 6
-"""Of the series for the tangent: what is left of it is bounded in the shape of the tube, which is not its own."""
+"""Terms of the tangent's series; the rest is bounded in the tube's shape."""
 
 STRETCHES = 32
-"""Into so many parts a slab is cut for the signs of the parameter's derivatives, which are a few numbers a part."""
+"""Parts of a slab for the signs of the parameter's derivatives."""
 
 
 @frozen(eq=False, slots=False)
 class Polynomial:
-    """The bounds for slabs.
+    """Bounds for slabs.
 
     Attributes
     ----------
     slabs : Slabs
     derivative : Derivative
     d : ndarray, shape (slabs, m)
-        The units.
+        Units.
     Y, off : ndarray
-        Y_0, and |I - Y_0 G_0|.
+        Y_0 and |I - Y_0 G_0|.
     E, C : ndarray
-        Of the preconditioner; None for slabs of no length.
+        None for slabs of no length.
     left : ndarray
-        What Y(s) G' has of third order, and |F| and |H|, E, F and H being Y_0 times the coefficients of G'; stacked.
+        Stacked third-order remainder, |F|, |H|; E, F, H are Y_0 times coefficients of G'.
     """
 
     slabs: Slabs
@@ -61,12 +60,12 @@ class Polynomial:
 
     @classmethod
     def of(cls, slabs: Slabs, derivative: Derivative, radius: Array) -> Polynomial:
-        """With radii of the order of those that are wanted."""
+        """Bounds for radii near `radius`."""
         d = np.exp2(np.round(np.log2(radius)))
         chart, form = slabs.cells.chart, derivative.form
         G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1) * d[:, None, :]
         moving = bool(slabs.offset.any())
-        # Rows of one size each, which pivots are chosen among: those of complementary pairs may vanish.
+        # Pivoting needs rows of equal size; those of complementary pairs may vanish.
         rows = np.abs(G0).max(axis=2, keepdims=True)
         Y = inverses(G0 / rows) / rows.transpose(0, 2, 1)
         whole, *found = form.times(Y, derivative.a, derivative.b, chart, d, 4 if moving else 1)
@@ -97,14 +96,14 @@ class Polynomial:
 
     @cached_property
     def _images(self) -> tuple[Ball, ...]:
-        """Y_0 H(p), E Y_0 H(p) and C Y_0 H(p), in the units: polynomials of degree 6."""
+        """Y_0 H(p), E Y_0 H(p), C Y_0 H(p), of degree 6."""
         image = Ball.of(self.derivative.residual).through(self.Y[:, :, :-1], self.size_Y)
         if self.E is None or self.C is None:
             return (image,)
         return image, *(image.through(matrix.astype(float)) for matrix in (self.E, self.C))
 
     def _along(self, times: int) -> Array:
-        """A bound of |Y(s)| times a derivative of H(p(s)), which is all but zero."""
+        """Bound of |Y(s)| times a derivative of H(p(s))."""
         found = self._images
         if len(found) == 1:
             return self.d * found[0].size[..., times] * float(factorial(times))
@@ -125,10 +124,10 @@ class Polynomial:
 
     @cached_property
     def _errors(self) -> tuple[Array, Array]:
-        """A vector x, and a bound of what rounding and Y_0 G_0 leave of |I - Y G'| x; both in the units.
+        """A vector x, and bounds of |I - Y G'| x from rounding and Y_0 G_0, scaled.
 
-        With B_k = Y_0 G_k, of which I, E, F and H are off by e_k, and C by e_C off E E - F, that is
-        e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) + t^3 (...) and so on.
+        I, E, F and H are off by e_k, C by e_C from E E - F: e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) +
+        t^3 (...) and so on.
         """
         with np.errstate(all="ignore"):
             misfit = self.misfit / self.d
@@ -157,7 +156,7 @@ class Polynomial:
             return x, up_by(plain + image_of(self.sizes, np.concatenate([through_E, through_C], axis=1)), 64)
 
     def _pushed(self, defect: Array, x: Array | None = None) -> Array:
-        """A bound of |Y(s)| defect, in the units, and of what terms of third and higher order make of x >= 0."""
+        """Bound of |Y(s)| defect, plus third- and higher-order terms times x."""
         size = up_by(times(self.size_Y, defect), defect.shape[1])
         if self.E is None or self.left is None:
             return size
@@ -172,10 +171,8 @@ class Polynomial:
     def spread(self, x: Array, radius: Array) -> Array:
         """See `Judged.spread`.
 
-        The terms are those of I - (I - x E + x^2 C) Y_0 (G_0 + x G_1 + x^2 G_2 + x^3 G_3) and of Y(s) 2 Q(d, .), where
-        C is about E E - F, and E F - C E - H is left of third order.
+        Bounds I - Y(s) (G_0 + x G_1 + x^2 G_2 + x^3 G_3), whose third order is E F - C E - H, and Y(s) 2 Q(d, .).
         """
-        # Of a tube on its own it is asked several times over.
         if not np.array_equal(x, radius):
             return self._spread(x, radius)
         key = x.tobytes()
@@ -192,11 +189,10 @@ class Polynomial:
             return up_by(self.d * found, 16)
 
     def _turned(self, radius: Array) -> Array:
-        """A bound of |Y(s) 2 Q(d, p'(s))| for |d| <= radius, in the units.
+        """Scaled bound of |Y(s) 2 Q(d, p'(s))|, |d| <= radius.
 
-        2 Q(p', .) is the derivative of G' along the cubic, G_1 + 2 x G_2 + 3 x^2 G_3, and Y(s) times it
-        E + x (F - C) + x^2 (2 H - E F - (E F - C E - H)) + x^3 (2 C F - 3 E H) + 3 x^4 C H, with at most 3 / t times
-        the errors that x times it has in I - Y(s) G'.
+        2 Q(p', .) = G_1 + 2 x G_2 + 3 x^2 G_3. Y(s) times it is E + x (F - C) + x^2 (2 H - E F - (E F - C E - H)) + x^3
+        (2 C F - 3 E H) + 3 x^4 C H, with errors at most 3 / t times those of I - Y(s) G'.
         """
         if self.E is None or self.left is None:
             return self._pushed(self.derivative.products(self.slabs.velocity.magnitude(), radius))
@@ -210,10 +206,10 @@ class Polynomial:
         return up_by(both + t * by_F + t**2 * (third + 2.0 * by_H) + 3.0 / t * share * errors, 64)
 
     def _solved(self, v: Array, radius: Array, tube: Array, terms: int) -> Array:
-        """A bound of |G'^{-1} b| within `radius` <= tube of the cubic, where v is one of |Y(s) b|.
+        """Bound of |G'^{-1} b| within `radius` <= tube of the cubic, from v >= |Y(s) b|.
 
-        With E = I - Y G' and E r <= kappa r, (I - E)^{-1} v is at most the sum of the first E^k v and, where the next
-        is at most theta r, theta / (1 - kappa) r.
+        With E = I - Y G' and E r <= kappa r: the sum of the first E^k v, plus theta / (1 - kappa) r if the next is at
+        most theta r.
         """
         with np.errstate(all="ignore"):
             kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True) * (1.0 + 4.0 * EPS)
@@ -224,16 +220,15 @@ class Polynomial:
             return up_by(total + np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * tube, 4 * terms + 16)
 
     def _drift(self, radius: Array, tube: Array, terms: int) -> Array:
-        """A bound of |u'(s) - p'(s)|, the curve u(s) being within `radius` of p(s).
+        """Bound of |u'(s) - p'(s)| for u(s) within `radius` of p(s).
 
-        H'(u) u' = 0 and c . (u' - p') = 0, so that u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' is (H(p))' and
-        2 Q(u - p, p').
+        u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' = (H(p))' + 2 Q(u - p, p').
         """
         with np.errstate(all="ignore"):
             return self._solved(self._slope + self.d * self._turned(radius), radius, tube, terms)
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
-        """See `Judged.tangent`: u'(s)."""
+        """See `Judged.tangent`."""
         for terms in (0, TERMS):
             room = self._drift(radius, tube, terms)
             found = self.slabs.velocity + Ends(-room, room)
@@ -244,8 +239,7 @@ class Polynomial:
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
         """See `Judged.pace`.
 
-        With e = u' - p', once more: u'' - p'' = -G'^{-1} (H''(u', u') + H'(u) p'', 0), which is (H(p))'' and
-        4 Q(p', e), 2 Q(e, e), 2 Q(u - p, p'').
+        With e = u' - p': u'' - p'' = -G'^{-1} (r, 0), r = (H(p))'' + 4 Q(p', e) + 2 Q(e, e) + 2 Q(u - p, p'').
         """
         t = self.slabs.offset[:, None]
         middle, half = (2.0 * np.arange(STRETCHES) + 1.0) / STRETCHES - 1.0, (1.0 + 1e-9) / STRETCHES
