@@ -1,6 +1,6 @@
-"""The active-set iteration: the point of a face, the signs that are wrong there, the face with these changed.
+"""The active-set iteration: solve on a face, change the wrong signs, repeat.
 
-It is the primal-dual active-set method, which is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
+This primal-dual active-set method is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
@@ -22,7 +22,7 @@ from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.data.problem import BETWEEN, UPPER, State
 
 Judge = Callable[[Face, Array, Array], tuple[Array, Array, bool]]
-"""(face, x, w) -> (x, w, whether that is the solution); the x and w may be better ones."""
+"""(face, x, w) -> (x, w, solved), x and w perhaps improved."""
 
 
 class Ended(Enum):
@@ -43,11 +43,11 @@ class Policy:
     Attributes
     ----------
     steps : int
-        Corrections of the guess, so that steps + 1 faces are solved at most.
+        Most corrections: at most steps + 1 faces are solved.
     patience : int or None
-        Corrections in a row without a new low of the number of changed indices, after which it is given up.
+        Corrections allowed in a row without a new low of changed indices.
     singular : int, optional
-        So many faces with singular equations are allowed, whose points may lie anywhere on them, and are no steps.
+        Allowed singular faces, whose points may lie anywhere; they are no steps.
     """
 
     steps: int
@@ -56,17 +56,14 @@ class Policy:
 
 
 AT_END = Policy(steps=2)
-"""Corrections of an active set that is right but for rounding: a method's last one."""
+"""For a method's last active set, right but for rounding."""
 
 
 @define(eq=False)
 class Tried:
-    """The active sets that were tried on one problem: none is worth a second factorisation.
+    """The active sets tried on one problem: none is factored twice, but a singular face is tried from each new point.
 
-    A singular face has many points, and the one taken is the nearest to where the iteration is: from elsewhere it is
-    tried again.
-
-    `last`: The last of them. `known`: Keys of all, of a singular face with the point it was tried at.
+    `known`: keys of all, for a singular face with its point.
     """
 
     last: State | None = None
@@ -74,14 +71,14 @@ class Tried:
 
 
 def key_of(state: State) -> bytes:
-    """A state in few bytes."""
+    """A short key of a state."""
     key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
     return key + np.packbits(above).tobytes() if above.any() else key
 
 
 @frozen(eq=False)
 class Iterated:
-    """Where an iteration ended: the reason, the state that is next, and the last point."""
+    """The end of an iteration: reason, next state, last point."""
 
     ended: Ended
     state: State
@@ -99,25 +96,24 @@ def iterate(
     tried: Tried | None = None,
     counts: Counts | None = None,
 ) -> Iterated:
-    """Correct an active set until it is right, or no longer worth it.
+    """Correct an active set until it is right or given up.
 
     Parameters
     ----------
     faces : Faces
-        Of the problem.
     state : State
         The guess.
     policy : Policy
     near : Array, optional
-        Where a face holds many points, the one nearest to this is taken; zero by default.
+        Selects the nearest of a face's many points; default zero.
     shift : float, optional
-        Solve the proximal problem LCP(q - shift near, A + shift I) instead.
+        Solve the proximal problem LCP(q - shift near, A + shift I).
     judge : callable, optional
-        Ends the iteration at the solution, and may improve a point whose signs are to decide.
+        Ends at the solution; may improve a point before its signs decide.
     tried : Tried, optional
-        Sets that are not tried again; grows.
+        Sets not to try again; grows.
     counts : Counts, optional
-        Where factorisations are added up.
+        Adds up factorisations.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x
@@ -156,5 +152,5 @@ def iterate(
 
 
 def _cycling(changes: list[int], patience: int) -> bool:
-    """Whether the last `patience` numbers are no lower than the lowest before them."""
+    """Whether the last `patience` numbers reach no new low."""
     return len(changes) > patience and min(changes[-patience:]) >= min(changes[:-patience])

@@ -1,4 +1,4 @@
-"""When the finish is tried on a path: by its parameter, and by the products that the path makes small."""
+"""Tries of the finish along a path."""
 
 from __future__ import annotations
 
@@ -14,26 +14,25 @@ from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import natural_units
 
 SPACING = 0.4
-"""The finish is tried on a path where the products x z1 (or x y) have fallen to the problem's natural units, in the
-median, and each time that the parameter has fallen by this factor since. On 80 planted problems of five kinds (n = 20,
-40) 0.2, 0.4, 0.6 and 0.8 take 6,099, 5,567, 5,844 and 6,138 factorisations."""
+"""First try where the median product x z1 (or x y) reaches natural units, then whenever the parameter falls by this
+factor. On 80 planted problems of five kinds (n = 20, 40) 0.2, 0.4, 0.6, 0.8 take 6,099, 5,567, 5,844, 6,138
+factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""At each try on a path. Of 25 stacks and 25 arches of bodies, n = 40 to 496, within 3 s each, 21 and 25 are solved
-where singular faces are steps (16.1 and 4.0 s together), 23 and 25 where they are none (7.1 and 3.3 s)."""
+"""For each try. Of 25 stacks and 25 arches of bodies (n = 40 to 496, 3 s each) 21 and 25 are solved if singular faces
+are steps (16.1 and 4.0 s together), 23 and 25 if not (7.1 and 3.3 s)."""
 
 
 @define(eq=False)
 class AlongPath:
-    """The finish as the `finish=` of a trace: tried at times, more often the nearer the end.
+    """The `finish=` of a trace, tried more often near the end.
 
     Attributes
     ----------
     finish : Finish
     homotopy : KKTHomotopy or TwoVectorHomotopy
-        Of the path.
     next_lam : float
-        It is tried when the parameter has fallen to this.
+        Parameter of the next try.
     """
 
     finish: Finish
@@ -42,14 +41,14 @@ class AlongPath:
 
     @classmethod
     def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
-        """For one path of a homotopy of this package, whose first n unknowns are x."""
+        """For one path of a homotopy whose first n unknowns are x."""
         products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
         x, w = natural_units(homotopy.problem)
         natural = float(x * w / np.median(products)) if products.size else 1.0
         return cls(finish, homotopy, min(1.0, natural) * float(homotopy.start()[1]))
 
     def __call__(self, y: Array, lam: float) -> Array | None:
-        """The end of the path at the certified solution; None to go on."""
+        """The path's end at the certified solution, or None to go on."""
         if lam > self.next_lam:
             return None
         self.next_lam = SPACING * lam

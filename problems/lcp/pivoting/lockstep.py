@@ -1,4 +1,4 @@
-"""Lemke's method on many small LCPs at once: each pivot is a few operations on arrays of all of them."""
+"""Lemke's method on many small LCPs at once: each pivot is a few array operations on all."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from continuation.arrays import Array
 from problems.lcp.pivoting.dictionary import ZERO_PIVOT
 
 MOST_PIVOTS = 3
-"""Times the order, and ten. Of 2,000 random P-matrices of order 5, 10 and 20 none needs more than n + 10 pivots, and of
-Gaussian ones none ends after 3 n + 10; what takes longer, as a cycle does for want of a lexicographic rule, holds up
-the others."""
+"""Most pivots, times the order, plus ten. Of 2,000 random P-matrices of order 5, 10, 20 none needs more than n + 10; no
+Gaussian one ends after 3 n + 10. Longer paths (cycles, as no lexicographic rule breaks ties) delay the others."""
 
 
 def lemke_bases(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Where x is basic at the end of Lemke's path with covering vector e, and whether t has left the basis there.
+    """Where x is basic at the end of Lemke's path with covering vector e, and whether t left the basis.
 
-    The path of `pivoting.starts.covering`, but ties are broken by the least index, so that it may cycle.
+    As `pivoting.starts.covering`, but the least index breaks ties, so it may cycle.
 
     `A` of shape (k, n, n). `q` of shape (k, n).
 
@@ -63,7 +62,7 @@ def _pivot(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Exchange in place a basic variable of each dictionary for a nonbasic one; the variables that have left."""
+    """Pivot each dictionary in place; return the variables that left."""
     each = np.arange(len(table))
     moved = table[each, row]
     pivot = moved[each, column]
@@ -82,7 +81,7 @@ def _pivot(
 def _first_zero(
     table: Array, basic: NDArray[np.intp], column: NDArray[np.intp], t: int
 ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """The rows that become zero first, that of t where it is tied, and where there is one at all."""
+    """The rows that become zero first (ties: t), and whether any does."""
     each = np.arange(len(table))
     slopes, constants = -table[each, :, column], table[:, :, -1]
     falling = slopes > ZERO_PIVOT * np.abs(slopes).max(axis=1)[:, None]

@@ -1,4 +1,4 @@
-"""From what a search found to what may be claimed: the one place where an outcome is decided."""
+"""The one place that decides what a search may claim."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ from problems.lcp.search.search import Candidate, Search
 
 
 def answer(search: Search, message: str) -> Solution:
-    """What the search came to.
+    """The answer, from all that the search found.
 
     Parameters
     ----------
     search : Search
     message : str
-        What was done; the outcome's own sentence, and that of the proof, are put before it.
+        Says what was done; the sentences of the outcome and of the proof precede it.
     """
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
@@ -51,10 +51,7 @@ def answer(search: Search, message: str) -> Solution:
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
-    """What is certain comes first.
-
-    Where all faces were tried and one holds a solution, but its rounding to floats is not `confirmed`, none is found.
-    """
+    """The most certain outcome; NOT_FOUND if exact arithmetic finds a solution whose floats are not `confirmed`."""
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
@@ -72,10 +69,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
 
 
 def exactly(search: Search, found: Solution) -> Solution:
-    """The answer where active sets have ended within a singular face, which holds no solution of the data as given.
-
-    Another face may hold one: all of a small problem are tried.
-    """
+    """Improve SOLVED_TO_PRECISION: try all faces of a small problem, since another one may hold an exact solution."""
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
     search.ends = []
@@ -83,14 +77,14 @@ def exactly(search: Search, found: Solution) -> Solution:
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
-    """How the problem comes to the units in which it is searched, once; None where they are those given.
+    """The scaling for the search, computed once; None keeps the given units.
 
-    `roughly`: Whether an LCP whose largest entries of rows and columns are alike, but for a common factor, keeps its
-    units: to find others takes as long as to solve it.
+    `roughly`: keep the units of an LCP whose rows and columns have similar largest entries, up to a common factor: to
+    find others takes as long as to solve it.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)
-        # What scaling to floats would round is decided by exact arithmetic where that is cheap.
+        # Small problems with entries far apart are balanced: if that rounds, exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
         if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
             return scaled
@@ -98,17 +92,16 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
 
 
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
+    """The answer in the given units: the scaling is exact, and no judgement depends on units.
 
-    `problem`: As given. `scaled`: What was solved in its place. `found`: Of the scaled problem. `tolerance`: Of the
-    relative residual.
+    `found`: the answer to the scaled problem. `tolerance`: of the relative residual.
     """
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
     rounded = _rounded(found, tolerance)
     found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
-    # Where faces were excluded at once a Farkas vector is sought, of the problem as given, when it is asked for.
+    # After exhaustion `Solution.farkas` computes its vector on demand, for the given problem.
     exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
@@ -127,9 +120,9 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
-    """The answer to a problem from that to what is left without its fixed unknowns; what was proved is proved again.
+    """The answer with the fixed unknowns put back; proofs are repeated.
 
-    `rest`: None where nothing is left. `tolerance`: Of the relative residual.
+    `rest`: None if all unknowns are fixed. `tolerance`: of the relative residual.
     """
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
@@ -159,7 +152,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
     if rest.x is None:
         return found
     found = _at(found, small.x(rest.x), tolerance, rounded)
-    # The equations of what is left have a q that was rounded.
+    # The reduced problem has a rounded q.
     if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
         exact = exact_nearby(problem, found.x)
         found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
@@ -167,7 +160,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
 
 
 def of_program(program: Program, found: Solution) -> Solution:
-    """The answer to a program from that to its optimality conditions."""
+    """The answer to a program, from that to its optimality conditions."""
     parts = [found.message]
     if found.success and not program.convex:
         parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
@@ -179,9 +172,9 @@ def of_program(program: Program, found: Solution) -> Solution:
 
 
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
-    """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone.
+    """The answer to a small problem with entries too far apart for floats, by exact arithmetic.
 
-    `tolerance`: Of the relative residual.
+    `tolerance`: of the relative residual.
     """
     began = time.perf_counter()
     decided = exhaust(problem)
@@ -194,13 +187,13 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
 
 
 def _rounded(found: Solution, tolerance: float) -> bool:
-    """Whether a program was solved for data that differ by round-off; each row relative to its own terms it was not."""
+    """Whether a program was solved only for rounded data: some row misses the tolerance relative to its own terms."""
     end = found.certificate
     return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
+    """The answer at a point of the given problem, infinite or zero beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (
