@@ -1,4 +1,4 @@
-"""The LCP(q, A): homotopies, solver, certificates, matrix classes, references."""
+"""The LCP(q, A) and all that solves it."""
 
 from problems.hypothesis_hook import register
 from problems.lcp.classes import classify

@@ -1,4 +1,4 @@
-"""Hypothesis strategies for problems with bounds, from integers: see `strategies`."""
+"""Hypothesis strategies for problems with bounds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from problems.lcp.data.program import Program, from_qp
 from problems.lcp.strategies import ORDERS, Draw, Order, matrices
 
 KINDS = ("lower", "upper", "box", "free", "fixed")
-"""Kinds of bounds of one unknown."""
+"""Kinds of bounds."""
 
 _END = st.integers(-3, 3)
 _WIDTH = st.integers(1, 4)
@@ -60,7 +60,7 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
 def planted_mixed_lcps(
     draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str, ...] = KINDS
 ) -> tuple[MixedLCP, Array]:
-    """A problem with bounds and an exact integer solution x, degenerate or not."""
+    """A problem with bounds and an exact integer solution x."""
     A = draw(matrices(cls, n))
     lower, upper = draw(bounds(len(A), kinds))
     x, w = np.empty(len(A)), np.zeros(len(A))

@@ -1,4 +1,4 @@
-"""A picture of an answer: how it was found, and its face."""
+"""A picture of an answer."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Solution = Any
 
 
 def draw_solution(solution: Solution) -> Any:
-    """The message, the path that led to x if any, the face and the residual."""
+    """The message, the path to x if any, the face and the residual."""
     require_matplotlib()
     from matplotlib import pyplot
 
@@ -35,10 +35,9 @@ def draw_solution(solution: Solution) -> Any:
 
 
 def draw_face(solution: Solution, axes: Axes) -> Axes:
-    """Bars for each i: up for min(x_i - lower_i, upper_i - x_i), down for w_i, each kind relative to its largest.
+    """Bars for each i: up for the distance of x_i to its bounds, down for w_i, each relative to its largest.
 
-    A solution has one bar at each i; two violate complementarity. A ring marks both zero up to the residual: a
-    degenerate or unsolved pair.
+    A solution has one bar at each i. A ring marks two values within the residual.
     """
     axes.set_title(f"{solution.outcome.name}: residual {solution.residual:.0e}", fontsize="small", loc="left")
     if solution.x is None or solution.w is None:
@@ -47,9 +46,9 @@ def draw_face(solution: Solution, axes: Axes) -> Axes:
         return tidy(axes)
     problem = solution.problem
     inside = np.minimum(solution.x - problem.lower, problem.upper - solution.x)
-    # Unknowns without bounds always count as inside.
+    # A free x is always inside.
     up, down = np.where(np.isfinite(inside), inside, np.abs(solution.x) + 1.0), np.abs(solution.w)
-    # Values below the residual are the answer's error.
+    # Values below the residual are errors.
     held, pushed = (np.abs(values) > np.maximum(solution.residual, 0.0) for values in (up, down))
     width = float(np.clip(110.0 / problem.n, 0.5, 9.0))
     for where, values, side, colour in ((held, up, 1.0, COLOURS[0]), (pushed, down, -1.0, COLOURS[1])):

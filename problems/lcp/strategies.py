@@ -1,8 +1,4 @@
-"""Hypothesis strategies for matrices of a class and problems with a property, constructed from integers so that they
-shrink.
-
-Only these modules need Hypothesis.
-"""
+"""Hypothesis strategies for matrices of a class and problems with a property, from integers, so that they shrink."""
 
 from __future__ import annotations
 
@@ -55,10 +51,9 @@ LARGE = ("P", "PSD", "K", "any")
 
 
 def large_lcps(cls: str = "P", n: Order = 300) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A large problem and a solution up to rounding, from one seed in milliseconds.
+    """A large problem and a solution up to rounding, from one seed, in milliseconds.
 
-    Order and seed shrink. P: diagonally dominant; PSD: of rank n // 2 plus a skew part; K: dominant, tridiagonal; any:
-    normal entries.
+    P: diagonally dominant; PSD: of rank n // 2 plus a skew part; K: dominant, tridiagonal; any: normal entries.
 
     Parameters
     ----------
@@ -151,7 +146,6 @@ def _planted(draw: Draw, matrix: st.SearchStrategy[Array], degenerate: bool) -> 
 
 
 def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
-    """Pairs x, w with one of x_i, w_i positive."""
     values = [draw(POSITIVE) for _ in range(n)]
     basic = [draw(st.booleans()) for _ in range(n)]
     x = np.array([v if b else 0 for v, b in zip(values, basic, strict=True)], dtype=float)
@@ -160,9 +154,9 @@ def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
 
 @st.composite
 def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]:
-    """A problem and two distinct solutions x and y, exactly.
+    """A problem and two solutions x and y, exactly.
 
-    They differ by one in a coordinate j: column j of A is chosen so that A (x - y) = w(x) - w(y).
+    They differ by one in a coordinate j: column j of A makes A (x - y) = w(x) - w(y).
     """
     order = draw(orders_of(n))
     x, w = _complementary_pair(draw, order)
@@ -179,7 +173,7 @@ def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]
 def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
     """A strictly feasible problem with a nearly singular matrix, and its start.
 
-    One row combines the others with integers (zero for n = 1), then one entry moves by 2^-k, k from 10 to 40.
+    One row combines the others, then one entry moves by 2^-k, k from 10 to 40.
     """
     order = draw(orders_of(n))
     A = np.array(square(draw, order), dtype=float)
@@ -191,9 +185,9 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
 
 
 def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A strictly feasible problem in units from 2^-26 to 2^26 (ratios beyond 1e15), with its start.
+    """A strictly feasible problem in units from 2^-26 to 2^26, with its start.
 
-    The scaling D A E, D q, x0 / E by powers of two is exact and maps solutions one to one.
+    Powers of two scale exactly and map solutions one to one.
 
     Parameters
     ----------

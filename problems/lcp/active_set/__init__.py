@@ -1,1 +1,1 @@
-"""Active sets: faces, the iteration over them, first guesses."""
+"""Active sets: faces, iteration, guesses."""

@@ -1,7 +1,7 @@
 """Active sets of a quadratic program from its proximal augmented Lagrangian, where the pieces of w = 0 cycle.
 
-Penalties replace rows and bounds. The function is then convex, differentiable and piecewise quadratic, so Newton's
-method with exact line search cannot cycle.
+With penalties for rows and bounds the function is convex and piecewise quadratic: Newton's method with exact line
+search cannot cycle.
 
 References
 ----------
@@ -26,19 +26,18 @@ from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 from problems.lcp.data.ranges import ranges
 
 PENALTY, MOST, GROWTH = 20.0, 1e8, 10.0
-"""First penalty, as published (times objective over violations); its limit; its growth with each change of the
-multipliers. The inverse proximal term of a convex function grows alike, for superlinear convergence. One penalty solves
-as many of 45 programs of Maros and Meszaros as one per row."""
+"""First penalty, as published (times objective over violations), its limit, and its growth per change of the
+multipliers, which then converge superlinearly."""
 
 STEPS_PER_CHANGE = 100
-"""Most Newton steps per change of the multipliers."""
+"""Most Newton steps per change of multipliers."""
 
 
 @frozen(eq=False)
 class Saddle:
-    """A program read from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
+    """A program from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
 
-    `multiplier`, `activity`: indices of each row's multiplier and activity (-1: none).
+    `multiplier`, `activity`: each row's indices (-1: none).
     """
 
     problem: MixedLCP
@@ -59,7 +58,7 @@ class Saddle:
         activity, down = np.full(problem.n, -1, dtype=np.intp), np.zeros(problem.n)
         rows = np.arange(n, problem.n)
         if pairs is not None:
-            # A slack without cost looks like an activity, but is a variable of the program.
+            # A slack without cost only looks like an activity.
             own = (pairs.activity >= n) & (pairs.multiplier >= n)
             at, mu = pairs.activity[own], pairs.multiplier[own]
             activity[mu], down[mu] = at, pairs.down[own]
@@ -70,7 +69,7 @@ class Saddle:
         P, R = A[:n][:, :n], A[rows][:, :n]
         if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, rows]) or A[rows][:, rows].sum() != 0.0:
             return None
-        # mu >= 0 holds a row at its lower side; a free mu makes it an equation.
+        # mu >= 0: the row is at its lower side; mu free: an equation.
         ends = problem.lower[rows], problem.upper[rows]
         positive, negative = (ends[0] == 0.0) & np.isinf(ends[1]), np.isinf(ends[0]) & (ends[1] == 0.0)
         free = np.isinf(ends[0]) & np.isinf(ends[1])
@@ -102,13 +101,13 @@ class Penalised:
         return np.concatenate([self.saddle.R @ x + self.saddle.d, x])
 
     def pulled(self, y: Array) -> Array:
-        """The transpose of `values`, without d, times y."""
+        """The gradient of y'`values`."""
         m = self.saddle.multiplier.size
         back: Array = self.saddle.R.T @ y[:m] + y[m:]
         return back
 
     def hessian(self, active: NDArray[np.bool_]) -> Matrix:
-        """The Hessian of the piece that violates these rows and bounds."""
+        """The Hessian on the piece that violates these rows and bounds."""
         R, m = self.saddle.R, self.saddle.multiplier.size
         part, diagonal = R[np.flatnonzero(active[:m])], self.sigma * active[m:] + 1.0 / self.weight
         penalised = self.sigma * (part.T @ part)
@@ -117,13 +116,13 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """The zero along a direction of the derivative, which grows piecewise linearly from `slope`.
+        """The zero of the derivative along a direction; it is piecewise linear and begins at `slope`.
 
         `t`, `dv`: values plus multipliers over penalties, and their change. `curvature`: of the unpenalised part.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
-        # Crossing the lower side with dv < 0, or the upper one with dv > 0, adds curvature.
+        # Each side that the step crosses outwards adds curvature.
         rate = self.sigma * np.concatenate([-dv * np.abs(dv), dv * np.abs(dv)])
         outside = (t < self.low) | (t > self.high)
         after = np.flatnonzero((enters > 0.0) & np.isfinite(enters) & (rate != 0.0))
@@ -138,10 +137,9 @@ class Penalised:
 def guesses(
     saddle: Saddle, below: float, x: Array, counts: Counts, factoring: Factoring
 ) -> Iterator[tuple[State, Array]]:
-    """Yield active sets and points near their solutions without end, one after each change of the multipliers.
+    """Yield active sets and points near their solutions, one per change of multipliers.
 
-    `below`: exceeds what makes P positive semidefinite; 0 if P is. `x`: the start. `counts`: adds up factorisations.
-    `factoring`: of sparse matrices.
+    `below`: exceeds what makes P positive semidefinite; 0 if P is. `counts`: adds up factorisations.
     """
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])
@@ -165,7 +163,7 @@ def guesses(
 def _minimised(
     one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts, factoring: Factoring
 ) -> tuple[Array, Array] | None:
-    """Newton's minimum and the shifted values there; None if a factorisation fails."""
+    """The minimum and the shifted values there; None if a factorisation fails."""
     saddle, pieces = one.saddle, b""
     factor = None
     for _ in range(STEPS_PER_CHANGE):
@@ -195,7 +193,6 @@ def _minimised(
 
 
 def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
-    """The piece that the violated rows and bounds select."""
     problem, n, m = saddle.problem, saddle.c.size, saddle.multiplier.size
     side = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
     state: State = np.full(problem.n, BETWEEN)
@@ -209,7 +206,6 @@ def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
 
 
 def _point(saddle: Saddle, x: Array, y: Array, nearest: Array) -> Array:
-    """All unknowns: x, multipliers, activities."""
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     point = np.zeros(problem.n)
     point[:n], point[saddle.multiplier] = x, -y[:m]

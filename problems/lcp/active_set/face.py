@@ -1,4 +1,4 @@
-"""The equations of one complementary face: x_i at a bound off a set, w_i = 0 on it."""
+"""One complementary face: x_i at a bound off a set, w_i = 0 on it."""
 
 from __future__ import annotations
 
@@ -28,30 +28,28 @@ Mask = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 
 SINGULAR_CONDITION = 1e-14
-"""Reciprocal condition below which a face is singular: its solution has hardly a digit left."""
+"""Reciprocal condition of a singular face: its solution has hardly a digit left."""
 
 DOUBTFUL_PIVOTS = 1e-6
-"""Ratio of the smallest to the largest pivot below which the condition is estimated."""
+"""Ratio of extreme pivots below which the condition is estimated."""
 
 SINGULAR_SHIFT = 1e-8
-"""Diagonal shift, relative to the norm, for singular faces: the root of the machine precision. Smaller shifts lose
-digits, larger ones need more corrections."""
+"""Relative diagonal shift of singular faces, the root of the machine precision: smaller ones lose digits, larger ones
+converge more slowly."""
 
 FACES_KEPT = 8
-"""Faces whose factors are kept for the next q: oscillations revisit a few."""
+"""Faces kept for the next q: a motion to and fro visits few."""
 
 SHIFTED_CORRECTIONS = 4
-"""Corrections by a shifted matrix: each gains the ratio of the shift to the least singular value."""
+"""Each correction gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
 class Face:
-    """One face and the factorisation of its equations, ``A x + shift x + q = 0`` on the active set.
+    """One face and its factored equations, ``A x + shift x + q = 0`` on the active set.
 
-    `active`: where x lies between its bounds and w_i = 0. `inverse`: solves on the active set, perhaps shifted
-    equations. `exact`: one solve gives the point: the equations were not shifted, or are a proximal problem's, of which
-    only signs count. `shift`: of the diagonal; zero on the problem's own face. `q`: the problem's or the proximal
-    problem's.
+    `active`: where w_i = 0. `inverse`: solves the equations, or shifted ones. `exact`: one solve gives the point:
+    either no shift was added, or only signs count (a proximal problem). `shift`: zero on the problem's own face.
     """
 
     problem: MixedLCP
@@ -64,14 +62,11 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
-        """(x, w) on the face, w zero on the active set; None if not finite. Of many points, about the one nearest to
-        `near`.
-        """
+        """(x, w) on the face, about the nearest to `near` of many points; None if not finite."""
         standard = self.problem.standard
         x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
             x = np.where(self.active, near, x)
-        # Exact factors need one solve; at zero w = q.
         for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
             x = self._corrected(x, self.q if self.exact and standard else self.w(x))
         w = self.w(x)
@@ -88,7 +83,7 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
-        """The point x of an unshifted face, corrected once with w in twice the working precision (`w`, if known)."""
+        """Correct x on an unshifted face once, with w in twice the working precision."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
@@ -98,10 +93,7 @@ class Face:
 
 
 def exchanging(method: str = "auto") -> Factoring:
-    """Factorisations of faces; SuperLU, where used, exchanges rows.
-
-    `method`: as for `Factoring`.
-    """
+    """Factorisations of faces: SuperLU exchanges rows."""
     return Factoring(method, SuperLUMethod(weak_pivots=False))
 
 
@@ -109,15 +101,7 @@ def exchanging(method: str = "auto") -> Factoring:
 class Faces:
     """The faces of one problem.
 
-    Parameters
-    ----------
-    structure : Structure
-    current : MixedLCP, optional
-        The problem, if its q is not the structure's.
-    kept : dict, optional
-        Keeps the last `FACES_KEPT` faces, by active set, for other q.
-    factoring : Factoring
-        Of sparse equations.
+    `current`: the problem, if its q is not the structure's. `kept`: holds the last `FACES_KEPT` faces for other q.
     """
 
     structure: Structure
@@ -135,15 +119,7 @@ class Faces:
     ) -> Face | None:
         """The factored face of a state, or None.
 
-        Parameters
-        ----------
-        state : State
-        shift : float
-            Added to the diagonal of A.
-        centre : Array, optional
-            Of a proximal problem, with q - shift centre for q.
-        regular : bool
-            Return None for singular equations.
+        `centre`: of a proximal problem, whose q is q - shift centre. `regular`: None also for singular equations.
         """
         if self.kept is None or shift or centre is not None:
             return self._made(state, shift, centre, regular)
@@ -180,15 +156,15 @@ class Faces:
         return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
     def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
-        # Indexing rows, then columns, is quickest and leaves LAPACK's order.
+        # This indexing is quickest and gives LAPACK's order.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
             block[np.diag_indices(len(block))] += shift
-        # At order 1 LU rounds once; Cholesky takes a root.
+        # LU of order 1 rounds only once.
         symmetric = len(block) > 1 and self.structure.symmetric
         if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
-        # This test costs a factorisation of order n: only after a failure.
+        # The test costs a factorisation of order n.
         definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
@@ -201,7 +177,7 @@ class Faces:
     def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
         eye = sp.eye_array(block.shape[0])
         block = sp.csc_array(block + shift * eye if shift else block)
-        # On a structurally singular matrix SuperLU prints and raises another error.
+        # SuperLU prints messages on structurally singular matrices.
         full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
         factor = self.factoring.factor(block) if full else None
         if factor is not None:
@@ -210,7 +186,7 @@ class Faces:
         return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * norm * eye)) if norm else None, False
 
     def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
-        """In the band of the whole matrix, with unit rows off the face: no index moves."""
+        """Solve in the whole band, with unit rows off the face: no index moves."""
         assert self.structure.band is not None
         kept = active.astype(float)
         factor = factor_band(self.structure.band.scaled(kept, kept, np.where(active, shift, 1.0)))
@@ -234,7 +210,7 @@ def _norm(block: Matrix) -> float:
 
 
 def _cholesky(block: Array) -> Factored | None:
-    """The factor; None if a pivot is within the rounding of the diagonal."""
+    """The factor; None if a pivot may be zero but for rounding."""
     factor = factor_cholesky(block)
     if factor is None:
         return None
@@ -243,11 +219,10 @@ def _cholesky(block: Array) -> Factored | None:
 
 
 def _lu(block: Array) -> Factored | None:
-    """The factors; None if singular to working precision."""
     factor = factor_lu(block)
     if factor is None:
         return None
     pivots = np.abs(factor.lu.diagonal())
-    # An estimate costs half a factorisation: only for doubtful pivots.
+    # An estimate costs half a factorisation.
     doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
     return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor

@@ -1,4 +1,4 @@
-"""The exact end: guess which x_i are positive, solve on that face, verify or correct."""
+"""The exact end: guess which x_i are positive, solve on that face, verify."""
 
 from __future__ import annotations
 
@@ -16,12 +16,11 @@ from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, ce
 from problems.lcp.proof.verdict import confirmed
 
 PATIENCE = 5
-"""Corrections in a row without a new low of changed indices that count as cycling. With 2, 3, 5, 10, infinity: 5,210,
-5,259, 5,338, 5,529, 5,989 factorisations on 80 planted problems of five kinds (n = 20, 40); 303, 291, 278, 273, 273 on
-24 monotone ones (n = 100, 200)."""
+"""Corrections in a row without a new low of changed indices, then the sets cycle. On 80 planted problems 2, 3, 5, 10,
+infinity take 5,210, 5,259, 5,338, 5,529, 5,989 factorisations, but on 24 monotone ones 303, 291, 278, 273, 273."""
 
 MORE_MULTIPLIERS = 5
-"""Changes of the multipliers that may fail to halve the residual."""
+"""Changes of multipliers that may fail to halve the residual."""
 
 
 @define(eq=False)
@@ -34,14 +33,13 @@ class Finish:
     tolerance : float
         For `Certificate.solves`.
     counts : Counts
-        Adds up factorisations.
     tried : Tried
     certificate : Certificate or None
         Of the last solution.
     nearest : Certificate or None
-        Of the judged point with least normwise residual that solves nothing.
+        Of the judged non-solution with least normwise residual.
     ended : Ended or None
-        Why the last iteration ended.
+        Of the last iteration.
     following : State or None
         Its next state.
     """
@@ -63,13 +61,7 @@ class Finish:
     def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
         """The certified solution on an active set or its corrections, or None.
 
-        Parameters
-        ----------
-        state : State
-            The guess.
-        policy : Policy
-        near : Array, optional
-            Selects the nearest of a face's many points; default zero.
+        `near`: selects the nearest of a face's many points; default zero.
         """
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
         self.ended, self.following = found.ended, found.state
@@ -78,16 +70,8 @@ class Finish:
     def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
         """The solution by the proximal method, with A + shift I positive definite, or None.
 
-        Each round solves the LCP of A + shift I, whose point is unique, near the last point, and tries its active set
-        on A. For symmetric A the quadratic function falls. If the active sets do not settle (A nearly singular or
-        indefinite), the shift doubles.
-
-        Parameters
-        ----------
-        state : State
-            The guess.
-        shift : float
-        rounds : int
+        Each round solves the LCP of A + shift I near the last point and tries its active set on A. For symmetric A the
+        quadratic function falls. If no active set settles, the shift doubles.
 
         References
         ----------
@@ -108,13 +92,7 @@ class Finish:
         return None
 
     def augmented(self, below: float) -> Array | None:
-        """A KKT point of a program by its augmented Lagrangian, or None; `nearest` is the best.
-
-        Parameters
-        ----------
-        below : float
-            As for `guesses`.
-        """
+        """A KKT point of a program by `guesses` with this `below`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
@@ -131,17 +109,11 @@ class Finish:
         return None
 
     def take(self, x: Array) -> Array | None:
-        """The point x if it is a solution, else None; it may become `nearest`.
-
-        Parameters
-        ----------
-        x : Array of shape (n,)
-        """
+        """The point x if it solves the problem, else None."""
         found = certified(self.problem, self.problem.clipped(x)) if np.isfinite(x).all() else None
         return found.x if found is not None and self._kept(found) else None
 
     def _kept(self, found: Certificate) -> bool:
-        """Whether a solution is certified; else keep the nearest point."""
         if confirmed(self.problem, found, self.tolerance):
             self.certificate = found
             return True
@@ -151,26 +123,18 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped, certified, perhaps corrected once in twice the precision; whether it is a solution.
-
-        Parameters
-        ----------
-        face : Face
-        x, w : Array of shape (n,)
-            Its point.
-        """
-        # Only plausible signs are worth a certificate.
+        """The face's point, clipped, perhaps corrected once; whether it is a certified solution."""
         if not self._plausible(face.state, x, w):
             return x, w, False
         best = certified(self.problem, self.problem.clipped(x))
         if best.relative_residual > ROUND_OFF:
-            # A correction gains the digits that the condition leaves (Higham, section 12.1).
+            # The correction gains the digits that the condition leaves (Higham, section 12.1).
             better = face.refined(x, best.w if np.array_equal(best.x, x) else None)
             if np.isfinite(better).all():
                 x, now = better, certified(self.problem, self.problem.clipped(better))
                 best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
-            # True zeros, as without contact, may dominate a row's terms by rounding.
+            # Rounded zeros may dominate the terms of a row.
             if not self.problem.standard:
                 best = with_zeros(self.problem, best, self.tolerance)
             elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
@@ -180,7 +144,7 @@ class Finish:
         return x, self.problem.w(x), False
 
     def _plausible(self, state: State, x: Array, w: Array) -> bool:
-        """Whether signs are right to about the tolerance, x relative to its size, w to its terms."""
+        """Whether signs are right to about the tolerance."""
         problem = self.problem
         inside = x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
         signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))
@@ -194,17 +158,14 @@ class Finish:
 
 
 def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:
-    """The best certificate of a point and of x moved to the bounds that its signs ask for.
-
-    Near a bound only the sign of w_i tells; in a row of zeros such an x_i is large.
-    """
+    """The best certificate of a point, also with x at the bounds that its signs ask for."""
     settled = problem.settled(end.x, end.w)
     exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
     return min(end, *exact, key=lambda one: one.relative_residual)
 
 
 def below_zero(A: Matrix) -> float:
-    """A bound on how far an eigenvalue of a symmetric matrix lies below zero: exact, or by rows if sparse."""
+    """A bound on how far eigenvalues of a symmetric A lie below zero; exact if dense."""
     if sp.issparse(A):
         return float((abs(A).sum(axis=1) - A.diagonal()).max())
     return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))

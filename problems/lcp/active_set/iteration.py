@@ -1,6 +1,6 @@
 """The active-set iteration: solve on a face, change the wrong signs, repeat.
 
-This primal-dual active-set method is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
+It is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
@@ -22,7 +22,7 @@ from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.data.problem import BETWEEN, UPPER, State
 
 Judge = Callable[[Face, Array, Array], tuple[Array, Array, bool]]
-"""(face, x, w) -> (x, w, solved), x and w perhaps improved."""
+"""(face, x, w) -> (x, w, solved); may improve the point."""
 
 
 class Ended(Enum):
@@ -43,11 +43,11 @@ class Policy:
     Attributes
     ----------
     steps : int
-        Most corrections: at most steps + 1 faces are solved.
+        Most corrections.
     patience : int or None
-        Corrections allowed in a row without a new low of changed indices.
+        Corrections in a row without a new low of changed indices.
     singular : int, optional
-        Allowed singular faces, whose points may lie anywhere; they are no steps.
+        Singular faces allowed, which are no steps.
     """
 
     steps: int
@@ -56,15 +56,12 @@ class Policy:
 
 
 AT_END = Policy(steps=2)
-"""For a method's last active set, right but for rounding."""
+"""The last corrections of a method, whose set is right but for rounding."""
 
 
 @define(eq=False)
 class Tried:
-    """The active sets tried on one problem: none is factored twice, but a singular face is tried from each new point.
-
-    `known`: keys of all, for a singular face with its point.
-    """
+    """The active sets tried on one problem: none is tried twice, a singular one only from another point."""
 
     last: State | None = None
     known: set[bytes] = field(factory=set)
@@ -78,7 +75,7 @@ def key_of(state: State) -> bytes:
 
 @frozen(eq=False)
 class Iterated:
-    """The end of an iteration: reason, next state, last point."""
+    """The end of an iteration."""
 
     ended: Ended
     state: State
@@ -98,22 +95,8 @@ def iterate(
 ) -> Iterated:
     """Correct an active set until it is right or given up.
 
-    Parameters
-    ----------
-    faces : Faces
-    state : State
-        The guess.
-    policy : Policy
-    near : Array, optional
-        Selects the nearest of a face's many points; default zero.
-    shift : float, optional
-        Solve the proximal problem LCP(q - shift near, A + shift I).
-    judge : callable, optional
-        Ends at the solution; may improve a point before its signs decide.
-    tried : Tried, optional
-        Sets not to try again; grows.
-    counts : Counts, optional
-        Adds up factorisations.
+    `near`: selects the nearest of a face's many points. `shift`: solve LCP(q - shift near, A + shift I) instead.
+    `judge`: ends at the solution. `tried`: skips these sets; grows. `counts`: adds up factorisations.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x
@@ -152,5 +135,4 @@ def iterate(
 
 
 def _cycling(changes: list[int], patience: int) -> bool:
-    """Whether the last `patience` numbers reach no new low."""
     return len(changes) > patience and min(changes[-patience:]) >= min(changes[:-patience])

@@ -1,8 +1,7 @@
 """A guess of the active set of a large sparse, diffusion-like problem from coarser ones.
 
-Active sets move the contact boundary by about one grid line a step, so a poor guess takes as many steps as lines.
-Coarser problems P'AP, P'q come from direct interpolation of algebraic multigrid, without geometry. An unsuitable matrix
-costs only time: nothing here is called a solution.
+Active sets move the contact boundary about one grid line a step: a poor guess takes as many steps as lines. Coarser
+problems P'AP, P'q come from algebraic multigrid. Unsuitable matrices cost only time.
 """
 
 from __future__ import annotations
@@ -21,27 +20,22 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 COARSEST_ORDER = 200
-"""Problems up to this order are not coarsened: their faces cost less than interpolation. It also limits their
-corrections: for an M-matrix each from x = 0 enlarges the active set until it is right. Other levels get one, since the
-next level mends the rest: on 316 x 316 points two faces per level leave two of the finest, one leaves three."""
+"""Smaller problems are not coarsened, as their faces cost less than interpolation, but corrected, at most this often:
+for an M-matrix each correction enlarges the active set until it is right. Other levels get one."""
 
 LEAST_COARSENING = 0.8
-"""Coarsening that keeps a larger share of the unknowns is given up; a grid keeps half."""
+"""Coarsening that keeps a larger share of unknowns stops; a grid keeps half."""
 
 DAMPING = 0.8
-"""Of Jacobi's method."""
+"""Damping of Jacobi's method."""
 
 SMOOTHINGS = 60
-"""Jacobi sweeps on A d = 0 from ones, where rows sum to less than zero: units then differ between neighbours on few
-lines, as in a torsion scaled to equal diagonal. For n = 97,020 the cascade takes 17 factorisations after 30 sweeps or
-more, as in the given units, 31 after 10."""
+"""Jacobi sweeps on A d = 0 from ones, if rows sum to less than zero because units differ between neighbours. A torsion
+scaled to equal diagonal, n = 97,020, takes 17 factorisations after 30 sweeps, 31 after 10."""
 
 
 def suitable(structure: Structure) -> bool:
-    """Whether A is large and sparse, with a positive diagonal and few other positive entries.
-
-    `structure`: of the problem.
-    """
+    """Whether A is large and sparse, with positive diagonal and few other positive entries."""
     problem = structure.problem
     if not problem.sparse or problem.n <= COARSEST_ORDER or (problem.A.diagonal() <= 0.0).any():
         return False
@@ -50,18 +44,9 @@ def suitable(structure: Structure) -> bool:
 
 
 def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
-    """The state guessed from coarser problems.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-        A `suitable` one.
-    factoring : Factoring
-    counts : Counts
-        Adds up factorisations on all levels.
-    """
+    """The state guessed from coarser problems; `counts` adds up factorisations on all levels."""
     if not problem.standard:
-        # Zeros at a bound stay zero under interpolation.
+        # Shifted so that interpolation keeps zeros at bounds.
         low, high = problem.lower, problem.upper
         at = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high, 0.0))
         problem = MixedLCP(problem.A, problem.w(at), low - at, high - at)
@@ -78,20 +63,20 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     state, steps = _interpolated(coarse, d[kept], factoring, counts)
     found = iterate(Faces(Structure(coarse), factoring=factoring), state, Policy(steps), counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
-    # Sweeps mend a few lines about the contact boundary.
+    # Sweeps mend the lines that interpolation gets wrong.
     for _ in range(3):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
     return _states(problem, x), 1
 
 
 def _states(problem: MixedLCP, x: Array) -> State:
-    """The state at a point; w = 0, far from all forces, is between the bounds: else such points join one by one."""
+    """The state at x; points with w = 0 count as between bounds: they would else join one by one."""
     w = problem.w(x)
     return np.where(w == 0.0, BETWEEN, problem.states(x, w / problem.A.diagonal()))
 
 
 def _smooth(A: Matrix) -> Array:
-    """The vector that interpolation reproduces, d > 0 with A d near zero: ones up to units."""
+    """The vector that interpolation reproduces: d > 0 with A d near zero, ones up to units."""
     d, diagonal = np.ones(A.shape[0]), A.diagonal()
     for _ in range(SMOOTHINGS):
         off = (A @ d) / diagonal
@@ -102,7 +87,7 @@ def _smooth(A: Matrix) -> Array:
 
 
 def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
-    """Direct interpolation from a greedy independent set, and that set."""
+    """Interpolation from a greedy independent set, and that set."""
     n = A.shape[0]
     coarse = _independent(A)
     column = np.cumsum(coarse) - 1
@@ -126,7 +111,6 @@ def _independent(A: Matrix) -> Mask:
     """A maximal set without neighbours: every second point of a grid."""
     n = A.shape[0]
     if A.nnz == 3 * n - 2 and (np.abs(A.indices - np.repeat(np.arange(n), np.diff(A.indptr))) <= 1).all():
-        # A chain, as the loop below finds it.
         return np.asarray(np.arange(n) % 2 == 0)
     starts, neighbours = A.indptr.tolist(), A.indices.tolist()
     taken = [0] * n

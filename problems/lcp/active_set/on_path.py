@@ -1,4 +1,4 @@
-"""Tries of the finish along a path."""
+"""When the finish is tried on a path."""
 
 from __future__ import annotations
 
@@ -15,25 +15,16 @@ from problems.lcp.homotopies.starts import natural_units
 
 SPACING = 0.4
 """First try where the median product x z1 (or x y) reaches natural units, then whenever the parameter falls by this
-factor. On 80 planted problems of five kinds (n = 20, 40) 0.2, 0.4, 0.6, 0.8 take 6,099, 5,567, 5,844, 6,138
-factorisations."""
+factor: 0.2, 0.4, 0.6, 0.8 take 6,099, 5,567, 5,844, 6,138 factorisations on 80 planted problems."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""For each try. Of 25 stacks and 25 arches of bodies (n = 40 to 496, 3 s each) 21 and 25 are solved if singular faces
-are steps (16.1 and 4.0 s together), 23 and 25 if not (7.1 and 3.3 s)."""
+"""25 stacks and 25 arches (n = 40 to 496, 3 s each): 21 and 25 are solved if singular faces count as steps, 23 and 25
+if not."""
 
 
 @define(eq=False)
 class AlongPath:
-    """The `finish=` of a trace, tried more often near the end.
-
-    Attributes
-    ----------
-    finish : Finish
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-    next_lam : float
-        Parameter of the next try.
-    """
+    """The `finish=` of a trace: tries at `next_lam` and ever more often near the end."""
 
     finish: Finish
     homotopy: Any
@@ -41,14 +32,14 @@ class AlongPath:
 
     @classmethod
     def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
-        """For one path of a homotopy whose first n unknowns are x."""
+        """Make it for a homotopy whose first n unknowns are x."""
         products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
         x, w = natural_units(homotopy.problem)
         natural = float(x * w / np.median(products)) if products.size else 1.0
         return cls(finish, homotopy, min(1.0, natural) * float(homotopy.start()[1]))
 
     def __call__(self, y: Array, lam: float) -> Array | None:
-        """The path's end at the certified solution, or None to go on."""
+        """The path's end at the certified solution, or None."""
         if lam > self.next_lam:
             return None
         self.next_lam = SPACING * lam

@@ -7,18 +7,14 @@ import numpy as np
 from problems.lcp.data.problem import MixedLCP, State
 
 PROJECTED_STEPS = 12
-"""Each costs one product with A, a tenth of a correction at n = 300.
-
-Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12 corrections from x = 0, 5, 5, 3 after five steps,
-3, 3, 2 after twelve, hardly fewer after twenty; at n = 1000 11, 8, 14 become 3, 5, 3."""
+"""Each costs a tenth of a correction at n = 300. Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12
+corrections without steps, 3, 3, 2 after twelve, hardly fewer after twenty."""
 
 
 def projected_state(problem: MixedLCP) -> State:
-    """The state after projected gradient steps on 1/2 x'A x + q'x from the point nearest to zero.
+    """The state after projected gradient steps on 1/2 x'A x + q'x, for symmetric A with nonnegative diagonal.
 
-    Units are those of the diagonal of A, step lengths those of Barzilai and Borwein; a repeated state ends it.
-
-    `problem`: A is symmetric with a nonnegative diagonal.
+    Step lengths are those of Barzilai and Borwein; a repeated state ends it.
 
     References
     ----------
@@ -44,5 +40,4 @@ def projected_state(problem: MixedLCP) -> State:
 
 
 def _ratio(size: float, curvature: float) -> float:
-    """The step to the minimum along a line, or 1."""
     return size / curvature if curvature > 0.0 and np.isfinite(size / curvature) else 1.0

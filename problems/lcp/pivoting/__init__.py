@@ -1,1 +1,1 @@
-"""Complementary pivoting: dictionaries, almost complementary paths, their starts."""
+"""Complementary pivoting."""

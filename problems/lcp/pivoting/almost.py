@@ -1,4 +1,4 @@
-"""Almost complementary paths: from basis to basis, where the complement of each leaving variable enters."""
+"""Almost complementary paths: the complement of each leaving variable enters."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from problems.lcp.pivoting.compiled import available, kernel
 from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
 
 REBUILT_AFTER = 100
-"""Pivots, besides the order, after which a table is computed afresh: that costs about as much as they did."""
+"""Pivots, besides the order, until a table is computed afresh, as costly as they were."""
 
 PATH_LEFT = -1e-7
-"""An exact table with a basic variable below this, relative to the largest, shows that rounding left the path."""
+"""A basic variable below this in an exact table, relative to the largest, means that rounding left the path."""
 
 
 class Ended(Enum):
@@ -32,19 +32,8 @@ class Ended(Enum):
 class AlmostComplementary:
     """A path through bases with one variable of each pair, but for one pair; w_i is variable i, x_i is n + i.
 
-    Attributes
-    ----------
-    n : int
-        Number of pairs.
-    dictionaries : tuple of Dictionary
-        One, or two with separate variables for a game.
-    entering : int
-        The next variable to enter.
-    stop : set of int
-        The path ends when one of these leaves the basis.
-    pivots : int
-        So far.
-    ended : Ended or None
+    `dictionaries`: one, or two for a game. `entering`: the next variable to enter. `stop`: the path ends when one of
+    these leaves.
     """
 
     n: int
@@ -78,7 +67,7 @@ class AlmostComplementary:
 
     @property
     def compiled(self) -> bool:
-        """Whether numba's pivots are available and quicker."""
+        """Whether numba is available and quicker."""
         return available() and all(one.compilable for one in self.dictionaries)
 
     def _steps(self, most: int) -> None:
@@ -93,12 +82,7 @@ class AlmostComplementary:
         self._counted(done)
 
     def left(self, leaving: int) -> None:
-        """Go on after a variable left the basis: its complement enters, unless the path ends.
-
-        Parameters
-        ----------
-        leaving : int
-        """
+        """Go on with the complement of the variable that left, unless the path ends."""
         self.pivots += 1
         if leaving in self.stop:
             self.ended = Ended.REACHED
@@ -106,12 +90,7 @@ class AlmostComplementary:
             self.entering = leaving + self.n if leaving < self.n else leaving - self.n
 
     def run(self, most: int) -> Ended:
-        """Pivot to the end, or `most` times in all.
-
-        Parameters
-        ----------
-        most : int
-        """
+        """Pivot to the end, or `most` times in all."""
         while self.ended is None:
             if self.pivots >= most:
                 return Ended.PIVOTS
@@ -130,14 +109,14 @@ class AlmostComplementary:
         return mask
 
     def values(self) -> Array:
-        """The values x at the basis, shape (n,)."""
+        """X at the basis, shape (n,)."""
         values = np.zeros(2 * self.n + 1)
         for one in self.dictionaries:
             values[one.basic] = one.table[:, -1]
         return np.maximum(values[self.n : 2 * self.n], 0.0)
 
     def ray(self) -> Array:
-        """The change of x along the ray that ends the path, shape (n,)."""
+        """The change of x along the ray at the end, shape (n,)."""
         direction = np.zeros(2 * self.n + 1)
         for one in self.dictionaries:
             column = one.column(self.entering)

@@ -1,6 +1,6 @@
-"""A dictionary: basic variables as affine functions of the others, pivoted in place, and its ratio tests.
+"""A dictionary: basic variables as affine functions of the others, with pivots and ratio tests.
 
-Ties break as if the first constants were raised by eps, eps^2, ..., so that no path repeats a basis.
+Ties break as if the first constants were raised by eps, eps^2, ..., so that no basis repeats.
 """
 
 from __future__ import annotations
@@ -18,30 +18,26 @@ from continuation.arrays import Array, largest
 Indices = NDArray[np.intp]
 
 ZERO_PIVOT = 1e-10
-"""Smaller entries, relative to their column's largest, are rounding: a pivot on one loses the path."""
+"""Smaller entries, relative to their column's largest, are rounding: a pivot there loses the path."""
 
 TIE = 1e-11
-"""How far basic variables may fall below zero, relative to the largest constant, if another row than the first leaves.
-
-All rows that may leave so are tied (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5, 1973).
-A test of the leaving row alone fails: where it falls slowly, others fall far."""
+"""How far basic variables may fall below zero, relative to the largest constant, if another row than the first leaves:
+rows that may leave so are tied (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5, 1973)."""
 
 DELAYED = 32
-"""Pivots put into a large table together, by one matrix product;"""
+"""Pivots of a large table put into it by one product;"""
 
 LARGE = 100_000
-"""a table with more entries is large. Microseconds per pivot of a game, one by one and 32 together: 31 and 29 (90,000
-entries), 53 and 40 (250,000), 280 and 86 (1e6); of traffic with 5.6e6 2,700 and 460; 16 or 64 together are no better.
-Compiled single pivots gain little beyond it: 30 us at 250,000, 51 at 360,000 against 44."""
+"""a table with more entries is large. Microseconds per pivot of a game, singly and 32 together: 31 and 29 (90,000
+entries), 53 and 40 (250,000), 280 and 86 (1e6). Compiled single pivots take 51 at 360,000, delayed ones 44."""
 
 
 @define(eq=False)
 class Dictionary:
     """``y_basic = table @ (y_nonbasic, 1)``, and the dictionary at the start.
 
-    `first`, shape (m, k + 1): the first table, constants last. `rows`, (m,), `columns`, (k,): its basic (consecutive)
-    and nonbasic variables; `basic`, `nonbasic`: those now. `places`: each variable's index among the nonbasic ones, or
-    -1.
+    `first`, (m, k + 1): the first table, constants last. `rows`, (m,), `columns`, (k,): its basic (consecutive) and
+    nonbasic variables; `basic`, `nonbasic`: now. `places`: indices among the nonbasic, or -1.
     """
 
     first: Array
@@ -73,7 +69,7 @@ class Dictionary:
 
     @property
     def compilable(self) -> bool:
-        """Whether numba's pivots are quicker; numba does not see a single row or column as a table by columns."""
+        """Whether numba's pivots are quicker; it cannot tell the layout of one row or column."""
         return min(self._table.shape) > 1 and self._table.size <= LARGE
 
     @property
@@ -88,22 +84,17 @@ class Dictionary:
             dgemm(1.0, self._left[:, :w], self._right[:, :w], 1.0, self._table, trans_b=1, overwrite_c=1)
 
     def entries(self, column: int) -> Array:
-        """A column of the table; -1 for the constants.
-
-        Parameters
-        ----------
-        column : int
-        """
+        """A column of the table; -1: the constants."""
         w, entries = self._waiting, self._table[:, column]
         return entries + self._left[:, :w] @ self._right[column, :w] if w else entries
 
     def column(self, variable: int) -> int | None:
-        """The index of a variable among the nonbasic ones, or None."""
+        """A variable's index among the nonbasic ones, or None."""
         place: int = self.places.item(variable) if variable < self.places.size else -1
         return place if place >= 0 else None
 
     def pivot(self, row: int, column: int) -> int:
-        """Exchange the basic variable of a row for the nonbasic one of a column; return the former."""
+        """Exchange a row's basic for a column's nonbasic variable; return the former."""
         table, left, right, w = self._table, self._left, self._right, self._waiting
         slopes = self.entries(column)
         pivot = slopes.item(row)
@@ -113,7 +104,7 @@ class Dictionary:
         slopes[row] = 0.0
         table[:, column] = 0.0
         if left.size:
-            # Delayed pivots no longer affect the replaced row and column.
+            # Delayed pivots no longer change the replaced row and column.
             table[row], left[row, :w], right[column, :w] = moved, 0.0, 0.0
             left[:, w], right[:, w] = slopes, moved
             self._waiting += 1
@@ -128,9 +119,7 @@ class Dictionary:
         return leaving
 
     def last_zero(self, column: int) -> int | None:
-        """The row that becomes nonnegative last as the column's variable grows from minus infinity; None if no row
-        grows.
-        """
+        """The last row to become nonnegative as the variable grows from minus infinity, or None."""
         slopes, constants = self.entries(column), self.entries(-1)
         growing = np.flatnonzero(slopes > ZERO_PIVOT * np.abs(slopes).max(initial=0.0))
         if growing.size == 0:
@@ -140,10 +129,7 @@ class Dictionary:
         return self._least(growing[zero], rates[zero])
 
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
-        """The row that becomes zero first as the column's variable grows from zero; None on a ray.
-
-        `preferred`: basic variables that win ties.
-        """
+        """The first row to become zero as the variable grows from zero; None on a ray. `preferred` ones win ties."""
         slopes, constants = self.entries(column), self.entries(-1)
         falling = (slopes < -ZERO_PIVOT * largest(slopes)).nonzero()[0]
         if falling.size == 0:
@@ -161,11 +147,7 @@ class Dictionary:
         return self._least(tied, -rates[zero])
 
     def rebuilt(self) -> float:
-        """Compute the table afresh from the first one; return its least constant, relative to the largest; NaN if
-        singular.
-
-        This removes the rounding of the pivots and shows negative basic variables.
-        """
+        """Recompute the table without rounding; return its least constant, relative to the largest, or NaN."""
         entered = np.isin(self.columns, self.basic)
         now, others = np.flatnonzero(entered), np.flatnonzero(np.append(~entered, True))
         left = np.isin(self.rows, self.nonbasic)
@@ -189,8 +171,7 @@ class Dictionary:
 
     def _least(self, tied: Indices, scale: Array) -> int:
         """The tied row that is least in eps, eps^2, ..., relative to a scale."""
-        # Coefficients of eps^k come from the inverse basis: a column of the table, or 1 at the power of the row's own
-        # variable, where other rows have 0.
+        # The inverse basis holds the coefficients of eps^k; a row's own power has 1.
         places = self.places[self.rows]
         powers = (places >= 0).nonzero()[0]
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)

@@ -1,4 +1,4 @@
-"""Lemke's method on many small LCPs at once: each pivot is a few array operations on all."""
+"""Lemke's method on many small LCPs at once."""
 
 from __future__ import annotations
 
@@ -9,21 +9,14 @@ from continuation.arrays import Array
 from problems.lcp.pivoting.dictionary import ZERO_PIVOT
 
 MOST_PIVOTS = 3
-"""Most pivots, times the order, plus ten. Of 2,000 random P-matrices of order 5, 10, 20 none needs more than n + 10; no
-Gaussian one ends after 3 n + 10. Longer paths (cycles, as no lexicographic rule breaks ties) delay the others."""
+"""Most pivots, times the order, plus ten: 2,000 random P-matrices of order 5, 10, 20 need at most n + 10, and no
+Gaussian path ends after 3 n + 10. Cycles would delay the others."""
 
 
 def lemke_bases(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Where x is basic at the end of Lemke's path with covering vector e, and whether t left the basis.
+    """The x that are basic at the end of Lemke's path with covering vector e, and whether t left the basis.
 
-    As `pivoting.starts.covering`, but the least index breaks ties, so it may cycle.
-
-    `A` of shape (k, n, n). `q` of shape (k, n).
-
-    References
-    ----------
-    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
-    Stone, Algorithm 4.4.5.
+    Unlike `pivoting.starts.covering` the least index breaks ties, so paths may cycle. A (k, n, n), q (k, n).
     """
     k, n = q.shape
     t = 2 * n
@@ -62,7 +55,7 @@ def _pivot(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Pivot each dictionary in place; return the variables that left."""
+    """Pivot in place; return the variables that left."""
     each = np.arange(len(table))
     moved = table[each, row]
     pivot = moved[each, column]

@@ -1,8 +1,8 @@
-"""Implicit enumeration of the complementary faces: linear programs exclude most of them in groups.
+"""Implicit enumeration of complementary faces: linear programs exclude most of them in groups.
 
-A node fixes some x_i and some w_i at zero. If no point x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
-multiplier, which `proof.groups` checks. Otherwise the point with least c'x is a solution, if complementary, or has a
-pair x_i > 0, w_i > 0, which is fixed either way.
+A node fixes some x_i and some w_i at zero. If no x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
+multiplier, which `proof.groups` checks. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is
+fixed either way.
 """
 
 from __future__ import annotations
@@ -25,16 +25,15 @@ from problems.lcp.reference.enumeration import Exhaustion
 Active = NDArray[np.bool_]
 
 ROUNDED_TO_ZERO = 1e-9
-"""Smaller entries and values, relative to the largest, cause no pivot: linear programs only guide; their claims are
-checked."""
+"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide, and claims are checked."""
 
 PIVOTS_PER_NODE = 50
-"""Most pivots, times the order, so that each node ends: of 600 nodes of order 20 to 60 none exceeded the order."""
+"""Most pivots, times the order: of 600 nodes of order 20 to 60 none exceeded the order."""
 
 
 @frozen(eq=False)
 class Node:
-    """The mask of fixed variables (x, w, the cost last), and the parent's dictionary."""
+    """The fixed variables (x, w, the cost last), and the parent's dictionary."""
 
     fixed: Fixed
     dictionary: Dictionary
@@ -44,17 +43,8 @@ class Node:
 class Branching:
     """The tree of one problem.
 
-    Attributes
-    ----------
-    problem : LCP
-        Dense, with entries of about 1.
-    accepts : callable
-        Whether the caller accepts a solution on the face with these w_i = 0.
-    nodes : int
-        Number of nodes visited.
-    accepted : bool
-    exact : tuple of Fraction, or None
-        A rational solution if none was accepted.
+    `problem`: dense, with entries of about 1. `accepts`: whether the caller accepts the face with these w_i = 0.
+    `accepted`: whether it did.
     """
 
     problem: LCP
@@ -70,7 +60,7 @@ class Branching:
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
         self._excluding = Excluding(problem)
-        # Any positive costs serve; different ones tie few pivots.
+        # Different costs leave few pivots tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
         table = np.vstack([np.column_stack([problem.A, problem.q]), np.append(costs, 0.0)])
         root = Dictionary(table, np.arange(n, 2 * n + 1), np.arange(n))
@@ -82,13 +72,7 @@ class Branching:
         return self.nodes > 0 and bool(self._waiting) and not self._given_up
 
     def run(self, most: int) -> Exhaustion | None:
-        """Visit nodes until a solution or a proof; None without either, or if a face was accepted.
-
-        Parameters
-        ----------
-        most : int
-            Nodes.
-        """
+        """Visit up to `most` nodes; None if undecided or a face was accepted."""
         while self._waiting and not self._given_up:
             if self.nodes >= most:
                 return None
@@ -101,14 +85,14 @@ class Branching:
         return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
-        """Exclude a node or queue its children; return whether to go on."""
+        """Exclude a node or queue its children; whether to go on."""
         dictionary, fixed, n = node.dictionary, node.fixed, self.problem.n
         row = infeasible_row(dictionary, fixed)
         if row is None:
             return False
         if row >= 0:
             if not self._excluded(node, row):
-                # Rounding, or too few digits: its children decide.
+                # Floats do not suffice: its children decide.
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
@@ -132,7 +116,6 @@ class Branching:
         return self._divided(node, node.fixed[:n] | node.fixed[n : 2 * n])
 
     def _excluded(self, node: Node, row: int) -> bool:
-        """Whether a row provably excludes the node."""
         dictionary, n = node.dictionary, self.problem.n
         sign = 1.0 if dictionary.entries(-1)[row] < 0.0 else -1.0
         group = self._excluding.group(node.fixed[: 2 * n], dictionary.basic[:n], row, sign)
@@ -164,7 +147,7 @@ class Branching:
             self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
 
     def _divided(self, node: Node, closed: Active) -> bool:
-        """Fix any open pair; decide a single face in rationals."""
+        """Fix any open pair; decide a face in rationals."""
         if not closed.all():
             self._put(node, int(closed.argmin()), x_first=True)
             return True
@@ -176,9 +159,9 @@ class Branching:
 
 
 def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
-    """Make fixed variables zero and others nonnegative by the dual simplex method; return the row that forbids it.
+    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, None without an end.
 
-    Returns -1 for a feasible point, None without an end. `dictionary`: dually feasible, cost last; changes.
+    `dictionary`: dually feasible, cost last; changes.
     """
     n = dictionary.nonbasic.size
     for _ in range(PIVOTS_PER_NODE * n):

@@ -1,4 +1,4 @@
-"""All solutions of a small problem, from all 2^n complementary faces (3^n pieces for boxes), exactly."""
+"""All solutions of a small problem, exactly, from its 2^n faces (3^n pieces for boxes)."""
 
 from __future__ import annotations
 
@@ -18,20 +18,18 @@ from problems.lcp.proof.groups import Groups
 from problems.lcp.proof.pieces import doubtful
 
 LARGEST_FACES = 14
-"""Largest order: 2^14 faces (1.2 s for one-digit integers), or as many pieces with bounds."""
+"""Largest order: 2^14 faces, or pieces, take 1.2 s for one-digit integers."""
 
 PER_PIECE = 3
-"""Most unknowns with bounds, as a multiple of the order of an LCP with as many faces: free unknowns enlarge a piece,
-and add none."""
+"""Most unknowns with bounds, times the order of an LCP with as many faces: free ones enlarge pieces."""
 
 
 @frozen
 class ExactSolution:
-    """One rational solution.
+    """One rational solution: x >= 0, w = A x + q >= 0, x_i w_i = 0, exactly.
 
-    `x`, `w`, of length n: in the problem's units, x >= 0, w = A x + q >= 0, x_i w_i = 0, exactly. `faces`: the faces
-    {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: whether these hold no other solution; otherwise a
-    continuum.
+    `faces`: the faces {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: whether they hold no other
+    solution.
     """
 
     x: tuple[Fraction, ...]
@@ -41,7 +39,7 @@ class ExactSolution:
 
     @property
     def point(self) -> Array:
-        """The values x in floats, correctly rounded, shape (n,)."""
+        """X in floats, correctly rounded, shape (n,)."""
         return np.array([float(v) for v in self.x])
 
     @property
@@ -52,16 +50,16 @@ class ExactSolution:
 
 @frozen
 class Enumeration:
-    """The solutions on all faces; `solvable` is a proof either way.
+    """The distinct solutions on all faces; `solvable` is a proof either way.
 
-    `solutions`: distinct, by first face. All isolated ones are listed, and at least one point of each face's continuum.
+    It holds all isolated ones, and a point of each continuum.
     """
 
     solutions: tuple[ExactSolution, ...]
 
     @property
     def solvable(self) -> bool:
-        """Whether the problem has a solution."""
+        """Whether a solution exists."""
         return bool(self.solutions)
 
     @property
@@ -76,12 +74,12 @@ class Enumeration:
 
 
 def solve_by_enumeration(problem: LCP) -> Enumeration:
-    """All solutions of LCP(q, A), by brute force over 2^n faces; floats are taken as exact rationals.
+    """All solutions of LCP(q, A), by brute force over 2^n faces; floats are exact rationals.
 
     Parameters
     ----------
     problem : LCP
-        Dense or sparse, n at most `LARGEST_FACES`.
+        Of order `LARGEST_FACES` at most.
 
     Raises
     ------
@@ -90,8 +88,8 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
 
     Notes
     -----
-    A face with a singular principal submatrix is a linear feasibility problem, solved exactly by the simplex method. No
-    step uses a tolerance or floats.
+    Faces with singular submatrices are linear feasibility problems, solved exactly by the simplex method. There is no
+    tolerance.
     """
     require_lcp(problem)
     entries, q, scale = _integers(problem)
@@ -121,12 +119,12 @@ class Exhaustion:
 
     @property
     def solvable(self) -> bool:
-        """Whether the problem has a solution: a proof either way."""
+        """Whether a solution exists: a proof either way."""
         return self.x is not None
 
     @property
     def point(self) -> Array | None:
-        """The values x in floats, shape (n,), infinite or zero beyond their range."""
+        """X in floats, shape (n,), infinite or zero beyond their range."""
         return None if self.x is None else np.array([_float(value) for value in self.x])
 
 
@@ -138,28 +136,14 @@ def _float(value: Fraction) -> float:
 
 
 def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
-    """Whether the problem has at most as many pieces as an LCP of that order."""
+    """Whether an LCP of that order has as many faces."""
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 
 def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
-    """Whether the problem has a solution, exactly; the first one ends it.
+    """Decide exactly whether the problem has a solution; ValueError unless `decidable`.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
-    filtered : bool
-        Skip pieces that floats with error bounds exclude: quicker, with the same outcome.
-
-    Returns
-    -------
-    Exhaustion
-
-    Raises
-    ------
-    ValueError
-        If n is larger.
+    `filtered`: skip pieces that floats with error bounds exclude.
     """
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
@@ -175,7 +159,7 @@ def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
 
 
 def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
-    """Every state, the first index changing fastest; a fixed unknown is at its lower bound."""
+    """The first index changes fastest; a fixed unknown is at its lower bound."""
     choices = []
     for low, high in zip(problem.lower[::-1], problem.upper[::-1]):
         inside = () if low == high else (0,)
@@ -184,14 +168,14 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The entries of A and q as integers over one scale; ValueError for too many faces."""
+    """The data as integers over one scale; ValueError for too many faces."""
     if not decidable(problem):
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     return whole_numbers(problem)
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
-    """The point in the problem's units with its faces (`wide`: those with more solutions)."""
+    """The point in the problem's units (`wide`: faces with more solutions)."""
     support = sum(1 << i for i, v in enumerate(point.x) if v)
     outside = sum(1 << i for i, v in enumerate(point.w) if v)
     faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]

@@ -13,12 +13,11 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 SOLVED_BELOW = 1e-8
-"""Largest natural residual of a solution, relative to 1 + |q|_inf.
-
-Not relative to |x|: unless A is R0, diverging iterates may have arbitrarily small relative residuals."""
+"""Largest natural residual of a solution, relative to 1 + |q|_inf; relative to |x| diverging iterates could pass,
+unless A is R0."""
 
 MODULUS_ITERATIONS, MIN_NEWTON_ITERATIONS = 10_000, 300
-"""Most iterations; convergent runs take some hundred, from zero some ten."""
+"""Most iterations: convergent runs take some hundred, from zero some ten."""
 
 
 @frozen(eq=False)
@@ -28,9 +27,9 @@ class ReferenceResult:
     Attributes
     ----------
     x, w : Array of shape (n,) or None
-        The last iterate and A x + q; None without one (Lemke on a ray).
+        The last iterate and A x + q.
     solved : bool
-        Whether the natural residual is at most `SOLVED_BELOW` (1 + |q|_inf).
+        Whether the residual is at most `SOLVED_BELOW` (1 + |q|_inf).
     residual : float
         The natural residual, absolute; infinite without x.
     iterations, factorizations : int
@@ -54,7 +53,6 @@ def is_solved(problem: LCP, x: Array) -> bool:
 
 
 def _result(problem: LCP, x: Array | None, iterations: int, factorizations: int, failure: str) -> ReferenceResult:
-    """The result at the last iterate; `failure` is the message if unsolved."""
     if x is None:
         return ReferenceResult(None, None, False, float("inf"), iterations, factorizations, failure)
     solved, residual = is_solved(problem, x), problem.natural_residual(x)
@@ -68,10 +66,10 @@ def _dense(problem: LCP) -> Array:
 
 
 def lemke(problem: LCP) -> ReferenceResult:
-    """Solve LCP(q, A) by Lemke's method with the covering vector of ones, as `solve` tries too.
+    """Solve LCP(q, A) by Lemke's method with the covering vector of ones.
 
-    The lexicographically least of tied rows leaves, so no basis returns and the method ends at a solution or on a
-    secondary ray. Dense; O(n^2) per pivot, at most 50 n + 100 pivots.
+    Of tied rows the lexicographically least leaves, so it ends at a solution or on a secondary ray. O(n^2) per pivot,
+    at most 50 n + 100 pivots.
 
     Parameters
     ----------
@@ -99,8 +97,8 @@ def lemke(problem: LCP) -> ReferenceResult:
 def modulus(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by the modulus iteration (I + A) z_next = (I - A)|z| - q from z = 0.
 
-    A fixed point gives x = |z| + z >= 0 and w = |z| - z >= 0 with x_i w_i = 0. It converges for symmetric P and some
-    other matrices; elsewhere it may cycle or diverge.
+    A fixed point gives x = |z| + z and w = |z| - z. It converges for symmetric P and some other matrices; elsewhere it
+    may cycle or diverge.
 
     Parameters
     ----------
@@ -126,15 +124,14 @@ def modulus(problem: LCP) -> ReferenceResult:
 
 
 def min_newton(problem: LCP) -> ReferenceResult:
-    """Solve LCP(q, A) by damped min-Newton, the primal-dual active-set method with a line search.
+    """Solve LCP(q, A) from zero by damped min-Newton, the primal-dual active-set method with a line search.
 
-    The active set at x is {x_i > w_i}; a step makes w = 0 there and x = 0 elsewhere, by least squares if singular. If
-    no step reduces the merit, the full step is taken.
+    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular. If none reduces the merit, the
+    full step is taken.
 
     Parameters
     ----------
     problem : LCP
-        Solved from zero.
 
     References
     ----------
@@ -145,7 +142,7 @@ def min_newton(problem: LCP) -> ReferenceResult:
     for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _solved_on(A, x > w, -np.minimum(x, w)))
-        # Polish a solution while it improves: on the right active set one step is exact.
+        # Polish a solution while it improves.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return _result(problem, x, iteration, iteration + 1, "")
         x = trial
@@ -154,7 +151,7 @@ def min_newton(problem: LCP) -> ReferenceResult:
 
 
 def _solved_on(A: Array, active: NDArray[np.bool_], right: Array) -> Array:
-    """Solve J d = right, where J has rows of A where active and of I elsewhere; least squares if singular."""
+    """Solve J d = right, with rows of A where active, else of I; least squares if singular."""
     J = np.where(active[:, None], A, np.eye(len(A)))
     try:
         return np.asarray(np.linalg.solve(J, right))
@@ -163,10 +160,7 @@ def _solved_on(A: Array, active: NDArray[np.bool_], right: Array) -> Array:
 
 
 def _line_search(problem: LCP, x: Array, step: Array) -> Array:
-    """The first x + t step, t = 1, 1/2, ... 2^-33, that decreases the merit enough, else x + step.
-
-    Enough is Armijo's 1e-4 (Nocedal and Wright, 2006, p. 33), doubled for a square; beyond 2^-33 rounding decides.
-    """
+    """The first x + t step, t = 1, 1/2, ... 2^-33, that meets Armijo's 1e-4, doubled for a square, else x + step."""
 
     def merit(point: Array) -> float:
         residual = np.minimum(point, problem.w(point))

@@ -1,1 +1,1 @@
-"""The search for a solution of an LCP."""
+"""The search for a solution."""

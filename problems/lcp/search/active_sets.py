@@ -1,8 +1,7 @@
 """Active sets: Newton's method on min(x, A x + q), from a guess of the set where x is positive.
 
-The guess comes from the caller, from coarser problems if A is like that of a grid, or else from q < 0. If A may be
-singular or indefinite, rounds with A + shift I follow, each from the last point; for a program the augmented
-Lagrangian, whose pieces do not cycle.
+The guess comes from the caller, from coarser grids, or from q < 0. For semidefinite or symmetric A, rounds with A +
+shift I follow, for a program the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -28,20 +27,20 @@ DESCENDED = "Solved by descent of the quadratic function in the box: a point tha
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
-"""Most corrections for a Z-matrix. n are enough: each enlarges the active set until it is right."""
+"""Most corrections for a Z-matrix; n are enough, since each enlarges the active set until it is right."""
 
 ROUNDS, DESCENT_ROUNDS = 2, 200
-"""Rounds of the proximal method for semidefinite A, and of descent in a box."""
+"""Proximal rounds for semidefinite A; for descent in a box."""
 
 
 @define(eq=False)
 class ActiveSets:
-    """The active sets of one problem, each tried once."""
+    """The active sets of one problem."""
 
     search: Search
 
     def run(self, work: float) -> str:
-        """Correct each guess up to `work` times; return a sentence that says what settled the problem, or ""."""
+        """Correct each guess up to `work` times."""
         search, problem = self.search, self.search.problem
         if zero_solves(problem):
             search.accept(problem.near_zero)
@@ -51,7 +50,7 @@ class ActiveSets:
         return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
 
     def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
-        """Yield, for each guess, a sentence and whether the guess led to a solution."""
+        """Yield a sentence and whether its guess led to a solution."""
         search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
@@ -78,7 +77,6 @@ class ActiveSets:
             yield AUGMENTED, self._augmented(finish)
 
     def _augmented(self, finish: Finish) -> bool:
-        """Whether the augmented Lagrangian leads to a solution, perhaps only to working precision."""
         search, n = self.search, self.search.problem.primal
         below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
         found = search.found(finish.augmented(below))
@@ -91,11 +89,11 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state at the point nearest to zero; for a convex function, after a few projected gradient steps."""
+    """The state at the point nearest to zero; for a convex function after projected gradient steps."""
     problem = search.problem
     if not problem.standard:
         convex = search.facts.symmetric and not search.facts.negative_diagonal
         return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
-    # On a grid (sparse Z-matrix) include q_i = 0: else these join one by one (Chandrasekaran's method).
+    # On a grid take q_i = 0 too: these else join one by one (Chandrasekaran's method).
     grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
     return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)

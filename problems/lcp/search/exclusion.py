@@ -1,7 +1,7 @@
 """Exclusion of faces: each node of a tree fixes some x_i and some w_i at zero, and a proof excludes its faces.
 
-The root fixes nothing: a Farkas vector excludes it if no point is feasible. The leaves are single faces, or pieces of a
-problem with bounds; floats with error bounds, or exact arithmetic, exclude them.
+A Farkas vector excludes the root if no point is feasible; floats with error bounds, or exact arithmetic, exclude the
+leaves.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.search import Search
 
 LARGEST_LEAVES = 5
-"""Up to this order floats exclude all faces together in 0.1 ms, quicker than pivots; at n = 6 both take as long."""
+"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots; at n = 6 both take as long."""
 
 LARGEST_TREE = 40
-"""Largest order of the tree. Feasible Gaussian problems take 5 to 150 nodes up to n = 20, 40 to 1,000 at 30 and 1,200
-at 40, of 0.1 to 0.2 ms each; at n = 60 300 to 20,000 and more (2 to 7 s), where restarts take 0.6 s."""
+"""Largest order of the tree: feasible Gaussian problems take 5 to 150 nodes up to n = 20, 1,200 at 40, of 0.1 to 0.2 ms
+each; at n = 60 2 to 7 s, where restarts take 0.6 s."""
 
 LARGEST_PROOF = 30_000_000
 """Largest order times entries for the linear program that seeks a Farkas vector: two seconds for a dense matrix of
-order 300, a sparse one of order 1000 (seven entries a row), a tridiagonal one of order 3000."""
+order 300."""
 
 TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 
@@ -41,13 +41,13 @@ def groupable(search: Search) -> bool:
 
 
 def few_faces(search: Search) -> bool:
-    """Whether floats exclude all faces together."""
+    """Whether all faces are tried together."""
     return search.problem.n <= LARGEST_LEAVES and groupable(search)
 
 
 @define(eq=False)
 class Leaves:
-    """All faces of a small problem, together."""
+    """All faces of a small problem."""
 
     search: Search
 
@@ -63,7 +63,7 @@ class Leaves:
 
 
 def decide(search: Search) -> bool:
-    """Try all faces exactly; return whether floats hold the solution found."""
+    """Try all faces exactly; return whether floats hold a solution."""
     return taken(search, exhaust(search.problem, filtered=True))
 
 
@@ -75,16 +75,14 @@ def taken(search: Search, found: Exhaustion) -> bool:
 
 @define(eq=False)
 class Exclusion:
-    """The tree of one problem; the next run continues it."""
+    """The tree of one problem."""
 
     search: Search
     tree: Branching | None = field(default=None, init=False)
     sought: bool = field(default=False, init=False)
 
     def run(self, work: float) -> str:
-        """Look at up to `work` nodes, else at the root by a linear program, then at all leaves; for `work` 0 only the
-        root.
-        """
+        """Visit up to `work` nodes (0: the root alone), seek a Farkas vector, try all leaves of a small problem."""
         search = self.search
         if work and groupable(search) and self._branched(int(work)):
             assert self.tree is not None
@@ -100,7 +98,6 @@ class Exclusion:
         return TRIED
 
     def _branched(self, nodes: int) -> bool:
-        """Whether the tree settled the problem; a root excluded alone gives a Farkas vector."""
         search, problem = self.search, self.search.problem
         if self.tree is None:
             assert isinstance(problem, LCP)

@@ -27,11 +27,7 @@ from problems.lcp.search.search import Candidate, Search
 def answer(search: Search, message: str) -> Solution:
     """The answer, from all that the search found.
 
-    Parameters
-    ----------
-    search : Search
-    message : str
-        Says what was done; the sentences of the outcome and of the proof precede it.
+    `message`: says what was done; the sentences of outcome and proof precede it.
     """
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
@@ -51,7 +47,7 @@ def answer(search: Search, message: str) -> Solution:
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
-    """The most certain outcome; NOT_FOUND if exact arithmetic finds a solution whose floats are not `confirmed`."""
+    """The most certain outcome; NOT_FOUND if an exact solution exists whose floats are not `confirmed`."""
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
@@ -69,7 +65,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
 
 
 def exactly(search: Search, found: Solution) -> Solution:
-    """Improve SOLVED_TO_PRECISION: try all faces of a small problem, since another one may hold an exact solution."""
+    """Try all faces of a small problem after SOLVED_TO_PRECISION: another one may hold an exact solution."""
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
     search.ends = []
@@ -77,14 +73,14 @@ def exactly(search: Search, found: Solution) -> Solution:
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
-    """The scaling for the search, computed once; None keeps the given units.
+    """The scaling for the search, or None.
 
-    `roughly`: keep the units of an LCP whose rows and columns have similar largest entries, up to a common factor: to
-    find others takes as long as to solve it.
+    `roughly`: keep the units of an LCP with similar largest entries in all rows and columns, but for a common factor:
+    others cost as much as a solution.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)
-        # Small problems with entries far apart are balanced: if that rounds, exact arithmetic decides.
+        # Balancing may round these: then exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
         if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
             return scaled
@@ -92,16 +88,13 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
 
 
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer in the given units: the scaling is exact, and no judgement depends on units.
-
-    `found`: the answer to the scaled problem. `tolerance`: of the relative residual.
-    """
+    """The answer in the given units; scaling is exact, and judgements do not depend on units."""
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
     rounded = _rounded(found, tolerance)
     found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
-    # After exhaustion `Solution.farkas` computes its vector on demand, for the given problem.
+    # `Solution.farkas` computes its vector on demand.
     exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
@@ -120,10 +113,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
-    """The answer with the fixed unknowns put back; proofs are repeated.
-
-    `rest`: None if all unknowns are fixed. `tolerance`: of the relative residual.
-    """
+    """The answer with fixed unknowns put back and proofs repeated; `rest` is None if all are fixed."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
@@ -152,7 +142,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
     if rest.x is None:
         return found
     found = _at(found, small.x(rest.x), tolerance, rounded)
-    # The reduced problem has a rounded q.
+    # Elimination rounded q.
     if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
         exact = exact_nearby(problem, found.x)
         found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
@@ -160,7 +150,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
 
 
 def of_program(program: Program, found: Solution) -> Solution:
-    """The answer to a program, from that to its optimality conditions."""
+    """The answer to a program."""
     parts = [found.message]
     if found.success and not program.convex:
         parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
@@ -172,10 +162,7 @@ def of_program(program: Program, found: Solution) -> Solution:
 
 
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
-    """The answer to a small problem with entries too far apart for floats, by exact arithmetic.
-
-    `tolerance`: of the relative residual.
-    """
+    """The answer by exact arithmetic alone, if entries are too far apart for floats."""
     began = time.perf_counter()
     decided = exhaust(problem)
     outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
@@ -187,13 +174,13 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
 
 
 def _rounded(found: Solution, tolerance: float) -> bool:
-    """Whether a program was solved only for rounded data: some row misses the tolerance relative to its own terms."""
+    """Whether some row of a solved program misses the tolerance relative to its own terms."""
     end = found.certificate
     return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the given problem, infinite or zero beyond the range of floats."""
+    """The answer at a point of the given problem, which may be infinite or zero beyond floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (

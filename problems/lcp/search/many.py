@@ -1,4 +1,4 @@
-"""`solve_many`: pivot and certify many small LCPs together, and solve the rest one by one."""
+"""`solve_many`: many small LCPs, pivoted and certified together, the rest one by one."""
 
 from __future__ import annotations
 
@@ -23,15 +23,13 @@ from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
-"""Largest order pivoted together: at n = 20 in a tenth of `solve`'s time each, at n = 50 in half."""
+"""Largest order pivoted together: at n = 20 in a tenth of `solve`'s time, at n = 50 in half."""
 
 LARGEST_ALL_FACES = 8
-"""Largest order at which all faces are tried together: 0.3 ms (n = 6) and 1.6 ms (n = 8), where `solve` takes 3 and 4
-ms; at n = 9 both take 4 ms."""
+"""Largest order with all faces tried together: 1.6 ms (n = 8), where `solve` takes 4 ms; at n = 9 both take 4 ms."""
 
 TABLE_ENTRIES = 1 << 16
-"""Entries of the tables pivoted together: half a megabyte, which fits the cache. An executor gets the same batches,
-whatever its workers."""
+"""Table entries of a batch: half a megabyte fits the cache."""
 
 
 @frozen(eq=False)
@@ -47,7 +45,7 @@ class Answers:
     residual, relative_residual : Array of shape (k,)
         As in `Certificate`; infinite without a point.
     singly : integer array
-        Indices of the problems that `solve` solved one by one.
+        Indices solved one by one.
     """
 
     x: Array
@@ -75,20 +73,19 @@ def solve_many(
 ) -> Answers:
     """Solve k problems LCP(q_i, A_i) of one order, or LCP(q_i, A) for one matrix.
 
-    Up to order 20 Lemke's method runs on all together, and every end is certified as by `solve`. Up to order 8 all
-    faces of the rest are tried together, with error bounds: this finds a solution or proves that none exists. `solve`
-    treats the others one by one.
+    Up to order 20 Lemke's method runs on all together. Up to order 8 all faces of the rest are tried together, with
+    error bounds: this finds a solution or proves that none exists. `solve` treats the others singly. All ends are
+    certified.
 
     Parameters
     ----------
     A : array_like, shape (k, n, n) or (n, n)
     q : array_like, shape (k, n)
     tolerance : float, default 1e-10
-        As for `solve`.
     budget : continuation.Budget, optional
         Of each problem solved singly.
     executor : concurrent.futures.Executor, optional
-        Runs the batches; answers stay the same.
+        Runs batches; answers stay the same.
 
     Returns
     -------
@@ -105,7 +102,6 @@ def solve_many(
     Stone, Algorithm 4.4.5.
     """
     matrices, constants = _stacks(A, q)
-    # `solve` checks the other arguments.
     solve(LCP(np.eye(1), np.ones(1)), tolerance=tolerance, budget=budget)
     if executor is not None:
         instance_with("executor", executor, ("map",), "a concurrent.futures.Executor")
@@ -126,7 +122,7 @@ def solve_many(
 
 
 def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
-    """A and q as arrays of shape (k, n, n) and (k, n)."""
+    """A of shape (k, n, n), q of shape (k, n)."""
     constants, matrices = real_array("q", q), real_array("A", A)
     if constants.ndim != 2:
         raise ValueError(f"q: expected an array of shape (k, n), found shape {constants.shape}")
@@ -139,7 +135,6 @@ def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
 
 
 def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> Answers:
-    """The answers to one batch."""
     k, n = q.shape
     x, outcome = np.full((k, n), np.nan), np.full(k, Outcome.NOT_FOUND, dtype=np.int8)
     residual, relative = np.full(k, np.inf), np.full(k, np.inf)

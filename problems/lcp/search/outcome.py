@@ -1,4 +1,4 @@
-"""The result of `solve`: outcome, point, certificate, proofs and paths."""
+"""The result of `solve`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from problems.lcp.reference.enumeration import Exhaustion
 
 
 class Outcome(Described):
-    """The outcome of a search; ``str()`` gives its sentence."""
+    """The outcome; ``str()`` gives its sentence."""
 
     SOLVED = (
         0,
@@ -56,7 +56,7 @@ class Outcome(Described):
 
     @property
     def success(self) -> bool:
-        """Whether a solution was found, perhaps only to working precision; False for a proof that none exists."""
+        """Whether a solution was found, perhaps only to working precision."""
         return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
@@ -96,9 +96,9 @@ class Solution:
     message : str
         Says what was done, and what the outcome means.
     certificate : Certificate or None
-        Of the point `x`, whatever the outcome; None without a point.
+        Of the point `x`, whatever the outcome.
     paths : tuple of Path
-        All traced paths, in order; of restarts that solved nothing only the ends (an archive keeps all).
+        All traced paths, in order; of failed restarts only the ends (an archive keeps all).
     best : int
         Index of the path that led to `x`, or -1.
     counts : Counts
@@ -106,13 +106,13 @@ class Solution:
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
-        Proves UNSOLVABLE if no point is feasible; after exhaustion it is computed on demand.
+        Proves UNSOLVABLE if no point is feasible.
     exhaustion : Exhaustion or None
-        The result if all faces were tried: the other proof of UNSOLVABLE.
+        If all faces were tried: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
     program : Program or None
-        The quadratic program behind the problem, read by `named` and `objective`.
+        The quadratic program behind the problem.
     """
 
     problem: MixedLCP
@@ -130,7 +130,7 @@ class Solution:
 
     @property
     def proof(self) -> str:
-        """A sentence: how UNSOLVABLE is proved, or that a solution exists which floats do not hold; else empty."""
+        """How UNSOLVABLE is proved, or that a solution exists beyond floats; else empty."""
         if self.outcome is Outcome.NOT_FOUND and self.exhaustion is not None and self.exhaustion.solvable:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
@@ -141,7 +141,7 @@ class Solution:
 
     @property
     def farkas(self) -> Farkas | None:
-        """The proof that no point is feasible, or None."""
+        """The proof that no point is feasible, computed on demand after exhaustion, or None."""
         at_once = self.exhaustion is not None and self.exhaustion.groups is None and self.problem.standard
         if not at_once or self._farkas is not None or self.outcome is not Outcome.UNSOLVABLE:
             return self._farkas
@@ -194,9 +194,7 @@ class Solution:
 
     @property
     def named(self) -> Mapping[str, Array]:
-        """The unknowns by name: x, `equations`, `rows` and `bounds` of a `Program`, else x and w; empty without a
-        point.
-        """
+        """The unknowns by name: x, `equations`, `rows`, `bounds` of a `Program`, else x, w; empty without a point."""
         if self.x is None or self.w is None:
             return {}
         return {"x": self.x, "w": self.w} if self.program is None else self.program.named(self.x, self.w)
@@ -210,7 +208,7 @@ class Solution:
 
     @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point (`Certificate`)."""
+        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property
@@ -252,7 +250,7 @@ class Solution:
 
     @property
     def path(self) -> Path:
-        """The path that led to x, else the last one; without paths the point x alone."""
+        """The path to x, else the last one; without paths x alone."""
         if self.paths:
             return self.paths[self.best]
         x = self.x if self.x is not None else np.zeros(self.problem.n)

@@ -15,14 +15,14 @@ from problems.lcp.data.problem import MixedLCP
 
 @frozen(eq=False)
 class Padded:
-    """An observer that fills up paths with NaN to one number of `unknowns`, as an archive needs, and passes them on."""
+    """An observer that pads paths with NaN to `unknowns`, as an archive needs."""
 
     observer: Observer
     unknowns: int
 
     @classmethod
     def of(cls, observer: Observer, problem: MixedLCP) -> Padded:
-        """For the paths of a problem; those of the KKT homotopy have most unknowns."""
+        """Make it for a problem: KKT paths have most unknowns."""
         return cls(observer, (3 if problem.standard else 6) * problem.n)
 
     def step(self, tracer: Tracer, step: Step) -> None:
@@ -46,9 +46,9 @@ class Padded:
 
 
 def show(path: Path, homotopy: Any, observer: Observer) -> None:
-    """Show an observer the steps and the end of a finished path."""
+    """Show an observer a finished path."""
     tracer = Tracer(homotopy)
-    # The archive takes a step's kink from the last events of a growing path.
+    # The archive reads a kink from a growing path's last events.
     tracer.path, tracer.counts = Path(), path.counts
     events = {event.step: event for event in path.events}
     for step in path.steps:

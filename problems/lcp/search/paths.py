@@ -1,7 +1,7 @@
-"""Paths of Wang's and of the KKT homotopy, and restarts from random starts.
+"""Paths of Wang's and of the KKT homotopy, then restarts from random starts.
 
-If Wang's path has an end, that solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of
-x'w that solves nothing; other starts lead elsewhere (measured: `homotopies.starts.random_start`).
+An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w that
+solves nothing; other starts lead elsewhere.
 """
 
 from __future__ import annotations
@@ -37,21 +37,21 @@ from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Candidate, Search
 
 RESTART_STEPS = 60
-"""Steps, besides n, after which a restart is given up: of 144 solving paths one took nearly as many. The first path,
-with shorter steps, may take twice as many: on a Hankel matrix of order 100 one had not ended after 3,000."""
+"""Most steps of a restart, besides n: of 144 solving paths one took nearly as many. The first path, with shorter steps,
+gets twice as many."""
 
 LARGEST_MADE_DENSE = 500
-"""Up to this order sparse matrices become dense for paths, whose matrices of order n or 2n fill: with 5 % entries and n
-= 200 a path then takes a tenth of the time."""
+"""Up to this order sparse matrices become dense for paths, whose matrices fill: at n = 200 and 5 % entries in a tenth
+of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
-"""Last increment of a restart with the finish, whose end is exact: Newton's method about squares it."""
+"""Last increment of a restart: the finish is exact, and Newton's method about squares it."""
 
 AT_ONCE = 64
-"""Restarts handed to an executor together: more than one machine has workers."""
+"""Restarts handed over together: more than one machine has workers."""
 
 Patience = Callable[[Step], str]
-"""Maps a step to the reason for giving up its path, or to ""."""
+"""Maps a step to the reason to give up, or ""."""
 
 
 SEARCH = Preset(
@@ -61,7 +61,7 @@ SEARCH = Preset(
     BorderedNewton(reuse=0.0),
     AllgowerGeorg(contraction=0.7, distance=0.6, angle=0.7, deceleration=2.0),
 )
-"""The parts of a restart: the longest steps that pay."""
+"""Restarts take the longest steps that pay."""
 
 
 def follow(
@@ -74,8 +74,7 @@ def follow(
 ) -> Path:
     """Trace a path and try the finish along it; the path counts both.
 
-    `finish`: None for the pure path. `patience`: its reason becomes the path's message. `**options`: for
-    `continuation.Tracer`.
+    `patience`: its reason becomes the path's message.
     """
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)
@@ -92,10 +91,9 @@ def follow(
 
 @frozen(eq=False)
 class Restart:
-    """The k-th restart. It depends on these fields alone, so another process can trace it.
+    """The k-th restart: it depends on these fields alone, so another process can trace it.
 
-    `name`: "kkt", or a homotopy in (x, y). `tolerance`: of the finish, or None. `options`: for the tracer; they
-    override `SEARCH`.
+    `name`: "kkt", or a homotopy in (x, y). `tolerance`: of the finish.
     """
 
     structure: Structure
@@ -106,16 +104,16 @@ class Restart:
     options: Mapping[str, Any]
 
     def homotopy(self) -> LCPHomotopy:
-        """The homotopy at its start; with the finish its solves stay unrefined, as the tolerance is loose."""
+        """The homotopy at its start; with the finish solves are not refined."""
         problem = self.structure.problem
         start = random_start(problem, np.random.default_rng([self.seed, self.k]))
         return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
 
     def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
-        """Trace the path until it ends or is given up."""
+        """The path, to its end or given up."""
         homotopy, parts, longest, finish = self.homotopy(), {"preset": SEARCH, "examine": True}, np.inf, None
         if self.tolerance is not None:
-            # Only a pure path's end is the answer; with the finish the active set is.
+            # With the finish only the active set counts.
             finish, longest = Finish(Faces(self.structure), self.tolerance), RESTART_STEPS + homotopy.n
             parts |= {"tolerance": LOOSE, "examine": False}
         return follow(homotopy, finish, budget, lambda step: unending(step, longest) or exhausted(), observers,
@@ -123,32 +121,32 @@ class Restart:
 
 
 def unending(step: Step, longest: float) -> str:
-    """The reason for giving up a path of such length, or ""."""
+    """The reason to give up so long a path, or ""."""
     late = step.kind == Kind.REGULAR and step.index >= longest
     return f"it has not ended after {step.index} steps" if late else ""
 
 
 def light(path: Path) -> Path:
-    """The same path, reduced in place to its two ends without curves."""
+    """Reduce a path in place to its two ends."""
     if path.steps:
         path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
     return path
 
 
 def trace_light(restart: Restart, budget: Budget) -> Path:
-    """Trace a restart in a worker; return what is small enough to send."""
+    """Trace a restart in a worker."""
     return light(restart.trace(budget))
 
 
 @define(eq=False)
 class Paths:
-    """The paths of one problem: first those of one or two homotopies, then restarts."""
+    """The paths of one problem."""
 
     search: Search
     _begun: bool = False
 
     def run(self, work: float) -> str:
-        """Trace the first paths, on the next call up to `work` restarts; return what settled the problem, or ""."""
+        """Trace the first path of each homotopy, on the next call up to `work` restarts."""
         search = self.search
         if not self._begun:
             self._begun = True
@@ -163,15 +161,13 @@ class Paths:
         return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
 
     def _names(self) -> tuple[str, ...]:
-        """Homotopies to trace: if some a_ii < 0, A is not copositive and Wang's path mostly diverges, except in a box.
-        """
+        """If some a_ii < 0, A is not copositive, and Wang's path mostly diverges, except in a box."""
         search = self.search
         if search.asked.homotopy != "auto":
             return (search.asked.homotopy,)
         return ("kkt",) if search.problem.standard and search.facts.negative_diagonal else ("wang", "kkt")
 
     def _first(self, name: str) -> str:
-        """Trace one path; return what settled the problem, or ""."""
         search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]
         start, automatic = asked.x0, asked.homotopy == "auto"
         if search.exhausted:
@@ -181,7 +177,7 @@ class Paths:
                 assert isinstance(problem, LCP)
                 start = strictly_feasible_start(problem)
             except NoStrictlyFeasiblePoint as error:
-                # Infeasibility settles the problem; without a start there is no path.
+                # Infeasibility settles the problem.
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
@@ -194,14 +190,14 @@ class Paths:
         hurried = name == "kkt" and automatic and asked.restarts > 0 and search.finish is not None and not asked.options
         longest = 2.0 * (RESTART_STEPS + problem.n) if hurried else np.inf
         preset = {"preset": FAST} if automatic else {}
-        # With the finish the end is certified: arcs are examined only if the path is asked for.
+        # The finish certifies ends, so arcs need no examination.
         options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}
         self.add(follow(homotopy, search.finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
                         self._observers(), **options))  # fmt: skip
         return f"Solved by the path of the {name} homotopy." if search.solved else ""
 
     def add(self, path: Path) -> None:
-        """Record a traced path."""
+        """Record a path."""
         search = self.search
         search.traced = search.traced + path.counts
         if path.steps:
@@ -211,14 +207,14 @@ class Paths:
         search.paths.append(path)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
-        """The certificate of a path's end, which the finish improves to round-off if it can."""
+        """The certificate of a path's end, brought to round-off by the finish if possible."""
         search, problem = self.search, self.search.problem
         x = problem.clipped(path.endpoint.y[: problem.n])
         end = certify(problem, x)
         if not arrived:
             return end
         if not search.confirmed(end):
-            # Only what is zero to the tolerance moves: a stationary point of an LCP stays one.
+            # Only zeros move, so a stationary point stays one.
             zeros = certify(problem, x, search.tolerance)
             zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
             end = min(end, zeros, key=lambda one: one.relative_residual)
@@ -229,10 +225,7 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        """Trace restarts until one solves the problem, or budget or count end; return their number.
-
-        An executor traces several together; the first solution in order counts.
-        """
+        """Trace restarts, in order, until one solves the problem; return their number."""
         search, asked = self.search, self.search.asked
         tolerance = None if search.finish is None else search.tolerance
         together = 1 if asked.executor is None else AT_ONCE
@@ -253,7 +246,7 @@ class Paths:
         if asked.executor is None:
             yield tasks[0].trace(self._left(), lambda: search.exhausted, self._observers())
             return
-        # The CPU time is the workers': only the wall clock limits it.
+        # Workers spend CPU time: the wall clock limits them.
         left = evolve(self._left(), seconds=max(search.budget.seconds - search.seconds, 1e-3))
         for task, path in zip(tasks, asked.executor.map(trace_light, tasks, repeat(left))):
             if asked.log is not None:

@@ -1,7 +1,6 @@
-"""Pivots: Lemke's method, the Lemke-Howson method for games, and the path from the solution of a nearby problem.
+"""Pivots: Lemke's method, that of Lemke and Howson for games, and the path from a nearby problem's solution.
 
-An almost complementary path visits bases until a solution or a ray. For semidefinite A a ray proves that no point is
-feasible; else it proves nothing.
+An almost complementary path ends at a solution or on a ray, which proves infeasibility for semidefinite A.
 """
 
 from __future__ import annotations
@@ -22,43 +21,36 @@ from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search.search import Nearby, Search
 
 LARGEST_TABLE = 3000
-"""Largest order that is pivoted: its table takes 72 MB, all of which each pivot visits."""
+"""Largest order that is pivoted: each pivot visits all 72 MB of the table."""
 
 PIVOT_WORK = LARGEST_TABLE**2
-"""Most pivots times order: at the largest order one pivot per unknown, as traffic takes; at n = 1000 one second, where
-a path takes ten."""
+"""Most pivots times order: at the largest order one per unknown, as traffic takes; at n = 1000 one second, where a path
+takes ten."""
 
 COVERINGS = 5
-"""Covering vectors tried on a quadratic program, with twice the pivots each: on 40 indefinite box QPs (n = 40 to 200) 5
-suffice with entries 10^U(-3, 0); entries from 0.1 to 3 need up to 51."""
+"""Covering vectors for a quadratic program: on 40 indefinite box QPs 5 suffice with entries 10^U(-3, 0); entries from
+0.1 to 3 need up to 51."""
 
 SHORT_PATHS = 8
-"""Labels per unit of work whose paths are tried up to n / 2 pivots. In uniform and normal games of order 1000, whose
-paths mostly exceed 10,000 pivots, 6 to 14 % of the labels have a path below n / 2, half of them below n / 4."""
+"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of the labels of games of order 1000 have such a path,
+most take more than 10,000."""
 
 GAME_WORK = 1_000_000_000
-"""Most table entries that a game's path visits: covariant games (rho = -.9) of order 300 take 5,000 to 17,000 pivots
-from every label, 0.15 to 0.6 s."""
+"""Most table entries that a game's path visits: covariant games of order 300 take up to 17,000 pivots, 0.6 s."""
 
 
 def most_pivots(n: int, per_order: float = 10.0) -> int:
-    """The number of pivots worth trying before a path: `per_order` times n, fewer for large n.
-
-    Parameters
-    ----------
-    n : int
-    per_order : float
-    """
+    """Pivots worth trying before a path: `per_order` times n, fewer for large n."""
     return min(int(per_order * n), PIVOT_WORK // n)
 
 
 def pivotable(search: Search) -> bool:
-    """Whether the problem can be pivoted: an LCP with a table of bearable size, with the finish on."""
+    """Whether the problem is an LCP with a bearable table, and the finish is on."""
     return search.problem.standard and search.problem.n <= LARGEST_TABLE and search.finish is not None
 
 
 def game(search: Search) -> bool:
-    """Whether the problem is a bimatrix game, for Lemke and Howson."""
+    """Whether the problem is a bimatrix game."""
     problem = search.problem
     first = not problem.sparse and problem.A[0, 0] == 0.0
     return first and isinstance(problem, LCP) and Game.of(problem) is not None
@@ -71,7 +63,7 @@ class Pivots:
     search: Search
 
     def run(self, work: float) -> str:
-        """Pivot up to `work` times the order; return what settled the problem (a solution or a ray's proof), or ""."""
+        """Pivot up to `work` times the order."""
         problem = self.search.problem
         assert isinstance(problem, LCP)
         played = Game.of(problem)
@@ -115,34 +107,23 @@ class Pivots:
 
 
 def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool:
-    """Follow a path; return whether it led to a solution, or its ray to a proof that none exists."""
+    """Follow a path; return whether it gave a solution or a proof that none exists."""
     ended = None if path is None else path.run(most)
     if path is None or ended not in (Ended.REACHED, Ended.RAY):
         return False
     if ended is Ended.RAY:
         search.proof = infeasibility(search.problem, guess=path.ray())
         return search.proof is not None
-    # If rounding makes the last basis singular, its own point may do.
+    # Rounding may make the last basis singular: its own point may do.
     if search.settle(active_state(path.active)):
         return True
     return search.finish is not None and search.found(search.finish.take(path.values()))
 
 
 def by_guess(search: Search, guess: Nearby) -> bool:
-    """Follow LCP(q + t (q' - q), A) from t = 1, solved by the guess, to 0; return whether that led to a solution.
+    """Follow LCP(q + t (q' - q), A) from t = 1 to 0 (Cottle, Pang and Stone, section 4.5); return whether it solved.
 
-    q' = w - A x with x and w of the guess, so that x solves LCP(q', A) whatever its own problem was.
-
-    Parameters
-    ----------
-    search : Search
-        Records what is found.
-    guess : Nearby
-        In the units of the search.
-
-    References
-    ----------
-    Cottle, Pang and Stone, section 4.5.
+    q' = w - A x with x and w of the guess, so x solves LCP(q', A) whatever its own problem.
     """
     problem = search.problem
     x = problem.clipped(guess.x)
@@ -161,18 +142,11 @@ def by_guess(search: Search, guess: Nearby) -> bool:
 
 
 def constraints(problem: LCP) -> Mask:
-    """Mask of the rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions: d is zero there.
+    """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions, where d is zero.
 
     ``A = [[Q, B'], [-B, 0]]`` up to units and order. With t in the rows of Q alone, LCP(q + t d, A) is the program with
-    the cost c + t d. For large t and bounded x its only stationary point is x = 0: no other ray returns.
-
-    Parameters
-    ----------
-    problem : LCP
-
-    References
-    ----------
-    Eaves, "On quadratic programming", Management Science 17, 1971.
+    cost c + t d; for large t and bounded x its only stationary point is x = 0, so no other ray returns (Eaves, "On
+    quadratic programming", Management Science 17, 1971).
     """
     rows: Mask = (problem.q >= 0.0) & (problem.A.diagonal() == 0.0)
     none = np.zeros_like(rows)

@@ -1,10 +1,9 @@
 """Douglas and Rachford's iteration between two sets: the points with w = A x + q, and those with complementary pairs.
 
-The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. A step costs one product with a
-matrix, a thousandth of a path's step. A set is not convex, so convergence is not guaranteed; but only solutions are
-fixed points, and random problems that are neither monotone nor P are soon solved: n = 100 in 0.02 s, 300 in 0.3, 600 in
-3, where restarts take 1, 60 and over 300 (`examples/benchmarks/outside.py`). Faces at which runs stay are then tried
-exactly.
+The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. A step is one product with a
+matrix, a thousandth of a path's. Without convexity nothing guarantees convergence, but only solutions are fixed points.
+Random problems neither monotone nor P take 0.02 s (n = 100), 0.3 (300), 3 (600); restarts take 1, 60, over 300
+(`examples/benchmarks/outside.py`).
 
 References
 ----------
@@ -29,25 +28,21 @@ from problems.lcp.search.search import Search
 Single = NDArray[np.float32]
 
 RUNS_AT_ONCE = 16
-"""Runs together: of 24 Gaussian problems, n = 200, the slowest takes 2.1 s with two, 1.3 with eight, 0.16 with sixteen.
-"""
+"""The slowest of 24 Gaussian problems, n = 200, takes 2.1 s with two runs, 1.3 with eight, 0.16 with sixteen."""
 
 CHECKED = 25
-"""Iterations between two comparisons of faces: at n = 30 one comparison costs 25 iterations. A face that did not change
-is tried; a run at a solution keeps its face."""
+"""Iterations between two comparisons of faces, each as costly at n = 30. A run at a solution keeps its face, so
+unchanged faces are tried."""
 
 LARGEST_REFLECTED = 1000
-"""Largest order: a round takes a minute there, of which Gaussian problems need 5 to 17 s."""
+"""Largest order: a round takes a minute there; Gaussian problems need 5 to 17 s."""
 
 ROUND_WORK = 4e8
-"""Iterations times n^2 of one round: 1.3 s. From order 300 on a round exceeds it, 16 s at order 600."""
+"""Least iterations times n^2 of a round: 1.3 s; 16 s at order 600."""
 
 
 def run_length(n: int) -> int:
-    """Iterations after which all runs restart: at n = 200 any number from 1,000 to 6,000 does.
-
-    `n`: the order. Solving runs take 100 (n = 30), 300 (100), 1,000 (300) and 3,000 (600) on Gaussian problems.
-    """
+    """Iterations until all runs restart: Gaussian problems need 100 (n = 30), 300 (100), 1,000 (300), 3,000 (600)."""
     return 1000 + 10 * n
 
 
@@ -55,9 +50,8 @@ def run_length(n: int) -> int:
 class Sets:
     """The two sets, in units that weigh w like x.
 
-    `onto`, shape (2 n, 2 n): projects onto differences of points with w = A x + q. `nearest`, shape (2 n, 1): the point
-    of that set nearest to w = 0 and to the x of least size within bounds; its mean entry is the unit of length.
-    `lower`, `upper`, shape (n, 1): relative to that x. `standard`: whether the problem is an `LCP`.
+    `onto`, (2 n, 2 n): projects onto differences of points with w = A x + q. `nearest`, (2 n, 1): the point of that set
+    nearest to w = 0 and the x nearest to zero; its mean entry is the unit. `lower`, `upper`, (n, 1): from that x.
     """
 
     onto: Single
@@ -70,7 +64,7 @@ class Sets:
     def of(cls, problem: MixedLCP) -> Sets | None:
         """The sets of a problem; None without a finite, positive unit of length."""
         A, n = problem.A.toarray() if problem.sparse else problem.A, problem.n
-        # The median ignores a large rank-one term, which makes the costs of games positive.
+        # The median ignores a large rank-one term, as in games.
         diagonal = np.abs(sl.qr(A, mode="r", check_finite=False)[0].diagonal())
         unit = float(np.median(diagonal)) or largest(diagonal) or 1.0
         basis = sl.qr(np.vstack([np.eye(n), A / unit]), mode="economic", overwrite_a=True, check_finite=False)[0]
@@ -84,7 +78,7 @@ class Sets:
         return cls(onto.astype(np.float32), _single(nearest / length), lower, upper, problem.standard)
 
     def rounds(self, random: np.random.Generator) -> Iterator[tuple[int, list[State]]]:
-        """Yield without end the number of finished rounds and the faces that runs kept over `CHECKED` steps."""
+        """Yield without end the finished rounds and the faces kept over `CHECKED` steps."""
         n, over = self.lower.size, 0
         while True:
             z = random.standard_normal((2 * n, RUNS_AT_ONCE), np.float32)
@@ -102,7 +96,7 @@ class Sets:
             over += 1
 
     def _complementary(self, z: Single) -> tuple[NDArray[np.int8], Single]:
-        """The nearest points with complementary pairs, and their faces."""
+        """The nearest complementary points, and their faces."""
         n = self.lower.size
         x, w = z[:n], z[n:]
         if self.standard:
@@ -123,19 +117,19 @@ class Sets:
 
 
 def reflectable(search: Search) -> bool:
-    """Whether projections are affordable and A is not semidefinite (there pivots end at a solution or a proof)."""
+    """Whether projections are affordable and A is not semidefinite, where pivots decide."""
     return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
 
 
 @define(eq=False)
 class Reflections:
-    """The runs of one problem; the next call continues them."""
+    """The runs of one problem."""
 
     search: Search
     _runs: Iterator[tuple[int, list[State]]] | None = None
 
     def run(self, work: float) -> str:
-        """Run up to `work` rounds, at least one; large problems and small budgets get fewer."""
+        """Run up to `work` rounds, at least one; fewer for large n or small budgets."""
         search, n = self.search, self.search.problem.n
         if self._runs is None:
             sets = Sets.of(search.problem)

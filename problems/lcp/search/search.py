@@ -1,4 +1,4 @@
-"""One search: the caller's wishes, the budget, and everything found."""
+"""The state of a search: wishes, budget, findings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from problems.lcp.search.work import default_budget
 
 @frozen(eq=False)
 class Nearby:
-    """The solution x of a nearby problem, and w = A x + q there."""
+    """A nearby problem's solution x, and w there."""
 
     x: Array
     w: Array
@@ -54,9 +54,9 @@ class Asked:
 
 @frozen(eq=False)
 class Candidate:
-    """A point that a method reached: its certificate, and its path's index, or -1.
+    """A point that a method reached; `path` is its path's index, or -1.
 
-    `stationary`: whether x ends a KKT path and satisfies its equations.
+    `stationary`: x ends a KKT path and satisfies its equations.
     """
 
     certificate: Certificate
@@ -68,8 +68,8 @@ class Candidate:
 class Search:
     """The state that all methods share.
 
-    `finish`: None if switched off. `scaled`: the scaling. `traced`: cost of the paths. `ends`: points reached. `proof`:
-    of infeasibility, exact or to working precision. `exhaustion`: of all faces. `tried`: restarts begun.
+    `finish`: None if switched off. `traced`: cost of the paths. `ends`: points reached. `proof`: of infeasibility.
+    `tried`: restarts begun.
     """
 
     structure: Structure
@@ -93,7 +93,7 @@ class Search:
 
     @property
     def problem(self) -> MixedLCP:
-        """The problem, in the units of the search."""
+        """The problem in the units of the search."""
         return self.structure.problem
 
     @property
@@ -105,29 +105,29 @@ class Search:
 
     @property
     def seconds(self) -> float:
-        """Wall-clock seconds since the search began; no method decides by them."""
+        """Wall-clock time; no method decides by it."""
         return time.perf_counter() - self.began
 
     @property
     def processor(self) -> float:
-        """CPU seconds, as a budget counts them: the machine's load does not change them."""
-        # Reading this clock takes longer than a small problem, so only a budget of seconds does.
+        """CPU seconds: a busy machine does not change them."""
+        # Reading the clock takes longer than a small problem.
         return time.process_time() - self._processor if self.budget.seconds < math.inf else 0.0
 
     @property
     def exhausted(self) -> str:
-        """The limit of the budget that is reached, or ""."""
+        """The budget's limit that is reached, or ""."""
         spent = self.traced.factorizations + (0 if self.finish is None else self.finish.counts.factorizations)
         return self.budget.spent(Counts(accepted=self.traced.accepted, factorizations=spent), self.processor)
 
     @cached_property
     def share(self) -> float:
-        """The budget over the default one, at most 1; methods scale their default work by it."""
+        """The budget over the default one, at most 1; default work scales with it."""
         return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
     def facts(self) -> MatrixFacts:
-        """Known facts of the matrix."""
+        """Facts of the matrix."""
         return MatrixFacts(self.structure)
 
     @property
@@ -140,23 +140,23 @@ class Search:
         return confirmed(self.problem, certificate, self.tolerance)
 
     def accept(self, x: Array) -> bool:
-        """Record a point found without active sets; return whether it is a solution."""
+        """Record a point; return whether it is a solution."""
         self.ends.append(Candidate(certify(self.problem, x)))
         return self.solved
 
     def settle(self, state: State, policy: Policy = AT_END) -> bool:
-        """Try active sets from a guess; return whether they led to a solution."""
+        """Try active sets; return whether they led to a solution."""
         return self.finish is not None and self.found(self.finish.settle(state, policy))
 
     def found(self, x: Array | None) -> bool:
-        """Record a result of the finish; return whether there is one."""
+        """Record the finish's result; return whether there is one."""
         if x is None or self.finish is None or self.finish.certificate is None:
             return False
         self.ends.append(Candidate(self.finish.certificate))
         return True
 
     def best(self) -> Candidate | None:
-        """The best candidate: confirmed, to working precision, nearly solved, stationary, or of least residual."""
+        """The best candidate: confirmed, to precision, nearly solved, stationary, or of least residual."""
         nearest = None if self.finish is None else self.finish.nearest
         ends = self.ends if nearest is None else [*self.ends, Candidate(nearest)]
         if len(ends) < 2:

@@ -1,7 +1,4 @@
-"""`solve`: a certified solution, a proof that none exists, or a report of the search.
-
-`table` orders the methods, `judge` decides the outcome.
-"""
+"""`solve`: `table` orders the methods, `judge` decides the outcome."""
 
 from __future__ import annotations
 
@@ -47,11 +44,11 @@ from problems.lcp.search.work import default_budget
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
 OWNED = ("target", "direction", "start", "state", "observers")
-"""Options of a path that the caller may not set, since `solve` sets them."""
+"""Path options that `solve` sets itself."""
 
 
 MOST_RESTARTS = 1000
-"""Ends a search whose budget has no limit; on a small problem they use about the default budget."""
+"""Ends a search without a budget; small problems spend about the default budget on them."""
 
 
 @documented
@@ -83,22 +80,20 @@ def solve(
         restarts (order: `search.table`). Or "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu"
         or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start. "kkt" accepts infeasible ones; at a feasible one z1 = z2 = e, the paper's start. "auto"
-        accepts zeros, as of a nearby solution: it first tries the set where x0 > A x0 + q.
+        A positive start; for "kkt" it may be infeasible, and at a feasible one z1 = z2 = e, the paper's start. "auto"
+        accepts zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem of the same order: first follow the piecewise linear path from its data to these,
-        which has few kinks if the change is small (for one A and many q: `Solver`).
+        Solution of a nearby problem of the same order: first the piecewise linear path from its data is followed (for
+        one A and many q: `Solver`).
     finish : bool
-        Whether to try active sets before and along the path; without them `path` is the pure homotopy.
+        Whether active sets are tried, before and along the path; without them `path` is the pure homotopy.
     path : bool
-        Trace a path even if "auto" needs none, and locate its turning and branch points (else located only if
-        ``finish=False``).
+        Trace a path even if "auto" needs none, and locate its turning and branch points.
     restarts : int, optional
-        Paths from random starts after the first fails, within the budget. Default: 0 for a named homotopy, 1000 for
-        "auto".
+        Paths from random starts after the first fails. Default: 0 for a named homotopy, 1000 for "auto".
     seed : int
-        Of random starts and reflections; restart k depends on `seed` and k alone. On one machine a call repeats its
-        answer; elsewhere sums round differently, and reflections may find another solution.
+        Seeds random starts and reflections; restart k depends on `seed` and k alone. On one machine a call repeats its
+        answer; elsewhere rounding differs, and reflections may find another solution.
     budget : continuation.Budget, optional
         For the whole search. Default: the factorisations of about a minute, from n alone (`default_budget`), so no
         clock decides; reflections add at most half a minute. ``Budget(seconds=60)`` counts CPU seconds.
@@ -106,7 +101,7 @@ def solve(
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
         A new HDF5 file for all traced paths; of restarts over an executor only the ends. Without paths it holds the
-        message and the solution as one point (x, w, x), the KKT path's end. It does not change the search.
+        message and the solution as one point (x, w, x), the KKT path's end.
     progress : bool
         One progress bar per path (needs tqdm).
     executor : concurrent.futures.Executor, optional
@@ -175,7 +170,7 @@ def solve(
         Asked(homotopy, start, near, restarts, seed, executor, path, log, progress, dict(options)),
         scaled,
     )
-    # Overflow gives infinities or NaN, which no certificate accepts.
+    # No certificate accepts an overflow.
     with Silence(), one_thread, log if log is not None else nullcontext():
         if beyond:
             found = beyond_floats(problem, tolerance)
@@ -191,18 +186,16 @@ def solve(
 
 
 def _given(arguments: dict[str, Any]) -> dict[str, Any]:
-    """The arguments of `solve` by name."""
     return {name: arguments[name] for name in solve.__kwdefaults__ or ()}
 
 
 def _title(problem: MixedLCP) -> str:
-    """Title of an archive."""
     bounds = "" if problem.standard else " with bounds"
     return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
-    """The problem without bounds where these are equal: a start may be anything there."""
+    """The problem without bounds where they are equal: a start may be anything there."""
     if not problem.fixed.any():
         return problem
     none = np.where(problem.fixed, np.inf, 0.0)
@@ -212,7 +205,7 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 def _check_arguments(
     tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
-    """Refuse bad arguments at once: some would fail late, or, without a path, never."""
+    """Refuse at once what would fail late, or, without a path, never."""
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
@@ -229,7 +222,7 @@ def _check_arguments(
 
 
 def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
-    """A start: positive for a path; "auto" accepts zeros, which paths replace by small numbers."""
+    """A start: positive for a path; "auto" accepts zeros, which paths replace."""
     if not problem.standard:
         return inside_vector("x0", x0, _unfixed(problem))
     if not automatic:
@@ -242,7 +235,6 @@ def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
 
 
 def _near(guess: Any, problem: MixedLCP) -> Nearby | None:
-    """The point of a guess."""
     if guess is None:
         return None
     if not isinstance(guess, (Solution, Nearby)):
@@ -255,7 +247,6 @@ def _near(guess: Any, problem: MixedLCP) -> Nearby | None:
 
 
 def _nothing(problem: MixedLCP, archive: Any) -> Solution:
-    """The answer to a problem without unknowns."""
     if archive is not None:
         raise ValueError("archive: expected None for a problem without unknowns, of which there is no path")
     message = f"{Outcome.SOLVED} There are no unknowns."
@@ -263,8 +254,7 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    """Say what settled the problem, or how the paths ended and how many there were."""
-    # Facts never computed were not needed.
+    """Say how the search went."""
     parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
@@ -281,7 +271,7 @@ def _account(search: Search, settled: str) -> str:
 
 
 def _archive_without_path(log: PathLog, found: Solution) -> None:
-    """Archive the message, and the solution as the KKT path's end, whose equations it satisfies (`at_solution`)."""
+    """Archive the message, and the solution as the KKT path's end (`at_solution`)."""
     homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate

@@ -1,10 +1,8 @@
-"""The methods of `solve` and their order: one table for all problems.
+"""The methods of `solve` and their order.
 
 A solution lies on one of 2^n complementary faces; one linear system settles a face. *Active sets* move to the face that
 the last signs ask for, *pivots* to a neighbour, *reflections* through points of no face, *paths* through interior
-points; *exclusion* proves many faces empty at once. The first two are quick and mostly right, reflections suit no
-class, paths need none. `Finish.judged` judges each face, `judge.answer` the outcome. Each row limits work, so that no
-clock decides.
+points; *exclusion* proves many faces empty at once. Rows limit work, so that no clock decides.
 """
 
 from __future__ import annotations
@@ -24,15 +22,15 @@ from problems.lcp.search.search import Search
 
 
 class Method(Protocol):
-    """A method for one problem; the next call continues it."""
+    """A method for one problem; a second call continues it."""
 
     def run(self, work: float) -> str:
-        """Return a sentence that says what settled the problem, or ""."""
+        """Say what settled the problem, or ""."""
 
 
 @frozen
 class Row:
-    """A method, its condition, and its work, in `unit`."""
+    """A method, its condition, and its work in `unit`."""
 
     name: str
     method: Callable[[Search], Method]
@@ -69,7 +67,7 @@ NAMED = (_PATHS, Row("root", Exclusion, always, 0, "linear programs beside the f
 
 
 def settled_by(search: Search, table: tuple[Row, ...]) -> str:
-    """Run the rows in order; return a sentence that says which solution or proof settled the problem, or ""."""
+    """Run the rows in order; say what settled the problem, or ""."""
     made: dict[Callable[[Search], Method], Method] = {}
     for row in table:
         if row.when(search):
