@@ -42,7 +42,6 @@ def _add(*parts: Rows) -> Rows:
 
 
 def _gram(draw: Draw, n: int) -> Rows:
-    """B'B, B of any rank."""
     factor = [[draw(st.integers(-2, 2)) for _ in range(n)] for _ in range(draw(st.integers(0, n)))]
     return [[sum(row[i] * row[j] for row in factor) for j in range(n)] for i in range(n)]
 
@@ -167,7 +166,7 @@ def _n(draw: Draw, n: int) -> Rows:
 
 
 def _row_sufficient(draw: Draw, n: int) -> Rows:
-    """Scaled PSD (sufficient), P, or P above zero rows (not column sufficient)."""
+    """Sufficient (scaled PSD, P), or P above zero rows (not column sufficient)."""
     kind = draw(st.sampled_from(("psd", "p", "zero rows")))
     if kind == "psd":
         return _scaled(draw, _psd(draw, n))

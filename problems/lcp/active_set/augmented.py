@@ -30,7 +30,7 @@ PENALTY, MOST, GROWTH = 20.0, 1e8, 10.0
 multipliers, which then converge superlinearly."""
 
 STEPS_PER_CHANGE = 100
-"""Most Newton steps per change of multipliers."""
+"""Most Newton steps per change."""
 
 
 @frozen(eq=False)
@@ -88,7 +88,7 @@ def _same(one: Matrix, other: Matrix) -> bool:
 
 @frozen(eq=False)
 class Penalised:
-    """The augmented Lagrangian with a proximal term; rows first, then bounds."""
+    """The augmented Lagrangian; rows first, then bounds."""
 
     saddle: Saddle
     low: Array
@@ -163,7 +163,6 @@ def guesses(
 def _minimised(
     one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts, factoring: Factoring
 ) -> tuple[Array, Array] | None:
-    """The minimum and the shifted values there; None if a factorisation fails."""
     saddle, pieces = one.saddle, b""
     factor = None
     for _ in range(STEPS_PER_CHANGE):

@@ -41,7 +41,7 @@ FACES_KEPT = 8
 """Faces kept for the next q: a motion to and fro visits few."""
 
 SHIFTED_CORRECTIONS = 4
-"""Each correction gains the ratio of the shift to the least singular value."""
+"""Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
@@ -83,7 +83,7 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
-        """Correct x on an unshifted face once, with w in twice the working precision."""
+        """Correct x once, with w in twice the working precision."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
@@ -93,7 +93,7 @@ class Face:
 
 
 def exchanging(method: str = "auto") -> Factoring:
-    """Factorisations of faces: SuperLU exchanges rows."""
+    """Factorisations of faces, by SuperLU with row exchanges where nothing else suits."""
     return Factoring(method, SuperLUMethod(weak_pivots=False))
 
 

@@ -27,21 +27,8 @@ MORE_MULTIPLIERS = 5
 class Finish:
     """Tries active sets of one problem, each once, for all its paths.
 
-    Attributes
-    ----------
-    faces : Faces
-    tolerance : float
-        For `Certificate.solves`.
-    counts : Counts
-    tried : Tried
-    certificate : Certificate or None
-        Of the last solution.
-    nearest : Certificate or None
-        Of the judged non-solution with least normwise residual.
-    ended : Ended or None
-        Of the last iteration.
-    following : State or None
-        Its next state.
+    `tolerance`: for `Certificate.solves`. `certificate`: of the last solution. `nearest`: of the judged non-solution
+    with least normwise residual. `ended`, `following`: why the last iteration ended, and its next state.
     """
 
     faces: Faces
@@ -59,10 +46,7 @@ class Finish:
         return self.faces.problem
 
     def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
-        """The certified solution on an active set or its corrections, or None.
-
-        `near`: selects the nearest of a face's many points; default zero.
-        """
+        """The certified solution on an active set or its corrections, or None; `near` as in `iterate`."""
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
@@ -144,7 +128,6 @@ class Finish:
         return x, self.problem.w(x), False
 
     def _plausible(self, state: State, x: Array, w: Array) -> bool:
-        """Whether signs are right to about the tolerance."""
         problem = self.problem
         inside = x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
         signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))

@@ -40,14 +40,8 @@ class Ended(Enum):
 class Policy:
     """How long the iteration goes on.
 
-    Attributes
-    ----------
-    steps : int
-        Most corrections.
-    patience : int or None
-        Corrections in a row without a new low of changed indices.
-    singular : int, optional
-        Singular faces allowed, which are no steps.
+    `steps`: most corrections. `patience`: corrections in a row without a new low of changed indices. `singular`:
+    singular faces allowed, which are no steps.
     """
 
     steps: int

@@ -24,7 +24,7 @@ COARSEST_ORDER = 200
 for an M-matrix each correction enlarges the active set until it is right. Other levels get one."""
 
 LEAST_COARSENING = 0.8
-"""Coarsening that keeps a larger share of unknowns stops; a grid keeps half."""
+"""Coarsening stops if it keeps a larger share of the unknowns; a grid keeps half."""
 
 DAMPING = 0.8
 """Damping of Jacobi's method."""
@@ -44,9 +44,9 @@ def suitable(structure: Structure) -> bool:
 
 
 def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
-    """The state guessed from coarser problems; `counts` adds up factorisations on all levels."""
+    """The state guessed from coarser problems."""
     if not problem.standard:
-        # Shifted so that interpolation keeps zeros at bounds.
+        # Shift the problem so that interpolation keeps zeros at bounds.
         low, high = problem.lower, problem.upper
         at = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high, 0.0))
         problem = MixedLCP(problem.A, problem.w(at), low - at, high - at)
@@ -54,7 +54,7 @@ def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
 
 
 def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, int]:
-    """The state from the next coarser problem, and how often to correct it."""
+    """The state from the next coarser problem, and its number of corrections."""
     P, kept = (None, None) if problem.n <= COARSEST_ORDER else _interpolation(problem.A, d)
     if P is None or P.shape[1] > LEAST_COARSENING * problem.n:
         return _states(problem, problem.near_zero), COARSEST_ORDER

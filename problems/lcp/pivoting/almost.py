@@ -13,7 +13,7 @@ from problems.lcp.pivoting.compiled import available, kernel
 from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
 
 REBUILT_AFTER = 100
-"""Pivots, besides the order, until a table is computed afresh, as costly as they were."""
+"""Pivots, besides the order, that cost as much as a new table."""
 
 PATH_LEFT = -1e-7
 """A basic variable below this in an exact table, relative to the largest, means that rounding left the path."""
@@ -82,7 +82,7 @@ class AlmostComplementary:
         self._counted(done)
 
     def left(self, leaving: int) -> None:
-        """Go on with the complement of the variable that left, unless the path ends."""
+        """Go on with the complement of the variable that left."""
         self.pivots += 1
         if leaving in self.stop:
             self.ended = Ended.REACHED

@@ -119,7 +119,7 @@ class Dictionary:
         return leaving
 
     def last_zero(self, column: int) -> int | None:
-        """The last row to become nonnegative as the variable grows from minus infinity, or None."""
+        """The last row to become nonnegative as the variable rises from minus infinity, or None."""
         slopes, constants = self.entries(column), self.entries(-1)
         growing = np.flatnonzero(slopes > ZERO_PIVOT * np.abs(slopes).max(initial=0.0))
         if growing.size == 0:

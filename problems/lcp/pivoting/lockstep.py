@@ -55,7 +55,6 @@ def _pivot(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Pivot in place; return the variables that left."""
     each = np.arange(len(table))
     moved = table[each, row]
     pivot = moved[each, column]
@@ -74,7 +73,7 @@ def _pivot(
 def _first_zero(
     table: Array, basic: NDArray[np.intp], column: NDArray[np.intp], t: int
 ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """The rows that become zero first (ties: t), and whether any does."""
+    """The rows that become zero first, and whether any does."""
     each = np.arange(len(table))
     slopes, constants = -table[each, :, column], table[:, :, -1]
     falling = slopes > ZERO_PIVOT * np.abs(slopes).max(axis=1)[:, None]

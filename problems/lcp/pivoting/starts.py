@@ -1,4 +1,4 @@
-"""Starts of almost complementary paths: on a ray, at the solution for another q, in a game's corner."""
+"""Starts of almost complementary paths."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ ROUNDED_TO_ZERO = 1e-9
 """Smaller entries, relative to the largest, cause no pivot: linear programs only guide, and claims are checked."""
 
 PIVOTS_PER_NODE = 50
-"""Most pivots, times the order: of 600 nodes of order 20 to 60 none exceeded the order."""
+"""Most pivots, times the order: none of 600 nodes (n = 20 to 60) needed more than the order."""
 
 
 @frozen(eq=False)
@@ -72,13 +72,12 @@ class Branching:
         return self.nodes > 0 and bool(self._waiting) and not self._given_up
 
     def run(self, most: int) -> Exhaustion | None:
-        """Visit up to `most` nodes; None if undecided or a face was accepted."""
+        """Visit nodes, `most` in all; None if undecided or a face was accepted."""
         while self._waiting and not self._given_up:
             if self.nodes >= most:
                 return None
             self.nodes += 1
             if not self._look(self._waiting.pop()):
-                # An undecided node leaves no proof.
                 self._given_up = True
                 return self._found
         groups = Groups(tuple(self._groups))
@@ -147,7 +146,7 @@ class Branching:
             self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
 
     def _divided(self, node: Node, closed: Active) -> bool:
-        """Fix any open pair; decide a face in rationals."""
+        """Fix any open pair, or decide a face in rationals."""
         if not closed.all():
             self._put(node, int(closed.argmin()), x_first=True)
             return True

@@ -101,16 +101,16 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
 
 @frozen
 class Exhaustion:
-    """The result of trying complementary faces exactly until one holds a solution.
+    """The result of trying faces exactly until one holds a solution.
 
     Parameters
     ----------
     x : tuple of Fraction, or None
         An exact solution; None proves that none exists.
     faces : int
-        Number of faces tried.
+        Number tried.
     groups : Groups, optional
-        Excluded groups with their multipliers, which `Groups.holds` checks again.
+        Excluded groups with multipliers; `Groups.holds` checks them again.
     """
 
     x: tuple[Fraction, ...] | None
@@ -159,7 +159,7 @@ def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
 
 
 def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
-    """The first index changes fastest; a fixed unknown is at its lower bound."""
+    """Every state, the first index changing fastest."""
     choices = []
     for low, high in zip(problem.lower[::-1], problem.upper[::-1]):
         inside = () if low == high else (0,)
@@ -168,14 +168,14 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The data as integers over one scale; ValueError for too many faces."""
+    """The data as integers over one scale."""
     if not decidable(problem):
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     return whole_numbers(problem)
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
-    """The point in the problem's units (`wide`: faces with more solutions)."""
+    """The point in the problem's units; `wide`: faces with more solutions."""
     support = sum(1 << i for i, v in enumerate(point.x) if v)
     outside = sum(1 << i for i, v in enumerate(point.w) if v)
     faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]

@@ -50,7 +50,6 @@ class ActiveSets:
         return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
 
     def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
-        """Yield a sentence and whether its guess led to a solution."""
         search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)

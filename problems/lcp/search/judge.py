@@ -1,4 +1,4 @@
-"""The one place that decides what a search may claim."""
+"""The one place that decides outcomes."""
 
 from __future__ import annotations
 
@@ -25,10 +25,7 @@ from problems.lcp.search.search import Candidate, Search
 
 
 def answer(search: Search, message: str) -> Solution:
-    """The answer, from all that the search found.
-
-    `message`: says what was done; the sentences of outcome and proof precede it.
-    """
+    """The answer, from all that the search found; `message` says what was done."""
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
     rest = (
@@ -65,7 +62,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
 
 
 def exactly(search: Search, found: Solution) -> Solution:
-    """Try all faces of a small problem after SOLVED_TO_PRECISION: another one may hold an exact solution."""
+    """Another face of a small problem may hold an exact solution: try all."""
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
     search.ends = []
@@ -88,7 +85,7 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
 
 
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer in the given units; scaling is exact, and judgements do not depend on units."""
+    """The answer in the given units; scaling is exact."""
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
@@ -162,7 +159,7 @@ def of_program(program: Program, found: Solution) -> Solution:
 
 
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
-    """The answer by exact arithmetic alone, if entries are too far apart for floats."""
+    """The answer by exact arithmetic alone."""
     began = time.perf_counter()
     decided = exhaust(problem)
     outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
@@ -174,13 +171,13 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
 
 
 def _rounded(found: Solution, tolerance: float) -> bool:
-    """Whether some row of a solved program misses the tolerance relative to its own terms."""
+    """Whether a row of a solved program misses the tolerance relative to its own terms."""
     end = found.certificate
     return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the given problem, which may be infinite or zero beyond floats."""
+    """The answer at a point of the given problem, infinite or zero beyond floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (

@@ -1,4 +1,4 @@
-"""`solve_many`: many small LCPs, pivoted and certified together, the rest one by one."""
+"""`solve_many`: many small LCPs together."""
 
 from __future__ import annotations
 
@@ -122,7 +122,6 @@ def solve_many(
 
 
 def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
-    """A of shape (k, n, n), q of shape (k, n)."""
     constants, matrices = real_array("q", q), real_array("A", A)
     if constants.ndim != 2:
         raise ValueError(f"q: expected an array of shape (k, n), found shape {constants.shape}")

@@ -1,4 +1,4 @@
-"""Paths with different numbers of unknowns, or traced elsewhere, for one archive."""
+"""Paths of several homotopies in one archive."""
 
 from __future__ import annotations
 

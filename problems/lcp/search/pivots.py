@@ -45,7 +45,7 @@ def most_pivots(n: int, per_order: float = 10.0) -> int:
 
 
 def pivotable(search: Search) -> bool:
-    """Whether the problem is an LCP with a bearable table, and the finish is on."""
+    """Whether the problem is an LCP whose table is small enough, with the finish on."""
     return search.problem.standard and search.problem.n <= LARGEST_TABLE and search.finish is not None
 
 
@@ -76,7 +76,7 @@ class Pivots:
         return ""
 
     def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:
-        """Paths from random covering vectors if a program may be indefinite; last the path from e."""
+        """Paths from random covering vectors for programs, last the path from e."""
         most, unit = most_pivots(problem.n, work), unit_of(problem)
         bounds = constraints(problem)
         if bounds.any():

@@ -117,7 +117,7 @@ class Sets:
 
 
 def reflectable(search: Search) -> bool:
-    """Whether projections are affordable and A is not semidefinite, where pivots decide."""
+    """Whether projections are affordable and A is not semidefinite."""
     return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
 
 
@@ -129,7 +129,7 @@ class Reflections:
     _runs: Iterator[tuple[int, list[State]]] | None = None
 
     def run(self, work: float) -> str:
-        """Run up to `work` rounds, at least one; fewer for large n or small budgets."""
+        """Run up to `work` rounds, at least one; fewer if n is large."""
         search, n = self.search, self.search.problem.n
         if self._runs is None:
             sets = Sets.of(search.problem)

@@ -1,4 +1,4 @@
-"""The state of a search: wishes, budget, findings."""
+"""The state that all methods share."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Candidate:
 
 @define(eq=False, slots=False)
 class Search:
-    """The state that all methods share.
+    """The state of a search.
 
     `finish`: None if switched off. `traced`: cost of the paths. `ends`: points reached. `proof`: of infeasibility.
     `tried`: restarts begun.
@@ -156,7 +156,7 @@ class Search:
         return True
 
     def best(self) -> Candidate | None:
-        """The best candidate: confirmed, to precision, nearly solved, stationary, or of least residual."""
+        """The best candidate: confirmed, to precision, nearly solved, stationary, least residual."""
         nearest = None if self.finish is None else self.finish.nearest
         ends = self.ends if nearest is None else [*self.ends, Candidate(nearest)]
         if len(ends) < 2:

@@ -1,4 +1,4 @@
-"""`Solver`: one A and many q, as in time stepping; each q begins where the last one ended."""
+"""`Solver`: one A and many q, as in time stepping."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class Solver:
         return found
 
     def _pivoted(self, search: Search) -> bool:
-        """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path."""
+        """Follow LCP(q + t (q before - q), A) from t = 1, else Lemke's path."""
         problem = search.problem
         assert isinstance(problem, LCP)
         if problem.n > LARGEST_TABLE:
@@ -138,7 +138,6 @@ class Solver:
         return False
 
     def _learn(self, problem: LCP) -> None:
-        """Scale A where the first q is about 1."""
         self._first, scaled = problem, units_of_its_own(problem, roughly=True)
         self._scaled = scaled if scaled is not None and scaled.exact else None
         self._structure = Structure(problem if self._scaled is None else self._scaled.problem)

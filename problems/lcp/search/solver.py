@@ -48,7 +48,7 @@ OWNED = ("target", "direction", "start", "state", "observers")
 
 
 MOST_RESTARTS = 1000
-"""Ends a search without a budget; small problems spend about the default budget on them."""
+"""Ends a search without a budget."""
 
 
 @documented
@@ -83,8 +83,7 @@ def solve(
         A positive start; for "kkt" it may be infeasible, and at a feasible one z1 = z2 = e, the paper's start. "auto"
         accepts zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem of the same order: first the piecewise linear path from its data is followed (for
-        one A and many q: `Solver`).
+        Solution of a nearby problem of the same order: first the piecewise linear path from its data is followed.
     finish : bool
         Whether active sets are tried, before and along the path; without them `path` is the pure homotopy.
     path : bool
@@ -92,8 +91,8 @@ def solve(
     restarts : int, optional
         Paths from random starts after the first fails. Default: 0 for a named homotopy, 1000 for "auto".
     seed : int
-        Seeds random starts and reflections; restart k depends on `seed` and k alone. On one machine a call repeats its
-        answer; elsewhere rounding differs, and reflections may find another solution.
+        Seeds random starts and reflections; restart k depends on `seed` and k alone. A call repeats its answer on one
+        machine; elsewhere rounding differs.
     budget : continuation.Budget, optional
         For the whole search. Default: the factorisations of about a minute, from n alone (`default_budget`), so no
         clock decides; reflections add at most half a minute. ``Budget(seconds=60)`` counts CPU seconds.
@@ -107,8 +106,7 @@ def solve(
     executor : concurrent.futures.Executor, optional
         For the restarts.
     sparse : str
-        Factorisation of sparse active sets: "superlu", "cholmod" (needs cvxopt), or "auto", which suits the matrix. The
-        message names it.
+        Factorisation of sparse active sets: "superlu", "cholmod" (needs cvxopt), or "auto". The message names it.
     {parts}
 
     Returns
@@ -205,7 +203,7 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 def _check_arguments(
     tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
-    """Refuse at once what would fail late, or, without a path, never."""
+    """Refuse at once what would fail late or never."""
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
@@ -254,7 +252,6 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    """Say how the search went."""
     parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:

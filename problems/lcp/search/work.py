@@ -17,9 +17,9 @@ LEAST_WORK = 100
 def default_budget(problem: MixedLCP) -> Budget:
     """Factorisations, and steps, of about one minute; at least `LEAST_WORK`.
 
-    CPU milliseconds per factorisation, one thread. Dense, n = 10, 50, 100, 200, 300, 500, 1000: 0.33, 0.46, 0.71, 2.9,
-    5.4, 17, 80, near 0.35 (1 + n^2 / 5000). Sparse, near 0.35 (1 + n / 50): tridiagonal 6.3 (n = 1000), 17 (10,000);
-    grid 6.4 (900), 180 (10,000); random 38 (1000).
+    CPU milliseconds per factorisation, one thread: dense 0.33 (n = 10), 0.46 (50), 0.71 (100), 2.9 (200), 5.4 (300), 17
+    (500), 80 (1000), near 0.35 (1 + n^2 / 5000); sparse 6.3 to 180 (n = 900 to 10,000), within a factor of 5 of 0.35 (1
+    + n / 50).
     """
     size = problem.n / 50.0 if problem.sparse else problem.n**2 / 5000.0
     return _budget(max(round(FACTORIZATIONS / (1.0 + size)), LEAST_WORK))
