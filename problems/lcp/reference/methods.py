@@ -68,7 +68,7 @@ def _dense(problem: LCP) -> Array:
 def lemke(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by Lemke's method with the covering vector of ones.
 
-    Of tied rows the lexicographically least leaves, so it ends at a solution or on a secondary ray. O(n^2) per pivot,
+    The lexicographically least of tied rows leaves, so it ends at a solution or on a secondary ray. O(n^2) per pivot,
     at most 50 n + 100 pivots.
 
     Parameters

@@ -1,7 +1,7 @@
 """Active sets: Newton's method on min(x, A x + q), from a guess of the set where x is positive.
 
-The guess comes from the caller, from coarser grids, or from q < 0. For semidefinite or symmetric A, rounds with A +
-shift I follow, for a program the augmented Lagrangian.
+The guess comes from the caller, from coarser problems of a grid, or from q < 0. For semidefinite or symmetric A, rounds
+with A + shift I follow, for a program the augmented Lagrangian.
 """
 
 from __future__ import annotations

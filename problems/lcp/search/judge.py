@@ -73,7 +73,7 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
     """The scaling for the search, or None.
 
     `roughly`: keep the units of an LCP with similar largest entries in all rows and columns, but for a common factor:
-    others cost as much as a solution.
+    to find others costs as much as a solution.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)

@@ -48,10 +48,10 @@ LOOSE = Tolerance(relative=5e-2)
 """Last increment of a restart: the finish is exact, and Newton's method about squares it."""
 
 AT_ONCE = 64
-"""Restarts handed over together: more than one machine has workers."""
+"""Restarts handed over together, more than the workers of one machine."""
 
 Patience = Callable[[Step], str]
-"""Maps a step to the reason to give up, or ""."""
+"""Maps a step to the reason to give up, empty for none."""
 
 
 SEARCH = Preset(
@@ -121,7 +121,7 @@ class Restart:
 
 
 def unending(step: Step, longest: float) -> str:
-    """The reason to give up so long a path, or ""."""
+    """The reason to give up so long a path, empty for none."""
     late = step.kind == Kind.REGULAR and step.index >= longest
     return f"it has not ended after {step.index} steps" if late else ""
 
