@@ -1,4 +1,4 @@
-"""The linear complementarity problem LCP(q, A): homotopies, a solver, certificates, matrix classes, references."""
+"""The LCP(q, A) and all that solves it."""
 
 from problems.hypothesis_hook import register
 from problems.lcp.classes import classify

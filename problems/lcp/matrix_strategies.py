@@ -1,4 +1,4 @@
-"""Hypothesis strategies for matrices of a class: constructed, not filtered, from integers, so that they shrink."""
+"""Hypothesis strategies for matrices of a class, from integers, so that they shrink."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Entries = st.SearchStrategy[int] | st.SearchStrategy[float] | None
 Draw = st.DrawFn
 
 ORDERS = st.integers(1, 4)
-"""The orders drawn when none is given."""
+"""Default orders."""
 
 MOST_MINORS = 8
-"""The largest order whose principal minors are all looked at, 2^n of them; larger matrices are dominant or definite."""
+"""Largest order with all 2^n principal minors computed."""
 
 _ENTRY = st.integers(-3, 3)
 POSITIVE = st.integers(1, 4)
@@ -28,7 +28,7 @@ _NONNEGATIVE = st.integers(0, 3)
 
 
 def orders_of(n: Order) -> st.SearchStrategy[int]:
-    """Orders, also where one number is given."""
+    """A strategy of orders."""
     return st.just(n) if isinstance(n, int) else n
 
 
@@ -42,7 +42,6 @@ def _add(*parts: Rows) -> Rows:
 
 
 def _gram(draw: Draw, n: int) -> Rows:
-    """B'B with B of any rank."""
     factor = [[draw(st.integers(-2, 2)) for _ in range(n)] for _ in range(draw(st.integers(0, n)))]
     return [[sum(row[i] * row[j] for row in factor) for j in range(n)] for i in range(n)]
 
@@ -57,13 +56,13 @@ def _diagonal(draw: Draw, n: int, entry: st.SearchStrategy[int]) -> Rows:
 
 
 def _scaled(draw: Draw, rows: Rows) -> Rows:
-    """D A E with positive diagonal D and E, which keeps minor signs and sufficiency."""
+    """D A E with positive diagonals: keeps minor signs and sufficiency."""
     left, right = ([draw(st.integers(1, 3)) for _ in rows] for _ in range(2))
     return [[d * e * v for e, v in zip(right, row, strict=True)] for d, row in zip(left, rows, strict=True)]
 
 
 def _signed(draw: Draw, rows: Rows) -> Rows:
-    """S A S with a signature S, which keeps every principal minor."""
+    """S A S with signs S: keeps principal minors."""
     signs = [draw(st.sampled_from((1, -1))) for _ in rows]
     return [[s * t * v for t, v in zip(signs, row, strict=True)] for s, row in zip(signs, rows, strict=True)]
 
@@ -78,7 +77,7 @@ def _z(draw: Draw, n: int) -> Rows:
 
 
 def _k(draw: Draw, n: int) -> Rows:
-    """Z with positive row sums, columns scaled: Z with A s > 0 for an s > 0, which is K."""
+    """Z with A s > 0 for an s > 0, so K."""
     rows = [[-draw(st.integers(0, 2)) if i != j else 0 for j in range(n)] for i in range(n)]
     for i, row in enumerate(rows):
         row[i] = draw(POSITIVE) - sum(row)
@@ -86,10 +85,10 @@ def _k(draw: Draw, n: int) -> Rows:
 
 
 def _bordered(draw: Draw, n: int, last: Callable[[Draw, list[int], list[int]], int | None]) -> Rows:
-    """Grow a matrix by one row and column at a time; `last` draws the new diagonal entry from what the minors allow.
+    """Add rows and columns; `last` draws the diagonal entry that the minors allow.
 
-    It sees, for every index set of the old matrix, the old minor and the bordered minor with diagonal entry zero: the
-    new minor is entry * old + bordered. Where it finds no entry, the new column is set to zero, so that bordered = 0.
+    Per index set `last` gets the old and the bordered minor at entry zero; the new minor is entry * old + bordered. If
+    no entry fits, the new column is zero.
     """
     rows: Rows = []
     for k in range(n):
@@ -110,7 +109,7 @@ def _affine_minors(rows: Rows, row: Sequence[int], column: Sequence[int]) -> tup
 
 
 def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
-    """Strictly diagonally dominant: every principal submatrix is regular, and with a positive diagonal it is P."""
+    """Diagonally dominant: principal submatrices are regular; P if the diagonal is positive."""
     rows = square(draw, n)
     for i, row in enumerate(rows):
         row[i] = sum(abs(value) for j, value in enumerate(row) if j != i) + draw(POSITIVE)
@@ -119,7 +118,7 @@ def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
 
 
 def _p(draw: Draw, n: int) -> Rows:
-    """P, with any off-diagonal entries in range: the new diagonal entry exceeds -bordered / old for each index set."""
+    """Each diagonal entry exceeds -bordered / old."""
     if n > MOST_MINORS:
         dominant = draw(st.booleans())
         return _dominant(draw, n, False) if dominant else _add(_psd(draw, n), _diagonal(draw, n, POSITIVE))
@@ -131,7 +130,7 @@ def _p(draw: Draw, n: int) -> Rows:
 
 
 def _p0(draw: Draw, n: int) -> Rows:
-    """P0: as for P, with equality allowed, and a border that no diagonal entry can mend replaced."""
+    """Like P, with equality; if no entry fits, the column is replaced."""
     if n > MOST_MINORS:
         return _psd(draw, n)
 
@@ -145,7 +144,7 @@ def _p0(draw: Draw, n: int) -> Rows:
 
 
 def _nondegenerate(draw: Draw, n: int) -> Rows:
-    """Nondegenerate, with any off-diagonal entries in range: the new diagonal entry avoids each -bordered / old."""
+    """Each diagonal entry avoids -bordered / old."""
     if n > MOST_MINORS:
         return _dominant(draw, n, True)
 
@@ -158,7 +157,7 @@ def _nondegenerate(draw: Draw, n: int) -> Rows:
 
 
 def _n(draw: Draw, n: int) -> Rows:
-    """K - u v' with u_i v_i > K_ii, with signs and scales: det = det K (1 - v' K^-1 u) < 0 on every index set."""
+    """K - u v' with u_i v_i > K_ii: det = det K (1 - v' K^-1 u) < 0 on every index set."""
     rows = _k(draw, n)
     u, v = [draw(st.integers(1, 2)) for _ in rows], [draw(st.integers(0, 2)) for _ in rows]
     weights = [extra + rows[i][i] // u[i] + 1 for i, extra in enumerate(v)]
@@ -167,7 +166,7 @@ def _n(draw: Draw, n: int) -> Rows:
 
 
 def _row_sufficient(draw: Draw, n: int) -> Rows:
-    """PSD scaled from both sides (sufficient), P, or P with zero rows below it (row but not column sufficient)."""
+    """Sufficient (scaled PSD, P), or P above zero rows (not column sufficient)."""
     kind = draw(st.sampled_from(("psd", "p", "zero rows")))
     if kind == "psd":
         return _scaled(draw, _psd(draw, n))
@@ -179,7 +178,7 @@ def _row_sufficient(draw: Draw, n: int) -> Rows:
 
 
 def _copositive(draw: Draw, n: int) -> Rows:
-    """PSD plus nonnegative plus skew, which is every copositive matrix for n <= 4 (Diananda 1962)."""
+    """PSD + nonnegative + skew: all copositive matrices for n <= 4 (Diananda 1962)."""
     return _add(_psd(draw, n), square(draw, n, _NONNEGATIVE))
 
 
@@ -189,7 +188,7 @@ _BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {
 }  # fmt: skip
 
 CLASSES: tuple[str, ...] = tuple(_BUILDERS)
-"""The class names that `matrices` knows."""
+"""Class names for `matrices`."""
 
 
 @st.composite
@@ -203,8 +202,7 @@ def _matrices(draw: Draw, cls: str, n: Order, entries: Entries, shrinks: bool) -
             A = np.where(np.eye(order, dtype=bool), A, -np.abs(A))
     if not shrinks:
         return A
-    # Principal submatrices are of the class too. What is drawn last is what shrinks first: a failure that needs two
-    # rows is found with two rows.
+    # Principal submatrices stay in the class; the last draw shrinks first.
     kept = [i for i in range(order) if draw(st.integers(0, 7))] or [0]
     return A[np.ix_(kept, kept)]
 
@@ -217,18 +215,17 @@ def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st
     cls : str
         One of `CLASSES`.
     n : int or strategy of int
-        The order, 1 to 4 by default; up to 30 in well under a second.
+        The order, by default 1 to 4; up to 30 in well under a second.
     entries : strategy of numbers, optional
-        Of the entries, floats as well, for the classes "any" and "Z" (whose off-diagonal ones lose their sign).
+        Also floats; only for "any" and "Z" (which fixes off-diagonal signs).
 
     Raises
     ------
     ValueError
-        If the class is not one of them, or its entries cannot be chosen.
+        For an unknown class, or entries that cannot be chosen.
     """
     if cls not in _BUILDERS:
         raise ValueError(f"cls: expected one of {', '.join(CLASSES)}, found {cls!r}")
     if entries is not None and cls not in ("any", "Z"):
         raise ValueError(f"entries: expected none for the class {cls}, whose members are built from integers")
-    # A caller's own orders are what was asked for; the usual ones may become smaller.
     return _matrices(cls, n, entries, n is ORDERS)

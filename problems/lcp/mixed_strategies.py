@@ -1,4 +1,4 @@
-"""Hypothesis strategies for problems with bounds, built from integers so that they shrink: see `strategies`."""
+"""Hypothesis strategies for problems with bounds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from problems.lcp.data.program import Program, from_qp
 from problems.lcp.strategies import ORDERS, Draw, Order, matrices
 
 KINDS = ("lower", "upper", "box", "free", "fixed")
-"""Of the bounds of one unknown."""
+"""Kinds of bounds."""
 
 _END = st.integers(-3, 3)
 _WIDTH = st.integers(1, 4)
@@ -19,7 +19,7 @@ _WIDTH = st.integers(1, 4)
 
 @st.composite
 def bounds(draw: Draw, n: int, kinds: tuple[str, ...] = KINDS) -> tuple[Array, Array]:
-    """Integer bounds of n unknowns, each of a kind of its own: (lower, upper).
+    """Integer bounds (lower, upper) of n unknowns, each of its own kind.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def bounds(draw: Draw, n: int, kinds: tuple[str, ...] = KINDS) -> tuple[Array, A
 
 @st.composite
 def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str, ...] = KINDS) -> MixedLCP:
-    """Problems with a matrix of the class, any integer q, and bounds of all kinds, with a solution or not.
+    """Problems with a matrix of the class, any integer q and bounds, solvable or not.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
         Of `strategies.CLASSES`.
     n : int or strategy of int
     kinds : tuple of str
-        Of the bounds.
+        From `KINDS`.
     """
     A = draw(matrices(cls, n))
     q = np.array([draw(st.integers(-4, 4)) for _ in A], dtype=float)
@@ -60,7 +60,7 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
 def planted_mixed_lcps(
     draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str, ...] = KINDS
 ) -> tuple[MixedLCP, Array]:
-    """A problem with bounds and one of its solutions x, exactly (all are integers), degenerate or not."""
+    """A problem with bounds and an exact integer solution x."""
     A = draw(matrices(cls, n))
     lower, upper = draw(bounds(len(A), kinds))
     x, w = np.empty(len(A)), np.zeros(len(A))
@@ -77,7 +77,7 @@ def planted_mixed_lcps(
 
 @st.composite
 def programs(draw: Draw, n: Order = ORDERS, convex: bool = True) -> Program:
-    """Quadratic programs with integer data, a common point of all constraints, rows of all kinds and bounds.
+    """Feasible quadratic programs with integer data, rows and bounds of all kinds.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A picture of an answer to an LCP: how it was found, and the face on which it lies."""
+"""A picture of an answer."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from continuation.plot.along import plot_components
 from continuation.plot.drawing import COLOURS, TURN, Axes, require_matplotlib, tidy
 
 Solution = Any
-"""What `problems.lcp.solve` returns."""
+"""A `problems.lcp.Solution`."""
 
 
 def draw_solution(solution: Solution) -> Any:
-    """What was done in words, the path that led to x where one did, and beside it the face and the residual."""
+    """The message, the path to x if any, the face and the residual."""
     require_matplotlib()
     from matplotlib import pyplot
 
@@ -35,10 +35,9 @@ def draw_solution(solution: Solution) -> Any:
 
 
 def draw_face(solution: Solution, axes: Axes) -> Axes:
-    """For each i a bar upwards for x_i - lower_i or upper_i - x_i, whichever is less, and downwards for w_i.
+    """Bars for each i: up for the distance of x_i to its bounds, down for w_i, each relative to its largest.
 
-    Each kind over its largest. A solution has one bar at each i; two are a pair that is not complementary. A ring is
-    where both are zero up to the residual: a degenerate pair, or one that is not solved.
+    A solution has one bar at each i. A ring marks two values within the residual.
     """
     axes.set_title(f"{solution.outcome.name}: residual {solution.residual:.0e}", fontsize="small", loc="left")
     if solution.x is None or solution.w is None:
@@ -47,11 +46,10 @@ def draw_face(solution: Solution, axes: Axes) -> Axes:
         return tidy(axes)
     problem = solution.problem
     inside = np.minimum(solution.x - problem.lower, problem.upper - solution.x)
-    # An unknown without bounds is inside of them, however large.
+    # A free x is always inside.
     up, down = np.where(np.isfinite(inside), inside, np.abs(solution.x) + 1.0), np.abs(solution.w)
-    # What is below the residual is no more than the answer's own error.
+    # Values below the residual are errors.
     held, pushed = (np.abs(values) > np.maximum(solution.residual, 0.0) for values in (up, down))
-    # Half of the panel's width is bars.
     width = float(np.clip(110.0 / problem.n, 0.5, 9.0))
     for where, values, side, colour in ((held, up, 1.0, COLOURS[0]), (pushed, down, -1.0, COLOURS[1])):
         heights = side * values[where] / values.max(initial=np.finfo(float).tiny)

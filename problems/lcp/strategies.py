@@ -1,7 +1,4 @@
-"""Hypothesis strategies: matrices of a class and problems with a property, built from integers so that they shrink.
-
-Members are constructed, not filtered. No other module of the package needs Hypothesis.
-"""
+"""Hypothesis strategies for matrices of a class and problems with a property, from integers, so that they shrink."""
 
 from __future__ import annotations
 
@@ -38,7 +35,7 @@ def lcps(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.Sea
         One of `CLASSES`.
     n : int or strategy of int
     entries : strategy of numbers, optional
-        Of A, as for `matrices`, and of q.
+        For A, as in `matrices`, and q.
     """
     return _lcps(matrices(cls, n, entries), st.integers(-4, 4) if entries is None else entries)
 
@@ -50,14 +47,13 @@ def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrate
 
 
 LARGE = ("P", "PSD", "K", "any")
-"""The classes that `large_lcps` knows."""
+"""Classes for `large_lcps`."""
 
 
 def large_lcps(cls: str = "P", n: Order = 300) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A large problem and one of its solutions, to rounding: all entries from one seed, made in milliseconds.
+    """A large problem and a solution up to rounding, from one seed, in milliseconds.
 
-    What shrinks is the order and the seed. P: diagonally dominant; PSD: of rank n // 2, and a skew part; K: a dominant
-    tridiagonal matrix; any: normal entries.
+    P: diagonally dominant; PSD: of rank n // 2 plus a skew part; K: dominant, tridiagonal; any: normal entries.
 
     Parameters
     ----------
@@ -68,7 +64,7 @@ def large_lcps(cls: str = "P", n: Order = 300) -> st.SearchStrategy[tuple[LCP, A
     Raises
     ------
     ValueError
-        If the class is not one of them.
+        For an unknown class.
     """
     if cls not in LARGE:
         raise ValueError(f"cls: expected one of {', '.join(LARGE)}, found {cls!r}")
@@ -93,7 +89,7 @@ def _large(cls: str, n: int, seed: int) -> tuple[LCP, Array]:
 
 
 def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A problem and a strictly feasible start: x0 > 0 and A x0 + q > 0, exactly (all are integers).
+    """A problem and a strictly feasible integer start: x0 > 0 and A x0 + q > 0, exactly.
 
     Parameters
     ----------
@@ -112,21 +108,21 @@ def _feasible(draw: Draw, matrix: st.SearchStrategy[Array]) -> tuple[LCP, Array]
 
 
 def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A problem and one of its solutions x, exactly (all are integers).
+    """A problem and an exact integer solution x.
 
     Parameters
     ----------
     kind : str
-        "strict": the planted solution is strictly complementary. "degenerate": x_i = w_i = 0 for at least one i.
-        "many": the problem has at least two solutions; its matrix is of no class (`two_solution_lcps` gives both).
+        "strict": strictly complementary. "degenerate": x_i = w_i = 0 for some i. "many": at least two solutions, for a
+        matrix of no class (`two_solution_lcps` gives both).
     cls : str
-        The matrix, for the first two kinds.
+        For the first two kinds.
     n : int or strategy of int
 
     Raises
     ------
     ValueError
-        If the kind is none of these, or "many" is asked with a class.
+        For an unknown kind, or a class with "many".
     """
     if kind == "strict":
         return _planted(matrices(cls, n), degenerate=False)
@@ -150,7 +146,6 @@ def _planted(draw: Draw, matrix: st.SearchStrategy[Array], degenerate: bool) -> 
 
 
 def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
-    """X and w with exactly one of x_i, w_i positive."""
     values = [draw(POSITIVE) for _ in range(n)]
     basic = [draw(st.booleans()) for _ in range(n)]
     x = np.array([v if b else 0 for v, b in zip(values, basic, strict=True)], dtype=float)
@@ -159,9 +154,9 @@ def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
 
 @st.composite
 def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]:
-    """A problem and two distinct solutions x and y, exactly.
+    """A problem and two solutions x and y, exactly.
 
-    They differ by one in some coordinate j, so the column j of A can be chosen to give A (x - y) = w(x) - w(y).
+    They differ by one in a coordinate j: column j of A makes A (x - y) = w(x) - w(y).
     """
     order = draw(orders_of(n))
     x, w = _complementary_pair(draw, order)
@@ -176,9 +171,9 @@ def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]
 
 @st.composite
 def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
-    """A strictly feasible problem whose matrix is a power of two away from a singular one, with its start.
+    """A strictly feasible problem with a nearly singular matrix, and its start.
 
-    One row is an integer combination of the others (zero for n = 1), then one entry moves by 2^-k, k from 10 to 40.
+    One row combines the others, then one entry moves by 2^-k, k from 10 to 40.
     """
     order = draw(orders_of(n))
     A = np.array(square(draw, order), dtype=float)
@@ -190,9 +185,9 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
 
 
 def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A strictly feasible problem in units between 2^-26 and 2^26 (ratios beyond 1e15), with its start.
+    """A strictly feasible problem in units from 2^-26 to 2^26, with its start.
 
-    The scaling D A E, D q, x0 / E by powers of two is exact and keeps the solutions one to one.
+    Powers of two scale exactly and map solutions one to one.
 
     Parameters
     ----------

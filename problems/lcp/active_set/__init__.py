@@ -1,1 +1,1 @@
-"""Active sets: the equations of a face, the iteration over faces, and a first guess from coarser problems."""
+"""Active sets: faces, iteration, guesses."""

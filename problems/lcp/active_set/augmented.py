@@ -1,7 +1,7 @@
-"""The proximal augmented Lagrangian of a quadratic program: guesses of active sets where the pieces of w = 0 cycle.
+"""Active sets of a quadratic program from its proximal augmented Lagrangian, where the pieces of w = 0 cycle.
 
-With a penalty in place of the rows, and of the bounds, what is minimised is convex, differentiable and piecewise
-quadratic. Newton's method with an exact line search cannot cycle there, whatever is degenerate.
+With penalties for rows and bounds the function is convex and piecewise quadratic: Newton's method with exact line
+search cannot cycle.
 
 References
 ----------
@@ -31,14 +31,14 @@ the proximal term of a convex function, grow by a factor with each change of the
 than linearly. Of 45 programs of Maros and Meszaros as many are solved as by a penalty for each row."""
 
 STEPS_PER_CHANGE = 100
-"""For one change of the multipliers."""
+"""Most Newton steps per change."""
 
 
 @frozen(eq=False)
 class Saddle:
-    """A program read from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
+    """A program from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
 
-    `multiplier`: The index of the multiplier of each row. `activity`: That of its activity, -1 where it has none.
+    `multiplier`, `activity`: each row's indices (-1: none).
     """
 
     problem: MixedLCP
@@ -53,13 +53,13 @@ class Saddle:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> Saddle | None:
-        """The program whose variables are the first `problem.primal` unknowns, or None."""
+        """The program in the first `problem.primal` unknowns, or None."""
         n, A = problem.primal, problem.A
         pairs = ranges(problem)
         activity, down = np.full(problem.n, -1, dtype=np.intp), np.zeros(problem.n)
         rows = np.arange(n, problem.n)
         if pairs is not None:
-            # A variable of the program may look like one, as a slack that costs nothing does.
+            # A slack without cost only looks like an activity.
             own = (pairs.activity >= n) & (pairs.multiplier >= n)
             at, mu = pairs.activity[own], pairs.multiplier[own]
             activity[mu], down[mu] = at, pairs.down[own]
@@ -70,7 +70,7 @@ class Saddle:
         P, R = A[:n][:, :n], A[rows][:, :n]
         if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, rows]) or A[rows][:, rows].sum() != 0.0:
             return None
-        # mu >= 0 holds a row at its lower side; one without a sign holds it where it is.
+        # mu >= 0: the row is at its lower side; mu free: an equation.
         ends = problem.lower[rows], problem.upper[rows]
         positive, negative = (ends[0] == 0.0) & np.isinf(ends[1]), np.isinf(ends[0]) & (ends[1] == 0.0)
         free = np.isinf(ends[0]) & np.isinf(ends[1])
@@ -89,7 +89,7 @@ def _same(one: Matrix, other: Matrix) -> bool:
 
 @frozen(eq=False)
 class Penalised:
-    """The augmented Lagrangian for given multipliers and penalties, with a proximal term; rows first, then bounds."""
+    """The augmented Lagrangian; rows first, then bounds."""
 
     saddle: Saddle
     low: Array
@@ -102,13 +102,13 @@ class Penalised:
         return np.concatenate([self.saddle.R @ x + self.saddle.d, x])
 
     def pulled(self, y: Array) -> Array:
-        """R' of the first, and the rest: the gradient of the values times y."""
+        """The gradient of y'`values`."""
         m = self.saddle.multiplier.size
         back: Array = self.saddle.R.T @ y[:m] + y[m:]
         return back
 
     def hessian(self, active: NDArray[np.bool_]) -> Matrix:
-        """Of the piece on which these rows and bounds are violated."""
+        """The Hessian on the piece that violates these rows and bounds."""
         R, m = self.saddle.R, self.saddle.multiplier.size
         part, diagonal = R[np.flatnonzero(active[:m])], self.sigma * active[m:] + 1.0 / self.weight
         penalised = self.sigma * (part.T @ part)
@@ -117,14 +117,13 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """Where along a direction the derivative, which grows piecewise linearly from `slope`, is zero.
+        """The zero of the derivative along a direction; it is piecewise linear and begins at `slope`.
 
-        `t`, `dv`: The values plus multipliers over penalties, and how they change. `curvature`: Of what is not
-        penalised.
+        `t`, `dv`: values plus multipliers over penalties, and their change. `curvature`: of the unpenalised part.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
-        # Beyond the lower side where dv < 0, beyond the upper one where dv > 0: there the curvature grows.
+        # Each side that the step crosses outwards adds curvature.
         rate = self.sigma * np.concatenate([-dv * np.abs(dv), dv * np.abs(dv)])
         outside = (t < self.low) | (t > self.high)
         after = np.flatnonzero((enters > 0.0) & np.isfinite(enters) & (rate != 0.0))
@@ -139,10 +138,9 @@ class Penalised:
 def guesses(
     saddle: Saddle, below: float, x: Array, counts: Counts, factoring: Factoring
 ) -> Iterator[tuple[State, Array]]:
-    """Active sets, and points near which their solutions are sought, one after each change of the multipliers.
+    """Yield active sets and points near their solutions, one per change of multipliers.
 
-    Without end. `below`: More than what makes P positive semidefinite; 0 where it is. `x`: Where it begins.
-    `counts`: Where factorisations are added up. `factoring`: Of sparse matrices.
+    `below`: exceeds what makes P positive semidefinite; 0 if P is. `counts`: adds up factorisations.
     """
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])
@@ -166,7 +164,6 @@ def guesses(
 def _minimised(
     one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts, factoring: Factoring
 ) -> tuple[Array, Array] | None:
-    """The minimum by Newton's method, and the shifted values there; None where a factorisation fails."""
     saddle, pieces = one.saddle, b""
     factor = None
     for _ in range(STEPS_PER_CHANGE):
@@ -196,7 +193,6 @@ def _minimised(
 
 
 def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
-    """The piece that the violated rows and bounds say."""
     problem, n, m = saddle.problem, saddle.c.size, saddle.multiplier.size
     side = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
     state: State = np.full(problem.n, BETWEEN)
@@ -210,7 +206,6 @@ def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
 
 
 def _point(saddle: Saddle, x: Array, y: Array, nearest: Array) -> Array:
-    """All unknowns: x, multipliers, activities."""
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     point = np.zeros(problem.n)
     point[:n], point[saddle.multiplier] = x, -y[:m]

@@ -1,4 +1,4 @@
-"""The equations of one complementary face, x_i at a bound off a set and w_i = 0 on it, solved as A is stored."""
+"""One complementary face: x_i at a bound off a set, w_i = 0 on it."""
 
 from __future__ import annotations
 
@@ -28,33 +28,28 @@ Mask = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 
 SINGULAR_CONDITION = 1e-14
-"""Reciprocal condition below which a face counts as singular: its solution has about no digit left."""
+"""Reciprocal condition of a singular face: its solution has hardly a digit left."""
 
 DOUBTFUL_PIVOTS = 1e-6
-"""Ratio of the smallest to the largest pivot below which the condition is estimated."""
+"""Ratio of extreme pivots below which the condition is estimated."""
 
 SINGULAR_SHIFT = 1e-8
-"""Shift of the diagonal, relative to the norm, with which the equations of a singular face are solved.
-
-The root of the machine precision: a smaller shift loses more digits to rounding, a larger one needs more corrections.
-"""
+"""Relative diagonal shift of singular faces, the root of the machine precision: smaller ones lose digits, larger ones
+converge more slowly."""
 
 FACES_KEPT = 8
-"""Faces whose factors are kept for the next q: what moves to and fro goes through a few."""
+"""Faces kept for the next q: a motion to and fro visits few."""
 
 SHIFTED_CORRECTIONS = 4
-"""Corrections of the solution by a shifted matrix: each gains the ratio of the shift to the least singular value."""
+"""Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
 class Face:
-    """One face and the factorisation of its equations, ``A x + shift x + q = 0`` on the active set.
+    """One face and its factored equations, ``A x + shift x + q = 0`` on the active set.
 
-    `state`: Where x is. `active`: Where that is between the bounds, so that w_i = 0 is asked for. `inverse`: Right-hand
-    side on the active set to the solution there, of the equations or of shifted ones. `exact`: Whether one solve gives
-    the point: the equations themselves were factored, not shifted ones, or they are those of a proximal problem, of
-    which no more is asked than signs. `shift`: Of the diagonal; zero for a face of the problem itself. `q`: The
-    problem's own, or in its place that of a proximal problem.
+    `active`: where w_i = 0. `inverse`: solves the equations, or shifted ones. `exact`: one solve gives the point:
+    either no shift was added, or only signs count (a proximal problem). `shift`: zero on the problem's own face.
     """
 
     problem: MixedLCP
@@ -67,15 +62,11 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
-        """(x, w) on the face, w zero on the active set; None where nothing finite comes out.
-
-        Where the face holds many points this is, about, the one nearest to `near`.
-        """
+        """(x, w) on the face, about the nearest to `near` of many points; None if not finite."""
         standard = self.problem.standard
         x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
             x = np.where(self.active, near, x)
-        # One solve is all that exact factors need; from zero, w = q.
         for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
             x = self._corrected(x, self.q if self.exact and standard else self.w(x))
         w = self.w(x)
@@ -92,10 +83,7 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
-        """The point x of a face of the problem itself, corrected once with w in twice the working precision.
-
-        `w`: That w, where it is known.
-        """
+        """Correct x once, with w in twice the working precision."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
@@ -105,10 +93,7 @@ class Face:
 
 
 def exchanging(method: str = "auto") -> Factoring:
-    """Factorisations of faces, by SuperLU with its exchanges of rows where by nothing else.
-
-    `method`: As for `Factoring`.
-    """
+    """Factorisations of faces, by SuperLU with row exchanges where nothing else suits."""
     return Factoring(method, SuperLUMethod(weak_pivots=False))
 
 
@@ -116,16 +101,7 @@ def exchanging(method: str = "auto") -> Factoring:
 class Faces:
     """The faces of one problem.
 
-    Parameters
-    ----------
-    structure : Structure
-        Of the problem.
-    current : MixedLCP, optional
-        The problem, where it has another q than that of the structure.
-    kept : dict, optional
-        Where the last `FACES_KEPT` faces stay, by their active sets, for other q.
-    factoring : Factoring
-        Of sparse equations.
+    `current`: the problem, if its q is not the structure's. `kept`: holds the last `FACES_KEPT` faces for other q.
     """
 
     structure: Structure
@@ -141,17 +117,9 @@ class Faces:
     def face(
         self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False
     ) -> Face | None:
-        """The face of a state, factored; None where that is impossible.
+        """The factored face of a state, or None.
 
-        Parameters
-        ----------
-        state : State
-        shift : float
-            Added to the diagonal of A.
-        centre : Array, optional
-            Of a proximal problem, whose q is ``q - shift centre``.
-        regular : bool
-            Whether it is impossible where its equations are singular.
+        `centre`: of a proximal problem, whose q is q - shift centre. `regular`: None also for singular equations.
         """
         if self.kept is None or shift or centre is not None:
             return self._made(state, shift, centre, regular)
@@ -188,19 +156,19 @@ class Faces:
         return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
     def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
-        # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
+        # This indexing is quickest and gives LAPACK's order.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
             block[np.diag_indices(len(block))] += shift
-        # Of order 1 LU is a division, rounded once, where Cholesky's takes a root.
+        # LU of order 1 rounds only once.
         symmetric = len(block) > 1 and self.structure.symmetric
         if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
-        # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
+        # The test costs a factorisation of order n.
         definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
-        # A shift of a block of zeros would have to have units.
+        # A zero block has no scale for a shift.
         if regular or not (norm := _norm(block)):
             return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
@@ -209,7 +177,7 @@ class Faces:
     def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
         eye = sp.eye_array(block.shape[0])
         block = sp.csc_array(block + shift * eye if shift else block)
-        # On a structurally singular matrix SuperLU prints, and raises what it does not raise for a zero pivot.
+        # SuperLU prints messages on structurally singular matrices.
         full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
         factor = self.factoring.factor(block) if full else None
         if factor is not None:
@@ -218,7 +186,7 @@ class Faces:
         return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * norm * eye)) if norm else None, False
 
     def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
-        """In the band of the whole matrix, with unit rows off the face: no index is moved."""
+        """Solve in the whole band, with unit rows off the face: no index moves."""
         assert self.structure.band is not None
         kept = active.astype(float)
         factor = factor_band(self.structure.band.scaled(kept, kept, np.where(active, shift, 1.0)))
@@ -242,7 +210,7 @@ def _norm(block: Matrix) -> float:
 
 
 def _cholesky(block: Array) -> Factored | None:
-    """The factor; None where a pivot is no more than the rounding of the diagonal, so that it may as well be zero."""
+    """The factor; None if a pivot may be zero but for rounding."""
     factor = factor_cholesky(block)
     if factor is None:
         return None
@@ -251,11 +219,10 @@ def _cholesky(block: Array) -> Factored | None:
 
 
 def _lu(block: Array) -> Factored | None:
-    """The factors; None where the matrix is singular to working precision."""
     factor = factor_lu(block)
     if factor is None:
         return None
     pivots = np.abs(factor.lu.diagonal())
-    # The condition is estimated only where the pivots make it doubtful: at these orders it costs half a factorisation.
+    # An estimate costs half a factorisation.
     doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
     return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor

@@ -1,4 +1,4 @@
-"""The exact end: guess which x_i are positive, solve on that face, verify; or correct the guess a few times."""
+"""The exact end: guess which x_i are positive, solve on that face, verify."""
 
 from __future__ import annotations
 
@@ -16,38 +16,19 @@ from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, ce
 from problems.lcp.proof.verdict import confirmed
 
 PATIENCE = 5
-"""So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
-
-On 80 planted problems of five kinds (n = 20, 40) 2, 3, 5, 10, infinity: 5,210, 5,259, 5,338, 5,529, 5,989
-factorisations; on 24 monotone ones (n = 100, 200) 303, 291, 278, 273, 273.
-"""
+"""Corrections in a row without a new low of changed indices, then the sets cycle. On 80 planted problems 2, 3, 5, 10,
+infinity take 5,210, 5,259, 5,338, 5,529, 5,989 factorisations, but on 24 monotone ones 303, 291, 278, 273, 273."""
 
 MORE_MULTIPLIERS = 5
-"""So many changes without half of the residual, after which it is given up."""
+"""Changes of multipliers that may fail to halve the residual."""
 
 
 @define(eq=False)
 class Finish:
-    """Tries active sets of one problem, each once; shared by all of its paths.
+    """Tries active sets of one problem, each once, for all its paths.
 
-    Attributes
-    ----------
-    faces : Faces
-        Of the problem.
-    tolerance : float
-        What `Certificate.solves` is asked.
-    counts : Counts
-        Where factorisations are added up.
-    tried : Tried
-        The active sets so far.
-    certificate : Certificate or None
-        Of the last solution found.
-    nearest : Certificate or None
-        Of the point of least normwise residual that was judged and is no solution.
-    ended : Ended or None
-        Why the last iteration ended.
-    following : State or None
-        Where it would go on.
+    `tolerance`: for `Certificate.solves`. `certificate`: of the last solution. `nearest`: of the judged non-solution
+    with least normwise residual. `ended`, `following`: why the last iteration ended, and its next state.
     """
 
     faces: Faces
@@ -65,34 +46,16 @@ class Finish:
         return self.faces.problem
 
     def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
-        """The certified solution on the face of an active set, or on one of the corrected ones; None without one.
-
-        Parameters
-        ----------
-        state : State
-            The guess.
-        policy : Policy
-            How long it is corrected.
-        near : Array, optional
-            Where a face holds many points, the one nearest to this is taken; zero by default.
-        """
+        """The certified solution on an active set or its corrections, or None; `near` as in `iterate`."""
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
 
     def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
-        """The solution by the proximal method, where A + shift I is positive definite; None without one.
+        """The solution by the proximal method, with A + shift I positive definite, or None.
 
-        Each round solves the LCP of A + shift I, whose point x is unique, near the point of the round before, and then
-        tries the active set that comes out on A itself. Of a symmetric A the quadratic function falls in each round.
-        Where A is so nearly singular, or indefinite, that the active sets do not settle, the shift is doubled.
-
-        Parameters
-        ----------
-        state : State
-            The guess.
-        shift : float
-        rounds : int
+        Each round solves the LCP of A + shift I near the last point and tries its active set on A. For symmetric A the
+        quadratic function falls. If no active set settles, the shift doubles.
 
         References
         ----------
@@ -113,13 +76,7 @@ class Finish:
         return None
 
     def augmented(self, below: float) -> Array | None:
-        """A KKT point of a program by way of its augmented Lagrangian; None without one, and `nearest` is the best.
-
-        Parameters
-        ----------
-        below : float
-            More than what makes P positive semidefinite; 0 where it is.
-        """
+        """A KKT point of a program by `guesses` with this `below`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
@@ -136,17 +93,11 @@ class Finish:
         return None
 
     def take(self, x: Array) -> Array | None:
-        """The point itself, where it is a solution; else it may be the nearest.
-
-        Parameters
-        ----------
-        x : Array of shape (n,)
-        """
+        """The point x if it solves the problem, else None."""
         found = certified(self.problem, self.problem.clipped(x)) if np.isfinite(x).all() else None
         return found.x if found is not None and self._kept(found) else None
 
     def _kept(self, found: Certificate) -> bool:
-        """Whether it is that of a solution; the point is kept else too where none was nearer to one."""
         if confirmed(self.problem, found, self.tolerance):
             self.certificate = found
             return True
@@ -156,26 +107,18 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to the bounds and certified; corrected once in twice the precision.
-
-        Parameters
-        ----------
-        face : Face
-        x, w : Array of shape (n,)
-            Its point.
-        """
-        # A certificate is worth its cost where the signs are right to about the tolerance.
+        """The face's point, clipped, perhaps corrected once; whether it is a certified solution."""
         if not self._plausible(face.state, x, w):
             return x, w, False
         best = certified(self.problem, self.problem.clipped(x))
         if best.relative_residual > ROUND_OFF:
-            # It gains the digits that the condition of the face leaves (Higham, section 12.1).
+            # The correction gains the digits that the condition leaves (Higham, section 12.1).
             better = face.refined(x, best.w if np.array_equal(best.x, x) else None)
             if np.isfinite(better).all():
                 x, now = better, certified(self.problem, self.problem.clipped(better))
                 best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
-            # What is zero in truth, as where nothing touches, may be most of the terms of a row.
+            # Rounded zeros may dominate the terms of a row.
             if not self.problem.standard:
                 best = with_zeros(self.problem, best, self.tolerance)
             elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
@@ -185,7 +128,6 @@ class Finish:
         return x, self.problem.w(x), False
 
     def _plausible(self, state: State, x: Array, w: Array) -> bool:
-        """Whether the signs are right to about the tolerance, x relative to its size and w to that of its terms."""
         problem = self.problem
         inside = x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
         signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))
@@ -199,17 +141,14 @@ class Finish:
 
 
 def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:
-    """The best certificate with x at the bounds where the piece of a point says so, and what is so near to them.
-
-    What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
-    """
+    """The best certificate of a point, also with x at the bounds that its signs ask for."""
     settled = problem.settled(end.x, end.w)
     exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
     return min(end, *exact, key=lambda one: one.relative_residual)
 
 
 def below_zero(A: Matrix) -> float:
-    """How far below zero an eigenvalue of a symmetric matrix is at most: exactly, or of a sparse one by its rows."""
+    """A bound on how far eigenvalues of a symmetric A lie below zero; exact if dense."""
     if sp.issparse(A):
         return float((abs(A).sum(axis=1) - A.diagonal()).max())
     return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))

@@ -1,6 +1,6 @@
-"""The active-set iteration: the point of a face, the signs that are wrong there, the face with these changed.
+"""The active-set iteration: solve on a face, change the wrong signs, repeat.
 
-It is the primal-dual active-set method, which is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
+It is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
@@ -22,7 +22,7 @@ from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.data.problem import BETWEEN, UPPER, State
 
 Judge = Callable[[Face, Array, Array], tuple[Array, Array, bool]]
-"""(face, x, w) -> (x, w, whether that is the solution); the x and w may be better ones."""
+"""(face, x, w) -> (x, w, solved); may improve the point."""
 
 
 class Ended(Enum):
@@ -40,14 +40,8 @@ class Ended(Enum):
 class Policy:
     """How long the iteration goes on.
 
-    Attributes
-    ----------
-    steps : int
-        Corrections of the guess, so that steps + 1 faces are solved at most.
-    patience : int or None
-        Corrections in a row without a new low of the number of changed indices, after which it is given up.
-    singular : int, optional
-        So many faces with singular equations are allowed, whose points may lie anywhere on them, and are no steps.
+    `steps`: most corrections. `patience`: corrections in a row without a new low of changed indices. `singular`:
+    singular faces allowed, which are no steps.
     """
 
     steps: int
@@ -56,32 +50,26 @@ class Policy:
 
 
 AT_END = Policy(steps=2)
-"""Corrections of an active set that is right but for rounding: a method's last one."""
+"""The last corrections of a method, whose set is right but for rounding."""
 
 
 @define(eq=False)
 class Tried:
-    """The active sets that were tried on one problem: none is worth a second factorisation.
-
-    A singular face has many points, and the one taken is the nearest to where the iteration is: from elsewhere it is
-    tried again.
-
-    `last`: The last of them. `known`: Keys of all, of a singular face with the point it was tried at.
-    """
+    """The active sets tried on one problem: none is tried twice, a singular one only from another point."""
 
     last: State | None = None
     known: set[bytes] = field(factory=set)
 
 
 def key_of(state: State) -> bytes:
-    """A state in few bytes."""
+    """A short key of a state."""
     key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
     return key + np.packbits(above).tobytes() if above.any() else key
 
 
 @frozen(eq=False)
 class Iterated:
-    """Where an iteration ended: the reason, the state that is next, and the last point."""
+    """The end of an iteration."""
 
     ended: Ended
     state: State
@@ -99,25 +87,10 @@ def iterate(
     tried: Tried | None = None,
     counts: Counts | None = None,
 ) -> Iterated:
-    """Correct an active set until it is right, or no longer worth it.
+    """Correct an active set until it is right or given up.
 
-    Parameters
-    ----------
-    faces : Faces
-        Of the problem.
-    state : State
-        The guess.
-    policy : Policy
-    near : Array, optional
-        Where a face holds many points, the one nearest to this is taken; zero by default.
-    shift : float, optional
-        Solve the proximal problem LCP(q - shift near, A + shift I) instead.
-    judge : callable, optional
-        Ends the iteration at the solution, and may improve a point whose signs are to decide.
-    tried : Tried, optional
-        Sets that are not tried again; grows.
-    counts : Counts, optional
-        Where factorisations are added up.
+    `near`: selects the nearest of a face's many points. `shift`: solve LCP(q - shift near, A + shift I) instead.
+    `judge`: ends at the solution. `tried`: skips these sets; grows. `counts`: adds up factorisations.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x
@@ -156,5 +129,4 @@ def iterate(
 
 
 def _cycling(changes: list[int], patience: int) -> bool:
-    """Whether the last `patience` numbers are no lower than the lowest before them."""
     return len(changes) > patience and min(changes[-patience:]) >= min(changes[:-patience])

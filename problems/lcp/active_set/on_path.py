@@ -1,4 +1,4 @@
-"""When the finish is tried on a path: by its parameter, and by the products that the path makes small."""
+"""When the finish is tried on a path."""
 
 from __future__ import annotations
 
@@ -19,22 +19,13 @@ median, and the parameter has fallen by this factor, since the start and since t
 five kinds (n = 20, 40) 0.2, 0.4, 0.6 and 0.8 take 6,099, 5,567, 5,844 and 6,138 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""At each try on a path. Of 25 stacks and 25 arches of bodies, n = 40 to 496, within 3 s each, 21 and 25 are solved
-where singular faces are steps (16.1 and 4.0 s together), 23 and 25 where they are none (7.1 and 3.3 s)."""
+"""25 stacks and 25 arches (n = 40 to 496, 3 s each): 21 and 25 are solved if singular faces count as steps, 23 and 25
+if not."""
 
 
 @define(eq=False)
 class AlongPath:
-    """The finish as the `finish=` of a trace: tried at times, more often the nearer the end.
-
-    Attributes
-    ----------
-    finish : Finish
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-        Of the path.
-    next_lam : float
-        It is tried when the parameter has fallen to this.
-    """
+    """The `finish=` of a trace: tries at `next_lam` and ever more often near the end."""
 
     finish: Finish
     homotopy: Any
@@ -42,14 +33,14 @@ class AlongPath:
 
     @classmethod
     def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
-        """For one path of a homotopy of this package, whose first n unknowns are x."""
+        """Make it for a homotopy whose first n unknowns are x."""
         products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
         x, w = natural_units(homotopy.problem)
         natural = float(x * w / np.median(products)) if products.size else 1.0
         return cls(finish, homotopy, min(SPACING, natural) * float(homotopy.start()[1]))
 
     def __call__(self, y: Array, lam: float) -> Array | None:
-        """The end of the path at the certified solution; None to go on."""
+        """The path's end at the certified solution, or None."""
         if lam > self.next_lam:
             return None
         self.next_lam = SPACING * lam

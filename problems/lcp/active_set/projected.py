@@ -1,4 +1,4 @@
-"""A guess of the active set of a problem with bounds and a symmetric matrix, by a few projected gradients."""
+"""A guess of the active set by projected gradients."""
 
 from __future__ import annotations
 
@@ -7,19 +7,14 @@ import numpy as np
 from problems.lcp.data.problem import MixedLCP, State
 
 PROJECTED_STEPS = 12
-"""Each costs one product with A, a tenth of a correction of the active set at n = 300.
-
-Of random programs in a box (rank n/2, definite, condition 1e6) those corrections are 10, 6 and 12 from x = 0, 5, 5 and
-3 after five steps, 3, 3 and 2 after twelve, and hardly fewer after twenty; at n = 1000 11, 8 and 14 become 3, 5 and 3.
-"""
+"""Each costs a tenth of a correction at n = 300. Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12
+corrections without steps, 3, 3, 2 after twelve, hardly fewer after twenty."""
 
 
 def projected_state(problem: MixedLCP) -> State:
-    """The state after steps along the projected gradient of 1/2 x'A x + q'x, from the point nearest to zero.
+    """The state after projected gradient steps on 1/2 x'A x + q'x, for symmetric A with nonnegative diagonal.
 
-    In units of the diagonal of A, with the step lengths of Barzilai and Borwein, while the state changes.
-
-    `problem`: A is symmetric, and its diagonal not negative.
+    Step lengths are those of Barzilai and Borwein; a repeated state ends it.
 
     References
     ----------
@@ -45,5 +40,4 @@ def projected_state(problem: MixedLCP) -> State:
 
 
 def _ratio(size: float, curvature: float) -> float:
-    """A step to the minimum along a line; one in units of the diagonal where there is none."""
     return size / curvature if curvature > 0.0 and np.isfinite(size / curvature) else 1.0

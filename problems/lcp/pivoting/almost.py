@@ -1,4 +1,4 @@
-"""Almost complementary paths: from basis to basis, each pivot's leaving variable followed by its complement."""
+"""Almost complementary paths: the complement of each leaving variable enters."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from problems.lcp.pivoting.compiled import available, kernel
 from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
 
 REBUILT_AFTER = 100
-"""Pivots, and the order more, after which a table is computed afresh: that costs about as much as they did."""
+"""Pivots, besides the order, that cost as much as a new table."""
 
 PATH_LEFT = -1e-7
-"""A basic variable that is this negative once the table is exact, relative to the largest: the path was left."""
+"""A basic variable below this in an exact table, relative to the largest, means that rounding left the path."""
 
 
 class Ended(Enum):
@@ -30,22 +30,10 @@ class Ended(Enum):
 
 @define(eq=False)
 class AlmostComplementary:
-    """A path through bases with one variable of each pair, but of one both or none; w_i is variable i, x_i is n + i.
+    """A path through bases with one variable of each pair, but for one pair; w_i is variable i, x_i is n + i.
 
-    Attributes
-    ----------
-    n : int
-        Of the pairs.
-    dictionaries : tuple of Dictionary
-        Of variables that do not meet: one, or two for a game.
-    entering : int
-        The variable that grows next.
-    stop : set of int
-        The path ends where one of these leaves the basis.
-    pivots : int
-        So far.
-    ended : Ended or None
-        Why it has ended, if it has.
+    `dictionaries`: one, or two for a game. `entering`: the next variable to enter. `stop`: the path ends when one of
+    these leaves.
     """
 
     n: int
@@ -79,11 +67,10 @@ class AlmostComplementary:
 
     @property
     def compiled(self) -> bool:
-        """Whether numba's pivots are there, and quicker."""
+        """Whether numba is available and quicker."""
         return available() and all(one.compilable for one in self.dictionaries)
 
     def _steps(self, most: int) -> None:
-        """So many pivots, compiled."""
         both = self.dictionaries[0], self.dictionaries[-1]
         kept = (tuple(getattr(one, name) for one in both) for name in ("table", "basic", "nonbasic", "places"))
         done, entering, leaving = kernel()(
@@ -95,12 +82,7 @@ class AlmostComplementary:
         self._counted(done)
 
     def left(self, leaving: int) -> None:
-        """Go on from a variable that has left the basis: with its complement, unless the path ends with it.
-
-        Parameters
-        ----------
-        leaving : int
-        """
+        """Go on with the complement of the variable that left."""
         self.pivots += 1
         if leaving in self.stop:
             self.ended = Ended.REACHED
@@ -108,12 +90,7 @@ class AlmostComplementary:
             self.entering = leaving + self.n if leaving < self.n else leaving - self.n
 
     def run(self, most: int) -> Ended:
-        """To the end, or until so many pivots are used up.
-
-        Parameters
-        ----------
-        most : int
-        """
+        """Pivot to the end, or `most` times in all."""
         while self.ended is None:
             if self.pivots >= most:
                 return Ended.PIVOTS
@@ -139,7 +116,7 @@ class AlmostComplementary:
         return np.maximum(values[self.n : 2 * self.n], 0.0)
 
     def ray(self) -> Array:
-        """How x changes along the ray on which the path ended, shape (n,)."""
+        """The change of x along the ray at the end, shape (n,)."""
         direction = np.zeros(2 * self.n + 1)
         for one in self.dictionaries:
             column = one.column(self.entering)

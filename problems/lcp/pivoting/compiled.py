@@ -1,6 +1,6 @@
-"""The pivots of `almost.AlmostComplementary` as one loop over numbers, which numba compiles where a program imports it.
+"""The pivots of `almost.AlmostComplementary` as one loop, compiled if the program has imported numba.
 
-An import of numba and the first use of it take as long as 25,000 pivots of order 50 in numpy: none is made here.
+An import of numba takes as long as 25,000 numpy pivots of order 50: none is made here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def available() -> bool:
 
 @lru_cache(maxsize=1)
 def kernel() -> Callable[..., Any]:
-    """`pivots`, compiled once for all programs of this machine, if numba finds a place to keep it."""
+    """`pivots`, compiled once and, if possible, cached on disk."""
     numba = sys.modules["numba"]
     try:
         found: Callable[..., Any] = numba.njit(cache=True)(pivots)
@@ -45,13 +45,10 @@ def pivots(
     most: int,
     tiny: tuple[float, float],
 ) -> tuple[int, int, int]:
-    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (pivots, entering variable, last to leave).
+    """Pivot in place like `Dictionary`; return pivots, entering variable, last to leave (-1 on a ray).
 
-    -1 leaves where the entering variable grows along a ray.
-
-    `tables`, by columns, `basics`, `nonbasics`, `places`: Of two dictionaries, one of which may be empty. `firsts`: The
-    first of the variables that were basic at the beginning, m of them in a row. `stop`: The variables that end it.
-    `tiny`: `dictionary.ZERO_PIVOT` and `TIE`.
+    `tables` (by columns) and indices: of two dictionaries, one perhaps empty. `firsts`: the first of each one's m
+    consecutive variables basic at the start. `tiny`: `ZERO_PIVOT`, `TIE`.
     """
     zero, tie = tiny
     leaving = 2 * n + 1  # none
@@ -81,7 +78,7 @@ def pivots(
         if number > 1 and stops >= 0:
             row = stops
         else:
-            # The coefficients of eps, eps^2, ...: least in the first that differs.
+            # As in `Dictionary._least`.
             for power in range(m):
                 if number == 1:
                     break

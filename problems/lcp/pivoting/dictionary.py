@@ -1,6 +1,6 @@
-"""A dictionary: basic variables as affine functions of the others, pivoted in place, and its ratio tests.
+"""A dictionary: basic variables as affine functions of the others, with pivots and ratio tests.
 
-Ties are broken as if the constants of the first dictionary were raised by eps, eps^2, ..., which no path meets twice.
+Ties break as if the first constants were raised by eps, eps^2, ..., so that no basis repeats.
 """
 
 from __future__ import annotations
@@ -18,30 +18,26 @@ from continuation.arrays import Array, largest
 Indices = NDArray[np.intp]
 
 ZERO_PIVOT = 1e-10
-"""An entry below this, relative to its column's largest, counts as rounding: a pivot on it loses the path."""
+"""Smaller entries, relative to their column's largest, are rounding: a pivot there loses the path."""
 
 TIE = 1e-11
-"""How far basic variables may fall below zero, relative to the largest constant, if another row leaves than the first.
-
-Rows are tied if any of them may leave so (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5,
-1973). That the leaving row itself is so near to zero is not enough: where it falls slowly, others fall far."""
+"""How far basic variables may fall below zero, relative to the largest constant, if another row than the first leaves:
+rows that may leave so are tied (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5, 1973)."""
 
 DELAYED = 32
-"""Pivots of a large table that are put into it together, by one product of matrices;"""
+"""Pivots of a large table put into it by one product;"""
 
 LARGE = 100_000
-"""one of more entries is large. Microseconds a pivot of a game, one by one and 32 together: 31 and 29 (90,000 entries),
-53 and 40 (250,000), 280 and 86 (1e6); of traffic with 5.6e6 entries 2,700 and 460. 16 and 64 together take as long.
-Compiled, one by one, they win little beyond it: 30 us with 250,000 entries, 51 with 360,000 where these take 44."""
+"""a table with more entries is large. Microseconds per pivot of a game, singly and 32 together: 31 and 29 (90,000
+entries), 53 and 40 (250,000), 280 and 86 (1e6). Compiled single pivots take 51 at 360,000, delayed ones 44."""
 
 
 @define(eq=False)
 class Dictionary:
-    """``y_basic = table @ (y_nonbasic, 1)``, with the dictionary that it began as.
+    """``y_basic = table @ (y_nonbasic, 1)``, and the dictionary at the start.
 
-    `first`, of shape (m, k + 1): The table at the beginning, the constants last. `rows`, of shape (m,), `columns`, of
-    shape (k,): Which variables were basic, by consecutive numbers, and which were not. `basic`, `nonbasic`, of the same
-    shapes: The same now. `places`: Of each variable among the nonbasic ones, -1 where it is not.
+    `first`, (m, k + 1): the first table, constants last. `rows`, (m,), `columns`, (k,): its basic (consecutive) and
+    nonbasic variables; `basic`, `nonbasic`: now. `places`: indices among the nonbasic, or -1.
     """
 
     first: Array
@@ -65,7 +61,7 @@ class Dictionary:
         self.places[self.nonbasic] = np.arange(self.nonbasic.size)
 
     def copied(self) -> Dictionary:
-        """Another one that is the same now."""
+        """A copy."""
         other = copy(self)
         other._table, other._left, other._right = self.table.copy(order="F"), self._left.copy(), self._right.copy()
         other.basic, other.nonbasic, other.places = self.basic.copy(), self.nonbasic.copy(), self.places.copy()
@@ -73,12 +69,12 @@ class Dictionary:
 
     @property
     def compilable(self) -> bool:
-        """Whether numba's pivots are quicker; a single row or column it would not take for a table by columns."""
+        """Whether numba's pivots are quicker; it cannot tell the layout of one row or column."""
         return min(self._table.shape) > 1 and self._table.size <= LARGE
 
     @property
     def table(self) -> Array:
-        """With all pivots so far."""
+        """The table after all pivots."""
         self._put_in()
         return self._table
 
@@ -88,25 +84,17 @@ class Dictionary:
             dgemm(1.0, self._left[:, :w], self._right[:, :w], 1.0, self._table, trans_b=1, overwrite_c=1)
 
     def entries(self, column: int) -> Array:
-        """A column of the table; the constants are column -1.
-
-        Parameters
-        ----------
-        column : int
-        """
+        """A column of the table; -1: the constants."""
         w, entries = self._waiting, self._table[:, column]
         return entries + self._left[:, :w] @ self._right[column, :w] if w else entries
 
     def column(self, variable: int) -> int | None:
-        """Where a variable is among the nonbasic ones; None if it is not."""
+        """A variable's index among the nonbasic ones, or None."""
         place: int = self.places.item(variable) if variable < self.places.size else -1
         return place if place >= 0 else None
 
     def pivot(self, row: int, column: int) -> int:
-        """Exchange a basic variable for a nonbasic one; the variable that has left the basis.
-
-        `row`, `column`: Their places.
-        """
+        """Exchange a row's basic for a column's nonbasic variable; return the former."""
         table, left, right, w = self._table, self._left, self._right, self._waiting
         slopes = self.entries(column)
         pivot = slopes.item(row)
@@ -116,7 +104,7 @@ class Dictionary:
         slopes[row] = 0.0
         table[:, column] = 0.0
         if left.size:
-            # What waits counts no more in the row and the column that are replaced.
+            # Delayed pivots no longer change the replaced row and column.
             table[row], left[row, :w], right[column, :w] = moved, 0.0, 0.0
             left[:, w], right[:, w] = slopes, moved
             self._waiting += 1
@@ -131,10 +119,7 @@ class Dictionary:
         return leaving
 
     def last_zero(self, column: int) -> int | None:
-        """The row that is the last to become nonnegative as a variable grows from minus infinity: it covers the rest.
-
-        `column`: Of the variable. Returns int or None: None if no row grows with the variable.
-        """
+        """The last row to become nonnegative as the variable rises from minus infinity, or None."""
         slopes, constants = self.entries(column), self.entries(-1)
         growing = np.flatnonzero(slopes > ZERO_PIVOT * np.abs(slopes).max(initial=0.0))
         if growing.size == 0:
@@ -144,11 +129,7 @@ class Dictionary:
         return self._least(growing[zero], rates[zero])
 
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
-        """The row that is the first to become zero as a nonbasic variable grows from zero.
-
-        `column`: Of the variable. `preferred`: Basic variables that are taken where they are tied. Returns int or None:
-        None if no row falls: the variable grows along a ray.
-        """
+        """The first row to become zero as the variable grows from zero; None on a ray. `preferred` ones win ties."""
         slopes, constants = self.entries(column), self.entries(-1)
         falling = (slopes < -ZERO_PIVOT * largest(slopes)).nonzero()[0]
         if falling.size == 0:
@@ -166,17 +147,14 @@ class Dictionary:
         return self._least(tied, -rates[zero])
 
     def rebuilt(self) -> float:
-        """Compute the table afresh from the first one; the least constant, relative to the largest; NaN if singular.
-
-        Rounding of the pivots is gone then, and a basic variable that turns out to be negative shows.
-        """
+        """Recompute the table without rounding; return its least constant, relative to the largest, or NaN."""
         entered = np.isin(self.columns, self.basic)
         now, others = np.flatnonzero(entered), np.flatnonzero(np.append(~entered, True))
         left = np.isin(self.rows, self.nonbasic)
         first, k = self.first, now.size
         solved = np.zeros((0, others.size))
         if k:
-            # The rows that left, solved for the variables that entered.
+            # Solve the rows that left for the variables that entered.
             right = np.hstack([np.eye(k), -first[left][:, others]])
             _, _, solved, singular = dgesv(first[left][:, now], right)
             if singular or not np.isfinite(solved).all():
@@ -192,9 +170,8 @@ class Dictionary:
         return least
 
     def _least(self, tied: Indices, scale: Array) -> int:
-        """Of rows whose constants are tied the one that is least in eps, eps^2, ..., relative to a scale."""
-        # The coefficients of eps^k are those of the inverse basis: of a variable of the first one with their sign, and
-        # of a row whose basic variable is of the first one 1 at its power, where others have 0.
+        """The tied row that is least in eps, eps^2, ..., relative to a scale."""
+        # The inverse basis holds the coefficients of eps^k; a row's own power has 1.
         places = self.places[self.rows]
         powers = (places >= 0).nonzero()[0]
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)

@@ -1,4 +1,4 @@
-"""Lemke's method on many small LCPs at once: each pivot is a few operations on arrays of all of them."""
+"""Lemke's method on many small LCPs at once."""
 
 from __future__ import annotations
 
@@ -9,22 +9,14 @@ from continuation.arrays import Array
 from problems.lcp.pivoting.dictionary import ZERO_PIVOT
 
 MOST_PIVOTS = 3
-"""Times the order, and ten. Of 2,000 random P-matrices of order 5, 10 and 20 none needs more than n + 10 pivots, and of
-Gaussian ones none ends after 3 n + 10; what takes longer, as a cycle does for want of a lexicographic rule, holds up
-the others."""
+"""Most pivots, times the order, plus ten: 2,000 random P-matrices of order 5, 10, 20 need at most n + 10, and no
+Gaussian path ends after 3 n + 10. Cycles would delay the others."""
 
 
 def lemke_bases(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Where x is basic at the end of Lemke's path with covering vector e, and whether t has left the basis there.
+    """The x that are basic at the end of Lemke's path with covering vector e, and whether t left the basis.
 
-    The path of `pivoting.starts.covering`, but ties are broken by the least index, so that it may cycle.
-
-    `A` of shape (k, n, n). `q` of shape (k, n).
-
-    References
-    ----------
-    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
-    Stone, Algorithm 4.4.5.
+    Unlike `pivoting.starts.covering` the least index breaks ties, so paths may cycle. A (k, n, n), q (k, n).
     """
     k, n = q.shape
     t = 2 * n
@@ -63,7 +55,6 @@ def _pivot(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
 ) -> NDArray[np.intp]:
-    """Exchange in place a basic variable of each dictionary for a nonbasic one; the variables that have left."""
     each = np.arange(len(table))
     moved = table[each, row]
     pivot = moved[each, column]
@@ -82,7 +73,7 @@ def _pivot(
 def _first_zero(
     table: Array, basic: NDArray[np.intp], column: NDArray[np.intp], t: int
 ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """The rows that become zero first, that of t where it is tied, and where there is one at all."""
+    """The rows that become zero first, and whether any does."""
     each = np.arange(len(table))
     slopes, constants = -table[each, :, column], table[:, :, -1]
     falling = slopes > ZERO_PIVOT * np.abs(slopes).max(axis=1)[:, None]

@@ -1,4 +1,4 @@
-"""Where almost complementary paths of an LCP begin: on a ray, at the solution for another q, in a corner of a game."""
+"""Starts of almost complementary paths."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from problems.lcp.pivoting.dictionary import TIE, Dictionary
 
 
 def unit_of(problem: LCP) -> float:
-    """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts."""
+    """The power of two next to A's largest entry, by which tables are divided."""
     most = largest_entries(problem)[1]
     return math.ldexp(1.0, min(math.frexp(most)[1], 1023)) if most > 0.0 else 1.0
 
@@ -24,9 +24,8 @@ def unit_of(problem: LCP) -> float:
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
     """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
-    `problem`: A sparse matrix is made dense. `d`, of shape (n,): Positive where the path begins on the ray t ->
-    infinity. `active`, of shape (n,): Where x may be positive at t = 1, where it begins then. Returns
-    AlmostComplementary or None: None if the equations of the active set are singular, or its basis is no solution.
+    `d`, (n,): positive for a start at infinity. `active`, (n,): where x may be positive at t = 1; None if its face is
+    singular or holds no solution.
 
     References
     ----------
@@ -35,7 +34,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
     """
     n = problem.n
     t = 2 * n
-    # By columns, as it is pivoted: no other copy is made.
+    # By columns, as pivots need.
     first = np.empty((n, n + 2), order="F")
     first[:, :n] = problem.A.toarray() if problem.sparse else problem.A
     first[:, n], first[:, n + 1] = d, problem.q
@@ -46,7 +45,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
         dictionary.nonbasic = np.append(np.where(active, np.arange(n), np.arange(n, 2 * n)), t)
         if np.isnan(dictionary.rebuilt()):
             return None
-        # What is zero at t = 1 but for rounding is raised to zero: no other t has the active set.
+        # Constants below zero at t = 1 are rounding.
         short = -(dictionary.table[:, -1] + dictionary.table[:, dictionary.column(t)])
         if short.max() > -PATH_LEFT * largest(dictionary.table[:, -1]):
             return None
@@ -70,11 +69,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
 class Game:
     """A bimatrix game as an LCP: ``A = [[0, C], [D', 0]]`` with positive costs C and D, and q < 0.
 
-    Attributes
-    ----------
-    problem : LCP
-    actions : int
-        Of the first player.
+    `actions`: of the first player.
     """
 
     problem: LCP
@@ -82,12 +77,7 @@ class Game:
 
     @classmethod
     def of(cls, problem: LCP) -> Game | None:
-        """The game that a dense LCP is, or None.
-
-        Parameters
-        ----------
-        problem : LCP
-        """
+        """The game of a dense LCP, or None."""
         A, n = problem.A, problem.n
         if problem.sparse or n < 2 or A[0, 0] != 0.0 or not (problem.q < 0.0).all():
             return None
@@ -97,12 +87,7 @@ class Game:
         return cls(problem, m)
 
     def path(self, label: int) -> AlmostComplementary:
-        """The path of Lemke and Howson on which one label may be missing.
-
-        Parameters
-        ----------
-        label : int
-            An action, of either player: 0 to n - 1.
+        """The path on which one label (0 to n - 1) may be missing.
 
         References
         ----------
@@ -111,7 +96,7 @@ class Game:
         n, m = self.problem.n, self.actions
         players = (0, m), (m, n)
         own, other = players[::-1] if label >= m else players
-        # The first player's x makes the second one's w: one dictionary each.
+        # One player's x gives the other's w.
         tables = tuple(self._dictionary(mine, theirs) for mine, theirs in ((own, other), (other, own)))
         path = AlmostComplementary(n, tables, label + n, frozenset({label, label + n}))
         for table in tables:
@@ -123,7 +108,6 @@ class Game:
         return path
 
     def _dictionary(self, mine: tuple[int, int], theirs: tuple[int, int]) -> Dictionary:
-        """W of one player by x of the other, each from an index to another."""
         columns, rows = slice(*mine), slice(*theirs)
         first = np.empty((theirs[1] - theirs[0], mine[1] - mine[0] + 1), order="F")
         first[:, :-1], first[:, -1] = self.problem.A[rows, columns], self.problem.q[rows]

@@ -1,4 +1,4 @@
-"""Reference methods for comparison: Lemke's pivots, the modulus iteration, a damped min-Newton."""
+"""Reference methods: Lemke's pivots, modulus iteration, damped min-Newton."""
 
 from problems.lcp.reference.methods import ReferenceResult, lemke, min_newton, modulus
 

@@ -1,8 +1,8 @@
-"""Implicit enumeration of the complementary faces: linear programs exclude most of them in groups.
+"""Implicit enumeration of complementary faces: linear programs exclude most of them in groups.
 
-A node fixes some x_i and some w_i at zero. Where no point x >= 0, w >= 0 has these zeros, the row of the dictionary
-that says so is a multiplier, which is checked (`proof.groups`). Else there is a point that is least in c'x: a solution,
-if it is complementary, and if not one of its pairs with x_i > 0 and w_i > 0 is fixed either way.
+A node fixes some x_i and some w_i at zero. If no x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
+multiplier, which `proof.groups` checks. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is
+fixed either way.
 """
 
 from __future__ import annotations
@@ -25,16 +25,15 @@ from problems.lcp.reference.enumeration import Exhaustion
 Active = NDArray[np.bool_]
 
 ROUNDED_TO_ZERO = 1e-9
-"""An entry below this, and a value, relative to the largest, is no reason for a pivot: the linear programs only guide,
-and what they claim is checked."""
+"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide, and claims are checked."""
 
 PIVOTS_PER_NODE = 50
-"""Times the order: of 600 nodes of order 20 to 60 none took more than the order itself; without end is none."""
+"""Most pivots, times the order: none of 600 nodes (n = 20 to 60) needed more than the order."""
 
 
 @frozen(eq=False)
 class Node:
-    """What is fixed at zero, of x, w and the cost, which is last, and the dictionary that its parent left."""
+    """The fixed variables (x, w, the cost last), and the parent's dictionary."""
 
     fixed: Fixed
     dictionary: Dictionary
@@ -44,18 +43,8 @@ class Node:
 class Branching:
     """The tree of one problem.
 
-    Attributes
-    ----------
-    problem : LCP
-        Dense, and in units in which its entries are about 1.
-    accepts : callable
-        Whether the face with these w_i = 0 holds a solution as far as the caller is concerned.
-    nodes : int
-        How many have been looked at.
-    accepted : bool
-        Whether it did.
-    exact : tuple of Fraction, or None
-        A solution in rationals where none was accepted.
+    `problem`: dense, with entries of about 1. `accepts`: whether the caller accepts the face with these w_i = 0.
+    `accepted`: whether it did.
     """
 
     problem: LCP
@@ -71,7 +60,7 @@ class Branching:
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
         self._excluding = Excluding(problem)
-        # Any positive cost will do. No two should be alike, so that few pivots are tied.
+        # Different costs leave few pivots tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
         table = np.vstack([np.column_stack([problem.A, problem.q]), np.append(costs, 0.0)])
         root = Dictionary(table, np.arange(n, 2 * n + 1), np.arange(n))
@@ -79,37 +68,30 @@ class Branching:
 
     @property
     def open(self) -> bool:
-        """Whether nodes were looked at, and others wait."""
+        """Whether a started tree has nodes left."""
         return self.nodes > 0 and bool(self._waiting) and not self._given_up
 
     def run(self, most: int) -> Exhaustion | None:
-        """Go on until there is a solution or a proof; None where there is neither, or a face was accepted.
-
-        Parameters
-        ----------
-        most : int
-            Nodes.
-        """
+        """Visit nodes, `most` in all; None if undecided or a face was accepted."""
         while self._waiting and not self._given_up:
             if self.nodes >= most:
                 return None
             self.nodes += 1
             if not self._look(self._waiting.pop()):
-                # Of this node nothing is known, so that the others prove nothing.
                 self._given_up = True
                 return self._found
         groups = Groups(tuple(self._groups))
         return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
-        """Exclude a node or put its children into the waiting list; whether to go on."""
+        """Exclude a node or queue its children; whether to go on."""
         dictionary, fixed, n = node.dictionary, node.fixed, self.problem.n
         row = infeasible_row(dictionary, fixed)
         if row is None:
             return False
         if row >= 0:
             if not self._excluded(node, row):
-                # Rounding has led it off, or it is a matter of digits: its children show.
+                # Floats do not suffice: its children decide.
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
@@ -133,7 +115,6 @@ class Branching:
         return self._divided(node, node.fixed[:n] | node.fixed[n : 2 * n])
 
     def _excluded(self, node: Node, row: int) -> bool:
-        """Whether a row was proved to exclude the node."""
         dictionary, n = node.dictionary, self.problem.n
         sign = 1.0 if dictionary.entries(-1)[row] < 0.0 else -1.0
         group = self._excluding.group(node.fixed[: 2 * n], dictionary.basic[:n], row, sign)
@@ -142,7 +123,7 @@ class Branching:
         return group is not None
 
     def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
-        """Fix the pair whose two children differ most in what they cost at least; the cheaper child is next."""
+        """Fix the pair whose children's cost bounds differ most; the cheaper child is next."""
         dictionary, n = node.dictionary, self.problem.n
         places = np.empty(2 * n + 1, dtype=np.intp)
         places[dictionary.basic] = np.arange(n + 1)
@@ -151,7 +132,7 @@ class Branching:
         falling, costs = -table[rows, :n], np.maximum(table[n, :n], 0.0)
         possible = ~node.fixed[dictionary.nonbasic] & (falling > ROUNDED_TO_ZERO)
         least = np.where(possible, costs / np.where(possible, falling, 1.0), np.inf).min(axis=1)
-        # A child without a feasible point costs infinitely much.
+        # An infeasible child has infinite cost.
         of_x, of_w = np.nan_to_num(least * table[rows, n]).reshape(2, -1)
         k = int(np.abs(of_x - of_w).argmax())
         self._put(node, int(between[k]), bool(of_x[k] < of_w[k]))
@@ -165,7 +146,7 @@ class Branching:
             self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
 
     def _divided(self, node: Node, closed: Active) -> bool:
-        """Fix any pair that is open; a face alone is decided in rationals."""
+        """Fix any open pair, or decide a face in rationals."""
         if not closed.all():
             self._put(node, int(closed.argmin()), x_first=True)
             return True
@@ -177,10 +158,9 @@ class Branching:
 
 
 def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
-    """Make what is fixed zero and the rest nonnegative, by the dual simplex method; the row that forbids it.
+    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, None without an end.
 
-    -1 where there is such a point, None where there is no end. `dictionary`: Dually feasible, the cost last; is
-    changed.
+    `dictionary`: dually feasible, cost last; changes.
     """
     n = dictionary.nonbasic.size
     for _ in range(PIVOTS_PER_NODE * n):

@@ -1,4 +1,4 @@
-"""Every solution of a small problem, by trying all 2^n complementary faces (3^n pieces for boxes) exactly."""
+"""All solutions of a small problem, exactly, from its 2^n faces (3^n pieces for boxes)."""
 
 from __future__ import annotations
 
@@ -18,20 +18,18 @@ from problems.lcp.proof.groups import Groups
 from problems.lcp.proof.pieces import doubtful
 
 LARGEST_FACES = 14
-"""Largest order: 2^14 faces (1.2 s for integers of one digit); so many pieces where there are bounds."""
+"""Largest order: 2^14 faces, or pieces, take 1.2 s for one-digit integers."""
 
 PER_PIECE = 3
-"""Unknowns of a problem with bounds, as a multiple of the order of an LCP with as many faces: those without bounds make
-a piece larger, and no further ones."""
+"""Most unknowns with bounds, times the order of an LCP with as many faces: free ones enlarge pieces."""
 
 
 @frozen
 class ExactSolution:
-    """One solution, in rational numbers.
+    """One rational solution: x >= 0, w = A x + q >= 0, x_i w_i = 0, exactly.
 
-    `x`, `w`, of length n: In the problem's own units: x >= 0, w = A x + q >= 0, x_i w_i = 0, all exactly. `faces`: The
-    faces {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: Whether none of these faces holds another
-    solution; one that does holds a continuum.
+    `faces`: the faces {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: whether they hold no other
+    solution.
     """
 
     x: tuple[Fraction, ...]
@@ -41,7 +39,7 @@ class ExactSolution:
 
     @property
     def point(self) -> Array:
-        """X in floats, each correctly rounded, shape (n,)."""
+        """X in floats, correctly rounded, shape (n,)."""
         return np.array([float(v) for v in self.x])
 
     @property
@@ -52,22 +50,21 @@ class ExactSolution:
 
 @frozen
 class Enumeration:
-    """All that the faces hold; `solvable` is a proof either way.
+    """The distinct solutions on all faces; `solvable` is a proof either way.
 
-    `solutions`: Distinct, in the order of their first face. Every isolated solution is here; each face that holds a
-    continuum is represented by at least one of its points.
+    It holds all isolated ones, and a point of each continuum.
     """
 
     solutions: tuple[ExactSolution, ...]
 
     @property
     def solvable(self) -> bool:
-        """Whether the problem has a solution."""
+        """Whether a solution exists."""
         return bool(self.solutions)
 
     @property
     def complete(self) -> bool:
-        """Whether the solutions listed are all there are, so that their number is the number of solutions."""
+        """Whether the list holds all solutions."""
         return all(solution.isolated for solution in self.solutions)
 
     @property
@@ -77,12 +74,12 @@ class Enumeration:
 
 
 def solve_by_enumeration(problem: LCP) -> Enumeration:
-    """All solutions of LCP(q, A), by brute force over the 2^n faces; floats are taken as the rationals that they are.
+    """All solutions of LCP(q, A), by brute force over 2^n faces; floats are exact rationals.
 
     Parameters
     ----------
     problem : LCP
-        Dense or sparse, n at most `LARGEST_FACES`.
+        Of order `LARGEST_FACES` at most.
 
     Raises
     ------
@@ -91,8 +88,8 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
 
     Notes
     -----
-    Where the principal submatrix of a face is singular, the face is a linear feasibility problem, solved exactly by the
-    simplex method. There is no tolerance anywhere, and no shortcut in floats.
+    Faces with singular submatrices are linear feasibility problems, solved exactly by the simplex method. There is no
+    tolerance.
     """
     require_lcp(problem)
     entries, q, scale = _integers(problem)
@@ -104,16 +101,16 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
 
 @frozen
 class Exhaustion:
-    """What trying the complementary faces in exact arithmetic came to, until one held a solution.
+    """The result of trying faces exactly until one holds a solution.
 
     Parameters
     ----------
     x : tuple of Fraction, or None
-        A solution, exactly; None proves that there is none, every face having been tried.
+        An exact solution; None proves that none exists.
     faces : int
-        How many were tried.
+        Number tried.
     groups : Groups, optional
-        Where they were excluded in groups: these, with a multiplier each, which `Groups.holds` checks again.
+        Excluded groups with multipliers; `Groups.holds` checks them again.
     """
 
     x: tuple[Fraction, ...] | None
@@ -122,12 +119,12 @@ class Exhaustion:
 
     @property
     def solvable(self) -> bool:
-        """Whether the problem has a solution: a proof either way."""
+        """Whether a solution exists: a proof either way."""
         return self.x is not None
 
     @property
     def point(self) -> Array | None:
-        """X in floats, shape (n,): infinite or zero where it is beyond their range."""
+        """X in floats, shape (n,), infinite or zero beyond their range."""
         return None if self.x is None else np.array([_float(value) for value in self.x])
 
 
@@ -139,29 +136,14 @@ def _float(value: Fraction) -> float:
 
 
 def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
-    """Whether the problem has at most as many pieces as an LCP of that order has faces."""
+    """Whether an LCP of that order has as many faces."""
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 
 def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
-    """Whether the problem has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
+    """Decide exactly whether the problem has a solution; ValueError unless `decidable`.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
-    filtered : bool
-        Whether pieces that floats, with bounds on their rounding, prove to hold no solution are passed over; quicker by
-        the more the larger n is, and the outcome is the same.
-
-    Returns
-    -------
-    Exhaustion
-
-    Raises
-    ------
-    ValueError
-        If n is larger.
+    `filtered`: skip pieces that floats with error bounds exclude.
     """
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
@@ -177,7 +159,7 @@ def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
 
 
 def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
-    """Every state, the first index changing most often; a fixed one is at its lower bound."""
+    """Every state, the first index changing fastest."""
     choices = []
     for low, high in zip(problem.lower[::-1], problem.upper[::-1]):
         inside = () if low == high else (0,)
@@ -186,14 +168,14 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The entries of A and of q as integers over one scale; ValueError where the faces are too many."""
+    """The data as integers over one scale."""
     if not decidable(problem):
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     return whole_numbers(problem)
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
-    """The point in the units of the problem, with the faces that contain it (`wide`: those with more solutions)."""
+    """The point in the problem's units; `wide`: faces with more solutions."""
     support = sum(1 << i for i, v in enumerate(point.x) if v)
     outside = sum(1 << i for i, v in enumerate(point.w) if v)
     faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]

@@ -1,4 +1,4 @@
-"""Reference methods for comparison, each as published and on dense matrices: a sparse A is made dense."""
+"""Published reference methods, on dense matrices: a sparse A becomes dense."""
 
 from __future__ import annotations
 
@@ -13,31 +13,29 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 SOLVED_BELOW = 1e-8
-"""A method solved the problem if the natural residual of its x is at most this, relative to 1 + |q|_inf.
-
-Not relative to |x|: for a matrix that is not R0 a diverging iterate may have an arbitrarily small relative residual.
-"""
+"""Largest natural residual of a solution, relative to 1 + |q|_inf; relative to |x| diverging iterates could pass,
+unless A is R0."""
 
 MODULUS_ITERATIONS, MIN_NEWTON_ITERATIONS = 10_000, 300
-"""At most: where they arrive some hundred, and from zero some ten, are enough."""
+"""Most iterations: convergent runs take some hundred, from zero some ten."""
 
 
 @frozen(eq=False)
 class ReferenceResult:
-    """The outcome of a reference method, checked afresh on the data.
+    """The outcome of a reference method, checked on the data.
 
     Attributes
     ----------
     x, w : Array of shape (n,) or None
-        The last iterate and A x + q; None if the method ended without one (Lemke on a ray).
+        The last iterate and A x + q.
     solved : bool
-        Whether the natural residual of x is at most `SOLVED_BELOW` (1 + |q|_inf): computed, not claimed.
+        Whether the residual is at most `SOLVED_BELOW` (1 + |q|_inf).
     residual : float
         The natural residual, absolute; infinite without x.
     iterations, factorizations : int
-        Pivots or iterations, and matrices factored.
+        Pivots or iterations; matrices factored.
     message : str
-        How it ended, a sentence.
+        How it ended.
     """
 
     x: Array | None
@@ -55,7 +53,6 @@ def is_solved(problem: LCP, x: Array) -> bool:
 
 
 def _result(problem: LCP, x: Array | None, iterations: int, factorizations: int, failure: str) -> ReferenceResult:
-    """The result for a last iterate, solved or not as the residual says; `failure` is the sentence if not."""
     if x is None:
         return ReferenceResult(None, None, False, float("inf"), iterations, factorizations, failure)
     solved, residual = is_solved(problem, x), problem.natural_residual(x)
@@ -69,10 +66,10 @@ def _dense(problem: LCP) -> Array:
 
 
 def lemke(problem: LCP) -> ReferenceResult:
-    """Solve LCP(q, A) by Lemke's method alone, with the covering vector of ones: the pivots that `solve` tries too.
+    """Solve LCP(q, A) by Lemke's method with the covering vector of ones.
 
-    Among rows of equal ratio the lexicographically least row leaves, so that no basis comes back and the method ends:
-    at a solution, or on a secondary ray. Dense; O(n^2) a pivot, at most 50 n + 100 of them.
+    The lexicographically least of tied rows leaves, so it ends at a solution or on a secondary ray. O(n^2) per pivot,
+    at most 50 n + 100 pivots.
 
     Parameters
     ----------
@@ -100,8 +97,8 @@ def lemke(problem: LCP) -> ReferenceResult:
 def modulus(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by the modulus iteration (I + A) z_next = (I - A)|z| - q from z = 0.
 
-    A fixed point gives x = |z| + z >= 0 and w = |z| - z >= 0 with x_i w_i = 0. It converges for symmetric P matrices
-    and some others; elsewhere it may cycle or diverge, which is said.
+    A fixed point gives x = |z| + z and w = |z| - z. It converges for symmetric P and some other matrices; elsewhere it
+    may cycle or diverge.
 
     Parameters
     ----------
@@ -118,7 +115,7 @@ def modulus(problem: LCP) -> ReferenceResult:
     for iteration in range(1, MODULUS_ITERATIONS + 1):
         size = np.abs(z)
         z = dgetrs(factors, exchanged, size - problem.A @ size - problem.q)[0]
-        if not np.abs(z).max() <= 1e20:  # on its way to overflow, if it is a number
+        if not np.abs(z).max() <= 1e20:  # near overflow, or NaN
             return _result(problem, x, iteration, 1, f"Diverged after {iteration} iterations.")
         x = np.abs(z) + z
         if is_solved(problem, x):
@@ -127,26 +124,25 @@ def modulus(problem: LCP) -> ReferenceResult:
 
 
 def min_newton(problem: LCP) -> ReferenceResult:
-    """Solve LCP(q, A) by a damped min-Newton, the primal-dual active-set method with a line search.
+    """Solve LCP(q, A) from zero by damped min-Newton, the primal-dual active-set method with a line search.
 
-    The active set at x is {x_i > w_i}; the step moves to x with w = 0 there and x = 0 elsewhere. A singular
-    system is replaced by its least-squares solution. If no step reduces the merit, the full step is taken.
+    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular. If none reduces the merit, the
+    full step is taken.
 
     Parameters
     ----------
     problem : LCP
-        It is solved from zero, as the paper's examples 2 to 8 can be.
 
     References
     ----------
-    Pang, Newton's method for B-differentiable equations, Math. Oper. Res. 15, 1990; Hintermueller, Ito and
-    Kunisch, SIAM J. Optim. 13, 2003.
+    Pang, Newton's method for B-differentiable equations, Math. Oper. Res. 15, 1990; Hintermueller, Ito and Kunisch,
+    SIAM J. Optim. 13, 2003.
     """
     A, x = _dense(problem), np.zeros(problem.n)
     for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _solved_on(A, x > w, -np.minimum(x, w)))
-        # A point that passes is polished until it gets no better: with the right active set one step is exact.
+        # Polish a solution while it improves.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return _result(problem, x, iteration, iteration + 1, "")
         x = trial
@@ -155,7 +151,7 @@ def min_newton(problem: LCP) -> ReferenceResult:
 
 
 def _solved_on(A: Array, active: NDArray[np.bool_], right: Array) -> Array:
-    """Solve J d = right, row i of J being row i of A where active and of I elsewhere; least squares if singular."""
+    """Solve J d = right, with rows of A where active, else of I; least squares if singular."""
     J = np.where(active[:, None], A, np.eye(len(A)))
     try:
         return np.asarray(np.linalg.solve(J, right))
@@ -164,10 +160,7 @@ def _solved_on(A: Array, active: NDArray[np.bool_], right: Array) -> Array:
 
 
 def _line_search(problem: LCP, x: Array, step: Array) -> Array:
-    """The first of x + t step, t = 1, 1/2, ... 2^-33, that decreases the merit enough, else x + step.
-
-    Enough is Armijo's 1e-4 (Nocedal and Wright, 2006, p. 33), twice for a square; beyond 2^-33 rounding decides.
-    """
+    """The first x + t step, t = 1, 1/2, ... 2^-33, that meets Armijo's 1e-4, doubled for a square, else x + step."""
 
     def merit(point: Array) -> float:
         residual = np.minimum(point, problem.w(point))

@@ -1,1 +1,1 @@
-"""The search for a solution: the order of attempts, paths, restarts, and the outcome."""
+"""The search for a solution."""

@@ -1,8 +1,7 @@
-"""Active sets: Newton's method on min(x, A x + q), from a guess of where x is positive.
+"""Active sets: Newton's method on min(x, A x + q), from a guess of the set where x is positive.
 
-The guess is that of the caller, of coarser problems where A is that of a grid, else where q < 0. Where A may be
-singular or indefinite the method is applied to A + shift I, each round from the point of the one before; of a program
-it is applied to the augmented Lagrangian, whose pieces do not cycle.
+The guess comes from the caller, from coarser problems of a grid, or from q < 0. For semidefinite or symmetric A, rounds
+with A + shift I follow, for a program the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ DESCENDED = "Solved by descent of the quadratic function in the box: a point tha
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
-"""Corrections for a Z-matrix, of which n are enough: each makes the active set larger until it is right."""
+"""Most corrections for a Z-matrix; n are enough, since each enlarges the active set until it is right."""
 
 PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
 """Of the proximal method where A is semidefinite, and of descent in a box."""
@@ -36,12 +35,12 @@ PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
 
 @define(eq=False)
 class ActiveSets:
-    """The active sets of one problem, each tried once."""
+    """The active sets of one problem."""
 
     search: Search
 
     def run(self, work: float) -> str:
-        """Up to so many corrections of each guess; what settled the problem."""
+        """Correct each guess up to `work` times."""
         search, problem = self.search, self.search.problem
         if zero_solves(problem):
             search.accept(problem.near_zero)
@@ -51,7 +50,6 @@ class ActiveSets:
         return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
 
     def _attempts(self, finish: Finish, steps: int) -> Iterator[tuple[str, bool]]:
-        """What is said, and whether it has led to a solution, of one guess after another."""
         search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
@@ -63,9 +61,9 @@ class ActiveSets:
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
         first = first_state(search)
         yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
-        facts = search.facts  # costs what a small problem takes
+        facts = search.facts  # as costly as a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
-            return  # singular equations, as those of contact are: pivots are quicker
+            return  # singular, as in contact problems: pivots are quicker
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
@@ -78,7 +76,6 @@ class ActiveSets:
             yield AUGMENTED, self._augmented(finish)
 
     def _augmented(self, finish: Finish) -> bool:
-        """Whether the augmented Lagrangian of a program led to a solution, if only to working precision."""
         search, n = self.search, self.search.problem.primal
         below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
         found = search.found(finish.augmented(below))
@@ -91,11 +88,11 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state that the point nearest to zero asks for, or of a convex function one a few projected gradients on."""
+    """The state at the point nearest to zero; for a convex function after projected gradient steps."""
     problem = search.problem
     if not problem.standard:
         convex = search.facts.symmetric and not search.facts.negative_diagonal
         return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
-    # Of a sparse Z-matrix, a grid, zeros of q too, which else join one by one (Chandrasekaran's method).
+    # On a grid take q_i = 0 too: these else join one by one (Chandrasekaran's method).
     grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
     return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)

@@ -1,7 +1,7 @@
-"""Exclusion of faces: a tree whose nodes fix some x_i and some w_i at zero, each with a proof that excludes its faces.
+"""Exclusion of faces: each node of a tree fixes some x_i and some w_i at zero, and a proof excludes its faces.
 
-At the root nothing is fixed: what excludes it is a Farkas vector, that there is no feasible point. The leaves are the
-2^n faces alone, or the pieces of a problem with bounds, which floats with error bounds exclude, or exact arithmetic.
+A Farkas vector excludes the root if no point is feasible; floats with error bounds, or exact arithmetic, exclude the
+leaves.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.search import Search
 
 LARGEST_LEAVES = 5
-"""Up to this order floats exclude all faces together in 0.1 ms, less than pivots take; at n = 6 it is as much."""
+"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots; at n = 6 both take as long."""
 
 LARGEST_TREE = 40
-"""Feasible Gaussian problems take 5 to 150 nodes up to n = 20, 40 to 1,000 at 30 and 1,200 at 40, of 0.1 to 0.2 ms
-each. At n = 60, where 300 to 20,000 and more are needed, restarts solve in 0.6 s what takes 2 to 7 by them."""
+"""Largest order of the tree: feasible Gaussian problems take 5 to 150 nodes up to n = 20, 1,200 at 40, of 0.1 to 0.2 ms
+each; at n = 60 2 to 7 s, where restarts take 0.6 s."""
 
 LARGEST_PROOF = 30_000_000
-"""Order times number of entries up to which a linear program looks for a Farkas vector: two seconds, of a dense matrix
-of order 300, of a sparse one of order 1000 with seven entries a row, of a tridiagonal one of order 3000."""
+"""Largest order times entries for the linear program that seeks a Farkas vector: two seconds for a dense matrix of
+order 300."""
 
 TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 
 
 def groupable(search: Search) -> bool:
-    """Whether faces can be excluded in groups: of an LCP no entry of which was rounded."""
+    """Whether the tree applies: a small dense LCP that scaling did not round."""
     problem = search.problem
     if search.finish is None or not isinstance(problem, LCP) or problem.sparse or problem.n > LARGEST_TREE:
         return False
@@ -41,18 +41,18 @@ def groupable(search: Search) -> bool:
 
 
 def few_faces(search: Search) -> bool:
-    """Whether all faces are excluded together."""
+    """Whether all faces are tried together."""
     return search.problem.n <= LARGEST_LEAVES and groupable(search)
 
 
 @define(eq=False)
 class Leaves:
-    """All faces of a small problem, together."""
+    """All faces of a small problem."""
 
     search: Search
 
     def run(self, work: float) -> str:
-        """Up to so many that are in doubt are tried."""
+        """Try up to `work` faces that floats do not exclude."""
         n, plain = self.search.problem.n, self.search.problem
         every = all_faces(n)
         left = np.flatnonzero(doubtful(plain, every.astype(np.int8) - 1))
@@ -63,26 +63,26 @@ class Leaves:
 
 
 def decide(search: Search) -> bool:
-    """Try all faces in exact arithmetic; whether a solution was found that floats hold."""
+    """Try all faces exactly; return whether floats hold a solution."""
     return taken(search, exhaust(search.problem, filtered=True))
 
 
 def taken(search: Search, found: Exhaustion) -> bool:
-    """Take into account what trying all faces came to; whether that is a solution that floats hold."""
+    """Record an exhaustion; return whether floats hold its solution."""
     search.exhaustion = found
     return found.point is not None and bool(np.isfinite(found.point).all()) and search.accept(found.point)
 
 
 @define(eq=False)
 class Exclusion:
-    """The tree of one problem, which goes on where it was left."""
+    """The tree of one problem."""
 
     search: Search
     tree: Branching | None = field(default=None, init=False)
     sought: bool = field(default=False, init=False)
 
     def run(self, work: float) -> str:
-        """Up to so many nodes of the tree, its root by a linear program, its leaves; of no nodes the root alone."""
+        """Visit up to `work` nodes (0: the root alone), seek a Farkas vector, try all leaves of a small problem."""
         search = self.search
         if work and groupable(search) and self._branched(int(work)):
             assert self.tree is not None
@@ -98,7 +98,6 @@ class Exclusion:
         return TRIED
 
     def _branched(self, nodes: int) -> bool:
-        """Whether the tree settled the problem; a Farkas vector where its root alone did."""
         search, problem = self.search, self.search.problem
         if self.tree is None:
             assert isinstance(problem, LCP)

@@ -1,4 +1,4 @@
-"""From what a search found to what may be claimed: the one place where an outcome is decided."""
+"""The one place that decides outcomes."""
 
 from __future__ import annotations
 
@@ -25,14 +25,7 @@ from problems.lcp.search.search import Candidate, Search
 
 
 def answer(search: Search, message: str) -> Solution:
-    """What the search came to.
-
-    Parameters
-    ----------
-    search : Search
-    message : str
-        What was done; the outcome's own sentence, and that of the proof, are put before it.
-    """
+    """The answer, from all that the search found; `message` says what was done."""
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
     rest = (
@@ -51,10 +44,7 @@ def answer(search: Search, message: str) -> Solution:
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
-    """What is certain comes first.
-
-    Where all faces were tried and one holds a solution, but its rounding to floats is not `confirmed`, none is found.
-    """
+    """The most certain outcome; NOT_FOUND if an exact solution exists whose floats are not `confirmed`."""
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
@@ -72,10 +62,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
 
 
 def exactly(search: Search, found: Solution) -> Solution:
-    """The answer where active sets have ended within a singular face, which holds no solution of the data as given.
-
-    Another face may hold one: all of a small problem are tried.
-    """
+    """Another face of a small problem may hold an exact solution: try all."""
     if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
         return found
     search.ends = []
@@ -83,14 +70,14 @@ def exactly(search: Search, found: Solution) -> Solution:
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
-    """How the problem comes to the units in which it is searched, once; None where they are those given.
+    """The scaling for the search, or None.
 
-    `roughly`: Whether an LCP whose largest entries of rows and columns are alike, but for a common factor, keeps its
-    units: to find others takes as long as to solve it.
+    `roughly`: keep the units of an LCP with similar largest entries in all rows and columns, but for a common factor:
+    to find others costs as much as a solution.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)
-        # What scaling to floats would round is decided by exact arithmetic where that is cheap.
+        # Balancing may round these: then exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
         if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
             return scaled
@@ -98,17 +85,13 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
 
 
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
-
-    `problem`: As given. `scaled`: What was solved in its place. `found`: Of the scaled problem. `tolerance`: Of the
-    relative residual.
-    """
+    """The answer in the given units; scaling is exact."""
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
     rounded = _rounded(found, tolerance)
     found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
-    # Where faces were excluded at once a Farkas vector is sought, of the problem as given, when it is asked for.
+    # `Solution.farkas` computes its vector on demand.
     exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
@@ -127,10 +110,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
-    """The answer to a problem from that to what is left without its fixed unknowns; what was proved is proved again.
-
-    `rest`: None where nothing is left. `tolerance`: Of the relative residual.
-    """
+    """The answer with fixed unknowns put back and proofs repeated; `rest` is None if all are fixed."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
@@ -159,7 +139,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
     if rest.x is None:
         return found
     found = _at(found, small.x(rest.x), tolerance, rounded)
-    # The equations of what is left have a q that was rounded.
+    # Elimination rounded q.
     if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
         exact = exact_nearby(problem, found.x)
         found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
@@ -167,7 +147,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
 
 
 def of_program(program: Program, found: Solution) -> Solution:
-    """The answer to a program from that to its optimality conditions."""
+    """The answer to a program."""
     parts = [found.message]
     if found.success and not program.convex:
         parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
@@ -179,10 +159,7 @@ def of_program(program: Program, found: Solution) -> Solution:
 
 
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
-    """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone.
-
-    `tolerance`: Of the relative residual.
-    """
+    """The answer by exact arithmetic alone."""
     began = time.perf_counter()
     decided = exhaust(problem)
     outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
@@ -194,13 +171,13 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
 
 
 def _rounded(found: Solution, tolerance: float) -> bool:
-    """Whether a program was solved for data that differ by round-off; each row relative to its own terms it was not."""
+    """Whether a row of a solved program misses the tolerance relative to its own terms."""
     end = found.certificate
     return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
+    """The answer at a point of the given problem, infinite or zero beyond floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (

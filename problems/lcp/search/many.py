@@ -1,4 +1,4 @@
-"""`solve_many`: many small LCPs, pivoted and certified together; what that does not settle is solved one by one."""
+"""`solve_many`: many small LCPs together."""
 
 from __future__ import annotations
 
@@ -23,31 +23,29 @@ from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
-"""Order up to which problems are pivoted together: at n = 20 a tenth of `solve`'s time each, at n = 50 half."""
+"""Largest order pivoted together: at n = 20 in a tenth of `solve`'s time, at n = 50 in half."""
 
 LARGEST_ALL_FACES = 8
-"""Up to this order all faces of what pivots have not solved are tried together: 64 take 0.3 ms (n = 6), 256 1.6 ms
-(n = 8), where `solve` takes 3 and 4 ms; at n = 9 both take 4 ms."""
+"""Largest order with all faces tried together: 1.6 ms (n = 8), where `solve` takes 4 ms; at n = 9 both take 4 ms."""
 
 TABLE_ENTRIES = 1 << 16
-"""Entries of the tables that are pivoted together: half a megabyte, which stays in the cache. So many problems are
-handed to an executor together: whatever the workers, the same are."""
+"""Table entries of a batch: half a megabyte fits the cache."""
 
 
 @frozen(eq=False)
 class Answers:
-    """What became of each of k problems.
+    """The answers to k problems.
 
     Attributes
     ----------
     x : Array of shape (k, n)
-        The solutions, and NaN where there is none.
+        The solutions; NaN without one.
     outcome : ndarray of int, shape (k,)
         An `Outcome` each.
     residual, relative_residual : Array of shape (k,)
-        As of a `Certificate`; infinite where there is no point.
+        As in `Certificate`; infinite without a point.
     singly : integer array
-        Which were solved one by one, by `solve`.
+        Indices solved one by one.
     """
 
     x: Array
@@ -58,7 +56,7 @@ class Answers:
 
     @property
     def solved(self) -> NDArray[np.bool_]:
-        """Which are solved, if only to working precision; shape (k,)."""
+        """Which are solved, perhaps only to working precision; shape (k,)."""
         return np.isin(self.outcome, (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION))
 
     def __len__(self) -> int:
@@ -75,20 +73,19 @@ def solve_many(
 ) -> Answers:
     """Solve k problems LCP(q_i, A_i) of one order, or LCP(q_i, A) for one matrix.
 
-    Up to order 20 Lemke's method is done on all of them at once, and every end is certified as `solve` certifies it.
-    Up to order 8 all complementary faces of the others are tried at once, with error bounds: that proves that there is
-    no solution, or leads to one. What is left, and larger orders, are solved one by one by `solve`.
+    Up to order 20 Lemke's method runs on all together. Up to order 8 all faces of the rest are tried together, with
+    error bounds: this finds a solution or proves that none exists. `solve` treats the others singly. All ends are
+    certified.
 
     Parameters
     ----------
     A : array_like, shape (k, n, n) or (n, n)
     q : array_like, shape (k, n)
     tolerance : float, default 1e-10
-        As for `solve`.
     budget : continuation.Budget, optional
-        Of each problem that is solved by itself; as for `solve`.
+        Of each problem solved singly.
     executor : concurrent.futures.Executor, optional
-        Over which the problems are spread, those that are pivoted together at a time. The answers are the same.
+        Runs batches; answers stay the same.
 
     Returns
     -------
@@ -105,7 +102,6 @@ def solve_many(
     Stone, Algorithm 4.4.5.
     """
     matrices, constants = _stacks(A, q)
-    # The other arguments are checked as they are for one problem.
     solve(LCP(np.eye(1), np.ones(1)), tolerance=tolerance, budget=budget)
     if executor is not None:
         instance_with("executor", executor, ("map",), "a concurrent.futures.Executor")
@@ -126,7 +122,6 @@ def solve_many(
 
 
 def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
-    """A and q as arrays of shape (k, n, n) and (k, n)."""
     constants, matrices = real_array("q", q), real_array("A", A)
     if constants.ndim != 2:
         raise ValueError(f"q: expected an array of shape (k, n), found shape {constants.shape}")
@@ -139,7 +134,6 @@ def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
 
 
 def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> Answers:
-    """What becomes of some of them."""
     k, n = q.shape
     x, outcome = np.full((k, n), np.nan), np.full(k, Outcome.NOT_FOUND, dtype=np.int8)
     residual, relative = np.full(k, np.inf), np.full(k, np.inf)

@@ -1,4 +1,4 @@
-"""What `solve` returns: an outcome that may be believed, the point, its certificate, and every path that was traced."""
+"""The result of `solve`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from problems.lcp.reference.enumeration import Exhaustion
 
 
 class Outcome(Described):
-    """What became of the problem; ``str()`` of each is a sentence."""
+    """The outcome; ``str()`` gives its sentence."""
 
     SOLVED = (
         0,
@@ -56,7 +56,7 @@ class Outcome(Described):
 
     @property
     def success(self) -> bool:
-        """Whether a solution was found, if only to working precision; a proof that there is none gives no x."""
+        """Whether a solution was found, perhaps only to working precision."""
         return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
@@ -94,26 +94,25 @@ class Solution:
     problem : MixedLCP
     outcome : Outcome
     message : str
-        What was done, in what order and why, and what the outcome means.
+        Says what was done, and what the outcome means.
     certificate : Certificate or None
-        Of the point `x`, whatever the outcome; None where there is no point at all.
+        Of the point `x`, whatever the outcome.
     paths : tuple of Path
-        Every path traced, in order. Of restarts that solved nothing only the ends are kept; an archive holds them.
+        All traced paths, in order; of failed restarts only the ends (an archive keeps all).
     best : int
-        Index of the path that led to `x`; -1 where none did.
+        Index of the path that led to `x`, or -1.
     counts : Counts
-        Of all paths and finishes together.
+        Of all paths and finishes.
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
-        The proof of UNSOLVABLE where there is no feasible point; where all faces of a small problem were excluded at
-        once it is looked for when it is asked for.
+        Proves UNSOLVABLE if no point is feasible.
     exhaustion : Exhaustion or None
-        What trying all faces came to, where that was done: the other proof of UNSOLVABLE.
+        If all faces were tried: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
     program : Program or None
-        What the problem was made of, where that is a quadratic program: `named` and `objective` read it.
+        The quadratic program behind the problem.
     """
 
     problem: MixedLCP
@@ -131,7 +130,7 @@ class Solution:
 
     @property
     def proof(self) -> str:
-        """What proves UNSOLVABLE, or that the solution which was not found exists, as a sentence; else empty."""
+        """How UNSOLVABLE is proved, or that a solution exists beyond floats; else empty."""
         if self.outcome is Outcome.NOT_FOUND and self.exhaustion is not None and self.exhaustion.solvable:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
@@ -142,7 +141,7 @@ class Solution:
 
     @property
     def farkas(self) -> Farkas | None:
-        """The proof of UNSOLVABLE where there is no feasible point."""
+        """The proof that no point is feasible, computed on demand after exhaustion, or None."""
         at_once = self.exhaustion is not None and self.exhaustion.groups is None and self.problem.standard
         if not at_once or self._farkas is not None or self.outcome is not Outcome.UNSOLVABLE:
             return self._farkas
@@ -152,7 +151,7 @@ class Solution:
 
     @property
     def sentence(self) -> str:
-        """What the outcome means for this problem."""
+        """The outcome's sentence for this problem."""
         rounded = self.outcome is Outcome.SOLVED_TO_PRECISION and self.problem.primal > 0
         if rounded and self.certificate is not None and not self.certificate.solves():
             return _ROUNDED
@@ -180,12 +179,12 @@ class Solution:
 
     @property
     def solved(self) -> bool:
-        """The same as `success`."""
+        """Same as `success`."""
         return self.success
 
     @property
     def x(self) -> Array | None:
-        """The solution where there is one, else the best point found, shape (n,)."""
+        """The solution, else the best point found, shape (n,)."""
         return None if self.certificate is None else self.certificate.x
 
     @property
@@ -195,38 +194,35 @@ class Solution:
 
     @property
     def named(self) -> Mapping[str, Array]:
-        """The unknowns by name: of a program x, `equations`, `rows` and `bounds` (see `Program`), else x and w.
-
-        Empty without a point.
-        """
+        """The unknowns by name: x, `equations`, `rows`, `bounds` of a `Program`, else x, w; empty without a point."""
         if self.x is None or self.w is None:
             return {}
         return {"x": self.x, "w": self.w} if self.program is None else self.program.named(self.x, self.w)
 
     @property
     def objective(self) -> float:
-        """Of the program at x; NaN where there is no program, or no point."""
+        """The program's objective at x; NaN without a program or a point."""
         if self.program is None or self.x is None:
             return math.nan
         return self.program.objective(self.x[: self.program.n])
 
     @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point. See `Certificate`."""
+        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property
     def relative_residual(self) -> float:
-        """The same with each row relative to its own terms: see `Certificate`."""
+        """The residual with each row relative to its own terms (`Certificate`)."""
         return math.inf if self.certificate is None else self.certificate.relative_residual
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw why the search went where it went: its words, the path that led to x, the face of x, the residual.
+        """Draw the message, the path that led to x, the face of x and the residual.
 
         Parameters
         ----------
         axes : matplotlib Axes, optional
-            Into which the face alone is drawn; a new figure with all of it otherwise.
+            Draw only the face into these.
 
         Returns
         -------
@@ -237,7 +233,7 @@ class Solution:
         return draw_solution(self) if axes is None else draw_face(self, axes)
 
     def sensitivity(self) -> Sensitivity:
-        """How x moves with A and q: products with the derivative and its transpose; one-sided at biactive indices.
+        """The derivative of x by A and q as products; one-sided at biactive indices.
 
         Returns
         -------
@@ -246,7 +242,7 @@ class Solution:
         Raises
         ------
         NotDifferentiableError
-            If nothing was solved, or the solution is not isolated: a ValueError.
+            A ValueError: there is no solution, or it is not isolated.
         """
         if not self.solved or self.x is None:
             raise NotDifferentiableError(f"solution: expected one, found none. {self.outcome}")
@@ -254,7 +250,7 @@ class Solution:
 
     @property
     def path(self) -> Path:
-        """The path that led to x, else the last one; where none was traced, the point x alone."""
+        """The path to x, else the last one; without paths x alone."""
         if self.paths:
             return self.paths[self.best]
         x = self.x if self.x is not None else np.zeros(self.problem.n)

@@ -1,4 +1,4 @@
-"""Paths of different numbers of unknowns in one archive, and paths that were traced elsewhere, or not at all."""
+"""Paths of several homotopies in one archive."""
 
 from __future__ import annotations
 
@@ -15,29 +15,26 @@ from problems.lcp.data.problem import MixedLCP
 
 @frozen(eq=False)
 class Padded:
-    """An observer that shows another one paths with more unknowns, NaN, since an archive holds one number of them.
-
-    `unknowns`: As many as the longest path has.
-    """
+    """An observer that pads paths with NaN to `unknowns`, as an archive needs."""
 
     observer: Observer
     unknowns: int
 
     @classmethod
     def of(cls, observer: Observer, problem: MixedLCP) -> Padded:
-        """For the paths of a problem, of which those of the KKT homotopy have most unknowns."""
+        """Make it for a problem: KKT paths have most unknowns."""
         return cls(observer, (3 if problem.standard else 6) * problem.n)
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """The step, filled up."""
+        """Pass on the padded step."""
         self.observer.step(tracer, evolve(step, u=self._filled(step.u), tangent=self._filled(step.tangent)))
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """The event, filled up."""
+        """Pass on the padded event."""
         self.observer.event(tracer, evolve(event, u=self._filled(event.u), tangent=self._filled(event.tangent)))
 
     def end(self, tracer: Tracer) -> None:
-        """The end, as it is."""
+        """Pass on the end."""
         self.observer.end(tracer)
 
     def _filled(self, u: Array) -> Array:
@@ -49,12 +46,9 @@ class Padded:
 
 
 def show(path: Path, homotopy: Any, observer: Observer) -> None:
-    """Show an observer the steps and the end of a path that it did not see while it was made.
-
-    `homotopy`: Of the path.
-    """
+    """Show an observer a finished path."""
     tracer = Tracer(homotopy)
-    # An archive takes a step's kink from the last events of a path that grows.
+    # The archive reads a kink from a growing path's last events.
     tracer.path, tracer.counts = Path(), path.counts
     events = {event.step: event for event in path.events}
     for step in path.steps:

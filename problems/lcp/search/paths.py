@@ -1,8 +1,7 @@
-"""Paths: of Wang's homotopy and of the KKT homotopy, and of the latter from random starts.
+"""Paths of Wang's and of the KKT homotopy, then restarts from random starts.
 
-The end of Wang's path solves the problem, where it has one. The KKT path has an end for any matrix, which may be a
-stationary point of x'w that does not solve the problem; another start leads elsewhere (`homotopies.starts.random_start`
-has what was measured).
+An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w that
+solves nothing; other starts lead elsewhere.
 """
 
 from __future__ import annotations
@@ -38,21 +37,21 @@ from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Candidate, Search
 
 RESTART_STEPS = 60
-"""Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many. The first
-path, which takes shorter ones, has twice as many: of a Hankel matrix of order 100 one had not ended after 3,000."""
+"""Most steps of a restart, besides n: of 144 solving paths one took nearly as many. The first path, with shorter steps,
+gets twice as many: one of a Hankel matrix of order 100 had not ended after 3,000."""
 
 LARGEST_MADE_DENSE = 500
-"""A sparse matrix of at most this order is made dense for paths, whose matrices of order n or 2n fill: with 5 % entries
-and n = 200 a path takes a tenth of the time then."""
+"""Up to this order sparse matrices become dense for paths, whose matrices fill: with 5 % entries and n = 200 a path
+then takes a tenth of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
-"""Of the last increment on a restart with the finish, whose end is exact: Newton's method about squares it."""
+"""Last increment of a restart: the finish is exact, and Newton's method about squares it."""
 
 AT_ONCE = 64
-"""Restarts handed to an executor together: more than one machine has workers."""
+"""Restarts handed over together, more than the workers of one machine."""
 
 Patience = Callable[[Step], str]
-"""A step to the reason for which its path is given up, or to nothing."""
+"""Maps a step to the reason to give up, empty for none."""
 
 
 SEARCH = Preset(
@@ -62,7 +61,7 @@ SEARCH = Preset(
     BorderedNewton(reuse=0.0),
     AllgowerGeorg(contraction=0.7, distance=0.6, angle=0.7, deceleration=2.0),
 )
-"""The parts of a restart: the longest steps that pay."""
+"""Restarts take the longest steps that pay."""
 
 
 def follow(
@@ -73,10 +72,9 @@ def follow(
     observers: tuple[Observer, ...] = (),
     **options: Any,
 ) -> Path:
-    """Trace a path, with the finish along it, whose factorisations become the path's.
+    """Trace a path and try the finish along it; the path counts the factorisations of both.
 
-    `finish`: None for the pure path. `patience`: When the path is given up; the path's message then has the reason.
-    `**options`: As for `continuation.Tracer`.
+    `patience`: its reason becomes the path's message.
     """
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)
@@ -93,10 +91,9 @@ def follow(
 
 @frozen(eq=False)
 class Restart:
-    """The k-th restart: it depends on what is here alone, and can be sent to another process.
+    """The k-th restart: it depends on these fields alone, so another process can trace it.
 
-    `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `tolerance`: Of the finish;
-    None to go without it. `options`: For the tracer, over those of `SEARCH`.
+    `name`: "kkt", or a homotopy in (x, y). `tolerance`: of the finish.
     """
 
     structure: Structure
@@ -107,16 +104,16 @@ class Restart:
     options: Mapping[str, Any]
 
     def homotopy(self) -> LCPHomotopy:
-        """The homotopy at its start; with the finish its solves are not refined, which a loose tolerance allows."""
+        """The homotopy at its start; with the finish solves are not refined."""
         problem = self.structure.problem
         start = random_start(problem, np.random.default_rng([self.seed, self.k]))
         return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
 
     def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
-        """The path, to its end or until it is given up."""
+        """Trace the path until it ends or is given up."""
         homotopy, parts, longest, finish = self.homotopy(), {"preset": SEARCH, "examine": True}, np.inf, None
         if self.tolerance is not None:
-            # The end of a pure path is the answer. Here only the active set counts that the path leads to.
+            # With the finish only the active set counts.
             finish, longest = Finish(Faces(self.structure), self.tolerance), RESTART_STEPS + homotopy.n
             parts |= {"tolerance": LOOSE, "examine": False}
         return follow(homotopy, finish, budget, lambda step: unending(step, longest) or exhausted(), observers,
@@ -124,35 +121,32 @@ class Restart:
 
 
 def unending(step: Step, longest: float) -> str:
-    """Why a path is given up that is as long."""
+    """The reason to give up so long a path, empty for none."""
     late = step.kind == Kind.REGULAR and step.index >= longest
     return f"it has not ended after {step.index} steps" if late else ""
 
 
 def light(path: Path) -> Path:
-    """The same path with only its two ends, and no curve between them.
-
-    `path`: Is changed.
-    """
+    """Reduce a path in place to its two ends."""
     if path.steps:
         path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
     return path
 
 
 def trace_light(restart: Restart, budget: Budget) -> Path:
-    """What a worker does: trace a restart and send back what is small enough to send."""
+    """Trace a restart in a worker."""
     return light(restart.trace(budget))
 
 
 @define(eq=False)
 class Paths:
-    """The paths of one problem: the first, of one or two homotopies, and then from random starts."""
+    """The paths of one problem."""
 
     search: Search
     _begun: bool = False
 
     def run(self, work: float) -> str:
-        """The first path, and the next time up to so many restarts; what settled the problem."""
+        """Trace the first paths; on the next call, up to `work` restarts."""
         search = self.search
         if not self._begun:
             self._begun = True
@@ -167,14 +161,13 @@ class Paths:
         return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
 
     def _names(self) -> tuple[str, ...]:
-        """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
+        """If some a_ii < 0, A is not copositive, and Wang's path mostly diverges, except in a box."""
         search = self.search
         if search.asked.homotopy != "auto":
             return (search.asked.homotopy,)
         return ("kkt",) if search.problem.standard and search.facts.negative_diagonal else ("wang", "kkt")
 
     def _first(self, name: str) -> str:
-        """One path to its end; what settled the problem."""
         search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]
         start, automatic = asked.x0, asked.homotopy == "auto"
         if search.exhausted:
@@ -184,7 +177,7 @@ class Paths:
                 assert isinstance(problem, LCP)
                 start = strictly_feasible_start(problem)
             except NoStrictlyFeasiblePoint as error:
-                # That there is no feasible point settles the problem, and without a start there is no path.
+                # Infeasibility settles the problem.
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
@@ -193,18 +186,18 @@ class Paths:
         homotopy = known.from_x0(problem, start, search.structure)
         if automatic and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
             homotopy = known.from_x0(problem, None, search.structure)
-        # Restarts are to have time after a path that is neither asked for nor made of the caller's parts.
+        # Leave time for restarts.
         hurried = name == "kkt" and automatic and asked.restarts > 0 and search.finish is not None and not asked.options
         longest = 2.0 * (RESTART_STEPS + problem.n) if hurried else np.inf
         preset = {"preset": FAST} if automatic else {}
-        # The arcs are examined where the path is asked for; with the finish its end is certified, whatever led there.
+        # The finish certifies ends, so arcs need no examination.
         options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}
         self.add(follow(homotopy, search.finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
                         self._observers(), **options))  # fmt: skip
         return f"Solved by the path of the {name} homotopy." if search.solved else ""
 
     def add(self, path: Path) -> None:
-        """Take a traced path into account."""
+        """Record a path."""
         search = self.search
         search.traced = search.traced + path.counts
         if path.steps:
@@ -214,14 +207,14 @@ class Paths:
         search.paths.append(path)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
-        """The certificate of a path's end, which the finish brings to round-off where it can."""
+        """The certificate of a path's end, improved by the finish if possible."""
         search, problem = self.search, self.search.problem
         x = problem.clipped(path.endpoint.y[: problem.n])
         end = certify(problem, x)
         if not arrived:
             return end
         if not search.confirmed(end):
-            # A stationary point of an LCP stays one: nothing but what is zero to the tolerance is moved.
+            # Only zeros move, so a stationary point stays one.
             zeros = certify(problem, x, search.tolerance)
             zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
             end = min(end, zeros, key=lambda one: one.relative_residual)
@@ -232,10 +225,7 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        """Trace restarts until one solves the problem, or the budget or the count is used up; how many were taken.
-
-        Over an executor some are traced together, and the first solution in the order of the restarts is taken.
-        """
+        """Trace restarts, in order, until one solves the problem; return their number."""
         search, asked = self.search, self.search.asked
         tolerance = None if search.finish is None else search.tolerance
         together = 1 if asked.executor is None else AT_ONCE
@@ -252,12 +242,11 @@ class Paths:
         return count
 
     def _traced(self, tasks: list[Restart]) -> Iterator[Path]:
-        """The paths of restarts, in order."""
         search, asked = self.search, self.search.asked
         if asked.executor is None:
             yield tasks[0].trace(self._left(), lambda: search.exhausted, self._observers())
             return
-        # The processor is the workers', and nothing but the clock says how long they take.
+        # Workers spend CPU time: the wall clock limits them.
         left = evolve(self._left(), seconds=max(search.budget.seconds - search.seconds, 1e-3))
         for task, path in zip(tasks, asked.executor.map(trace_light, tasks, repeat(left))):
             if asked.log is not None:
@@ -274,7 +263,7 @@ class Paths:
         return (*archive, Progress())
 
     def _left(self) -> Budget:
-        """What of the work is left, at least a little of each; that the seconds are over is asked at each step."""
+        """The budget left, at least one of each; seconds are checked at each step."""
         b, counts = self.search.budget, self.search.counts
         return Budget(
             steps=max(b.steps - counts.accepted, 1.0), factorizations=max(b.factorizations - counts.factorizations, 1.0)

@@ -1,7 +1,6 @@
-"""Pivots: Lemke's method, that of Lemke and Howson for games, and the path from the solution of a problem nearby.
+"""Pivots: Lemke's method, that of Lemke and Howson for games, and the path from a nearby problem's solution.
 
-An almost complementary path goes from basis to basis, and ends at a solution or on a ray. Of a semidefinite A the ray
-is a proof that there is no feasible point; of another one it says nothing.
+An almost complementary path ends at a solution or on a ray, which proves infeasibility for semidefinite A.
 """
 
 from __future__ import annotations
@@ -22,43 +21,36 @@ from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search.search import Nearby, Search
 
 LARGEST_TABLE = 3000
-"""A larger order is not pivoted: its table is 72 MB, and a pivot goes through all of it."""
+"""Largest order that is pivoted: each pivot visits all 72 MB of the table."""
 
 PIVOT_WORK = LARGEST_TABLE**2
-"""Pivots times the order at most: at the largest order one pivot per unknown, as traffic takes, at n = 1000 a second's,
-where a path takes ten."""
+"""Most pivots times order: at the largest order one per unknown, as traffic takes; at n = 1000 one second, where a path
+takes ten."""
 
 COVERINGS = 5
-"""Covering vectors that are tried on a quadratic program, with twice the pivots each: on 40 indefinite box QPs (n = 40
-to 200) 5 suffice whose entries are 10^U(-3, 0); entries from 0.1 to 3 need up to 51."""
+"""Covering vectors for a quadratic program: on 40 indefinite box QPs 5 suffice with entries 10^U(-3, 0); entries from
+0.1 to 3 need up to 51."""
 
 SHORT_PATHS = 8
-"""Of uniform and normal games of order 1000, whose paths mostly take more than 10,000 pivots, 6 to 14 % of the labels
-have a path of less than n / 2, half of them of less than n / 4: as long are tried so many labels times the work."""
+"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of the labels of games of order 1000 have such a path,
+most take more than 10,000."""
 
 GAME_WORK = 1_000_000_000
-"""Entries of its table that a path of a game goes through at most: covariant games (rho = -.9) of order 300 take 5,000
-to 17,000 pivots from every label, 0.15 to 0.6 s."""
+"""Most table entries that a game's path visits: covariant games of order 300 take up to 17,000 pivots, 0.6 s."""
 
 
 def most_pivots(n: int, per_order: float = 10.0) -> int:
-    """How many pivots are worth their time before a path: so many times the order, of large problems fewer.
-
-    Parameters
-    ----------
-    n : int
-    per_order : float
-    """
+    """Pivots worth trying before a path: `per_order` times n, fewer for large n."""
     return min(int(per_order * n), PIVOT_WORK // n)
 
 
 def pivotable(search: Search) -> bool:
-    """Whether there are pivots for the problem, and its table is no burden."""
+    """Whether the problem is an LCP whose table is small enough, with the finish on."""
     return search.problem.standard and search.problem.n <= LARGEST_TABLE and search.finish is not None
 
 
 def game(search: Search) -> bool:
-    """Whether the problem is a bimatrix game, which has a method of its own."""
+    """Whether the problem is a bimatrix game."""
     problem = search.problem
     first = not problem.sparse and problem.A[0, 0] == 0.0
     return first and isinstance(problem, LCP) and Game.of(problem) is not None
@@ -71,7 +63,7 @@ class Pivots:
     search: Search
 
     def run(self, work: float) -> str:
-        """Up to so many pivots times the order; what settled the problem: a solution, or the proof of a ray."""
+        """Pivot up to `work` times the order."""
         problem = self.search.problem
         assert isinstance(problem, LCP)
         played = Game.of(problem)
@@ -84,7 +76,7 @@ class Pivots:
         return ""
 
     def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:
-        """From random covering vectors on a program that may be indefinite, else, and last, from e."""
+        """Paths from random covering vectors for programs, last the path from e."""
         most, unit = most_pivots(problem.n, work), unit_of(problem)
         bounds = constraints(problem)
         if bounds.any():
@@ -95,7 +87,7 @@ class Pivots:
         yield covering(problem, np.full(problem.n, unit)), most
 
     def _lemke_howson(self, played: Game, work: float) -> Iterator[tuple[AlmostComplementary, int]]:
-        """From a label of each player, ever further, and from many others, shortly.
+        """Paths from a label of each player, ever longer, then short ones from many labels.
 
         References
         ----------
@@ -115,34 +107,23 @@ class Pivots:
 
 
 def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool:
-    """Follow a path; whether it led to a solution, or its ray to a proof that there is none."""
+    """Follow a path; return whether it gave a solution or a proof that none exists."""
     ended = None if path is None else path.run(most)
     if path is None or ended not in (Ended.REACHED, Ended.RAY):
         return False
     if ended is Ended.RAY:
         search.proof = infeasibility(search.problem, guess=path.ray())
         return search.proof is not None
-    # Where rounding has made the last basis singular its own point may do.
+    # Rounding may make the last basis singular: its own point may do.
     if search.settle(active_state(path.active)):
         return True
     return search.finish is not None and search.found(search.finish.take(path.values()))
 
 
 def by_guess(search: Search, guess: Nearby) -> bool:
-    """Follow LCP(q + t (q' - q), A) from t = 1, where the guess is the solution, to 0; whether that led to one.
+    """Follow LCP(q + t (q' - q), A) from t = 1 to 0 (Cottle, Pang and Stone, section 4.5); return whether it solved.
 
-    q' = w - A x with x and w those of the guess: whatever problem it is the solution of, it solves that for q' too.
-
-    Parameters
-    ----------
-    search : Search
-        Takes up what is found.
-    guess : Nearby
-        In the units of the search.
-
-    References
-    ----------
-    Cottle, Pang and Stone, section 4.5.
+    q' = w - A x with x and w of the guess, so x solves LCP(q', A) whatever its own problem.
     """
     problem = search.problem
     x = problem.clipped(guess.x)
@@ -161,18 +142,11 @@ def by_guess(search: Search, guess: Nearby) -> bool:
 
 
 def constraints(problem: LCP) -> Mask:
-    """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions: those without a share of t.
+    """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions, where d is zero.
 
-    ``A = [[Q, B'], [-B, 0]]`` but for units and order. With t in the rows of Q alone LCP(q + t d, A) is the program
-    with the cost c + t d. For large t, and bounded x, its only stationary point is x = 0: no other ray comes back.
-
-    Parameters
-    ----------
-    problem : LCP
-
-    References
-    ----------
-    Eaves, "On quadratic programming", Management Science 17, 1971.
+    ``A = [[Q, B'], [-B, 0]]`` up to units and order. With t in the rows of Q alone, LCP(q + t d, A) is the program with
+    cost c + t d; for large t and bounded x its only stationary point is x = 0, so no other ray returns (Eaves, "On
+    quadratic programming", Management Science 17, 1971).
     """
     rows: Mask = (problem.q >= 0.0) & (problem.A.diagonal() == 0.0)
     none = np.zeros_like(rows)

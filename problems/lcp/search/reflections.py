@@ -1,10 +1,9 @@
 """Douglas and Rachford's iteration between two sets: the points with w = A x + q, and those with complementary pairs.
 
-The first set is affine, and in the second each pair (x_i, w_i) has a nearest point of its own: a step is one product
-with a matrix, a thousandth of a step of a path. Where a set is not convex nothing says that this converges. But only
-solutions make it stand still, no local minimum holds it, and among random problems that are neither monotone nor P it
-soon comes by one: n = 100 in 0.02 s, n = 300 in 0.3, n = 600 in 3, where paths from random starts take 1, 60 and more
-than 300 (`examples/benchmarks/outside.py`). The faces that it stays at are tried exactly; it claims nothing itself.
+The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. A step is one product with a
+matrix, a thousandth of a path's. Without convexity nothing guarantees convergence, but only solutions are fixed points.
+Random problems neither monotone nor P take 0.02 s (n = 100), 0.3 (300), 3 (600); restarts take 1, 60, over 300
+(`examples/benchmarks/outside.py`).
 
 References
 ----------
@@ -29,34 +28,30 @@ from problems.lcp.search.search import Search
 Single = NDArray[np.float32]
 
 RUNS_AT_ONCE = 16
-"""Runs at once: of 24 Gaussian problems, n = 200, the slowest takes 2.1 s of two, 1.3 of eight and 0.16 of sixteen."""
+"""The slowest of 24 Gaussian problems, n = 200, takes 2.1 s with two runs, 1.3 with eight, 0.16 with sixteen."""
 
 CHECKED = 25
-"""Iterations between two looks at the faces: 1 at n = 30 costs as much as 25 iterations. One that is the same at both
-is tried; a run that has come to a solution stays at its face."""
+"""Iterations between two comparisons of faces, each as costly at n = 30. A run at a solution keeps its face, so
+unchanged faces are tried."""
 
 LARGEST_REFLECTED = 1000
-"""A round takes a minute at this order, of which Gaussian problems need 5 to 17 s."""
+"""Largest order: a round takes a minute there; Gaussian problems need 5 to 17 s."""
 
 ROUND_WORK = 4e8
-"""Iterations times n^2 that are one round at least: 1.3 s. From order 300 on a round is more, 16 s of order 600."""
+"""Least iterations times n^2 of a round: 1.3 s; 16 s at order 600."""
 
 
 def run_length(n: int) -> int:
-    """Iterations after which all runs begin anew: that of 1,000 to 6,000 at n = 200 matters little.
-
-    `n`: The order. Runs that solve a Gaussian problem need 100 (n = 30), 300 (100), 1,000 (300) and 3,000 (600).
-    """
+    """Iterations until all runs restart: Gaussian problems need 100 (n = 30), 300 (100), 1,000 (300), 3,000 (600)."""
     return 1000 + 10 * n
 
 
 @frozen(eq=False)
 class Sets:
-    """The two sets, in units in which w weighs as x.
+    """The two sets, in units that weigh w like x.
 
-    `onto`, shape (2 n, 2 n): Projects onto the differences of points with w = A x + q. `nearest`, shape (2 n, 1): The
-    point of that set nearest to w = 0 and the x, between the bounds, nearest to zero; its mean entry is the unit of
-    length. `lower`, `upper`, shape (n, 1): From that x. `standard`: Whether they are those of an `LCP`.
+    `onto`, (2 n, 2 n): projects onto differences of points with w = A x + q. `nearest`, (2 n, 1): the point of that set
+    nearest to w = 0 and the x nearest to zero; its mean entry is the unit. `lower`, `upper`, (n, 1): from that x.
     """
 
     onto: Single
@@ -67,9 +62,9 @@ class Sets:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> Sets | None:
-        """Those of a problem; None where w = A x + q lies so that there is no unit of length."""
+        """The sets of a problem; None without a finite, positive unit of length."""
         A, n = problem.A.toarray() if problem.sparse else problem.A, problem.n
-        # A large factor of rank one, as games have for all costs to be positive, moves neither the median nor this.
+        # The median ignores a large rank-one term, as in games.
         diagonal = np.abs(sl.qr(A, mode="r", check_finite=False)[0].diagonal())
         unit = float(np.median(diagonal)) or largest(diagonal) or 1.0
         basis = sl.qr(np.vstack([np.eye(n), A / unit]), mode="economic", overwrite_a=True, check_finite=False)[0]
@@ -83,7 +78,7 @@ class Sets:
         return cls(onto.astype(np.float32), _single(nearest / length), lower, upper, problem.standard)
 
     def rounds(self, random: np.random.Generator) -> Iterator[tuple[int, list[State]]]:
-        """Without end: how many rounds of runs are over, and the faces at which runs stay, `CHECKED` steps later."""
+        """Yield without end the finished rounds and the faces kept over `CHECKED` steps."""
         n, over = self.lower.size, 0
         while True:
             z = random.standard_normal((2 * n, RUNS_AT_ONCE), np.float32)
@@ -101,7 +96,7 @@ class Sets:
             over += 1
 
     def _complementary(self, z: Single) -> tuple[NDArray[np.int8], Single]:
-        """The nearest points with complementary pairs, and their faces."""
+        """The nearest complementary points, and their faces."""
         n = self.lower.size
         x, w = z[:n], z[n:]
         if self.standard:
@@ -122,19 +117,19 @@ class Sets:
 
 
 def reflectable(search: Search) -> bool:
-    """Where projections are no burden, and pivots do not end at a solution or a proof, as for a semidefinite A."""
+    """Whether projections are affordable and A is not semidefinite."""
     return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
 
 
 @define(eq=False)
 class Reflections:
-    """The runs of one problem, which go on where they were left."""
+    """The runs of one problem."""
 
     search: Search
     _runs: Iterator[tuple[int, list[State]]] | None = None
 
     def run(self, work: float) -> str:
-        """Until so many rounds of runs are over, of a large problem or within a small budget fewer, but one."""
+        """Run up to `work` rounds, at least one; fewer if n is large."""
         search, n = self.search, self.search.problem.n
         if self._runs is None:
             sets = Sets.of(search.problem)

@@ -1,4 +1,4 @@
-"""One problem being searched: what was asked, what may be spent, and everything that was found."""
+"""The state that all methods share."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from problems.lcp.search.work import default_budget
 
 @frozen(eq=False)
 class Nearby:
-    """The solution of a problem nearby: x, and w = A x + q there."""
+    """A nearby problem's solution x, and w there."""
 
     x: Array
     w: Array
@@ -38,7 +38,7 @@ class Nearby:
 
 @frozen(eq=False)
 class Asked:
-    """What the caller of `solve` asked for, in the units of the search: the arguments of the same names."""
+    """The arguments of `solve`, in the units of the search."""
 
     homotopy: str = "auto"
     x0: Array | None = None
@@ -54,9 +54,9 @@ class Asked:
 
 @frozen(eq=False)
 class Candidate:
-    """Where a method led: the certificate of its x, and the index of the path (-1 for none).
+    """A point that a method reached; `path` is its path's index, or -1.
 
-    `stationary` is whether x is the end of a KKT path, and the equations hold there.
+    `stationary`: x ends a KKT path and satisfies its equations.
     """
 
     certificate: Certificate
@@ -66,11 +66,10 @@ class Candidate:
 
 @define(eq=False, slots=False)
 class Search:
-    """What the methods share.
+    """The state of a search.
 
-    `finish`: None where it is switched off. `scaled`: How the problem came to the units in which it is searched.
-    `traced`: What the paths cost. `ends`: Where methods led. `proof`: That there is no feasible point, exactly or to
-    working precision. `exhaustion`: What trying all faces came to. `tried`: How many restarts were begun.
+    `finish`: None if switched off. `traced`: cost of the paths. `ends`: points reached. `proof`: of infeasibility.
+    `tried`: restarts begun.
     """
 
     structure: Structure
@@ -94,41 +93,41 @@ class Search:
 
     @property
     def problem(self) -> MixedLCP:
-        """The problem, in the units in which it is searched."""
+        """The problem in the units of the search."""
         return self.structure.problem
 
     @property
     def counts(self) -> Counts:
-        """Of all paths and active sets together."""
+        """Counts of all paths and active sets."""
         if self.finish is None:
             return self.traced
         return self.traced + self.finish.counts if self.paths else self.finish.counts
 
     @property
     def seconds(self) -> float:
-        """Since the search began, of a clock on the wall: no decision of a method depends on it."""
+        """Wall-clock time; no method decides by it."""
         return time.perf_counter() - self.began
 
     @property
     def processor(self) -> float:
-        """Seconds of the processor, which are the same on a busy machine: those that a budget counts."""
-        # A look at this clock takes longer than a small problem: it is for a budget of seconds alone.
+        """CPU seconds: a busy machine does not change them."""
+        # Reading the clock takes longer than a small problem.
         return time.process_time() - self._processor if self.budget.seconds < math.inf else 0.0
 
     @property
     def exhausted(self) -> str:
-        """Which limit of the budget is reached; empty if none is."""
+        """The budget's limit that is reached, or ""."""
         spent = self.traced.factorizations + (0 if self.finish is None else self.finish.counts.factorizations)
         return self.budget.spent(Counts(accepted=self.traced.accepted, factorizations=spent), self.processor)
 
     @cached_property
     def share(self) -> float:
-        """The budget over the default one, at most 1: of what a method may do by default it does so much."""
+        """The budget over the default one, at most 1; default work scales with it."""
         return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
     def facts(self) -> MatrixFacts:
-        """What is known of the matrix."""
+        """Facts of the matrix."""
         return MatrixFacts(self.structure)
 
     @property
@@ -141,23 +140,23 @@ class Search:
         return confirmed(self.problem, certificate, self.tolerance)
 
     def accept(self, x: Array) -> bool:
-        """Take a point into account that no active set led to; whether it is a solution."""
+        """Record a point; return whether it is a solution."""
         self.ends.append(Candidate(certify(self.problem, x)))
         return self.solved
 
     def settle(self, state: State, policy: Policy = AT_END) -> bool:
-        """Try active sets from a guess; whether that led to a solution."""
+        """Try active sets; return whether they led to a solution."""
         return self.finish is not None and self.found(self.finish.settle(state, policy))
 
     def found(self, x: Array | None) -> bool:
-        """Take what the finish has found into account; whether it has found anything."""
+        """Record the finish's result; return whether there is one."""
         if x is None or self.finish is None or self.finish.certificate is None:
             return False
         self.ends.append(Candidate(self.finish.certificate))
         return True
 
     def best(self) -> Candidate | None:
-        """The solution, else one to working precision, one nearly, a stationary point, the point of least residual."""
+        """The best candidate: confirmed, to precision, nearly solved, stationary, least residual."""
         nearest = None if self.finish is None else self.finish.nearest
         ends = self.ends if nearest is None else [*self.ends, Candidate(nearest)]
         if len(ends) < 2:

@@ -1,4 +1,4 @@
-"""`Solver`: LCP(q, A) for one A and many q, as in time stepping; what was found for one q is where the next begins."""
+"""`Solver`: one A and many q, as in time stepping."""
 
 from __future__ import annotations
 
@@ -27,17 +27,16 @@ from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
 
 WARM = Policy(steps=1)
-"""Corrections of the active set of the problem before: where one is not enough, pivots from its basis are quicker. On a
-stack of boxes (n = 200, 100 steps) the slowest step takes 5 ms with 0, 1 or 2 of them, 9 ms with 4."""
+"""Corrections before pivots: on a stack of boxes (n = 200, 100 steps) the slowest step takes 5 ms with 0, 1 or 2, 9 ms
+with 4."""
 
 
 @define(eq=False)
 class Solver:
     """Solves LCP(q, A) for one matrix and one q after another.
 
-    Each q is tried first on the active set given, or on that of the q before, and a few corrections of it; then along
-    the piecewise linear path from the q before to this one, by pivots; then by `solve`. Factors of the last active
-    sets, and the scaling of A, are kept. Every answer is certified as that of `solve` is.
+    Each q is tried on the given or the previous active set, then by pivots from the previous q, then by `solve`.
+    Factors and the scaling of A are kept; every answer is certified.
 
     Parameters
     ----------
@@ -72,10 +71,9 @@ class Solver:
         ----------
         q : array_like, shape (n,)
         active : array_like, shape (n,), optional
-            Where x may be positive: booleans, or a solution nearby, whose zeros are zeros. That of the q before by
-            default.
+            Where x may be positive: booleans, or a nearby solution. Default: the previous active set.
         **options
-            As for `solve`, if it comes to that.
+            For `solve`, if it is needed.
 
         Returns
         -------
@@ -97,7 +95,6 @@ class Solver:
         return found
 
     def _nearby(self, problem: LCP, guess: Mask | None) -> Solution | None:
-        """The certified solution from an active set, or by pivots; None without one."""
         if self._structure is None:
             self._learn(problem)
         assert self._structure is not None
@@ -121,12 +118,12 @@ class Solver:
             return None
         assert finish.tried.last is not None
         self._active = finish.tried.last == BETWEEN
-        # The last one, which may be singular, and before it that of the last path, which is not.
+        # The last basis may be singular; that of the last path is not.
         self._bases[1:] = [(current.q, self._active)]
         return found
 
     def _pivoted(self, search: Search) -> bool:
-        """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
+        """Follow LCP(q + t (q before - q), A) from t = 1, else Lemke's path."""
         problem = search.problem
         assert isinstance(problem, LCP)
         if problem.n > LARGEST_TABLE:
@@ -141,14 +138,12 @@ class Solver:
         return False
 
     def _learn(self, problem: LCP) -> None:
-        """Scale A, in the units in which the first q is about 1."""
         self._first, scaled = problem, units_of_its_own(problem, roughly=True)
         self._scaled = scaled if scaled is not None and scaled.exact else None
         self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
 
 
 def _mask(active: Any, n: int) -> Mask:
-    """Where x may be positive."""
     given = np.asarray(active)
     if given.shape != (n,) or given.dtype.kind not in "biuf":
         raise ValueError(f"active: expected {n} booleans or numbers, found shape {given.shape} of dtype {given.dtype}")

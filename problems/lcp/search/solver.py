@@ -1,7 +1,4 @@
-"""`solve`: a solution with its certificate, or an honest account of what was found instead.
-
-What is tried, and in what order, is in `table`; what may be claimed is decided in `judge`.
-"""
+"""`solve`: `table` orders the methods, `judge` decides the outcome."""
 
 from __future__ import annotations
 
@@ -47,11 +44,11 @@ from problems.lcp.search.work import default_budget
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
 OWNED = ("target", "direction", "start", "state", "observers")
-"""What may be said of a path, but not of those that `solve` traces."""
+"""Path options that `solve` sets itself."""
 
 
 MOST_RESTARTS = 1000
-"""So that a search ends whose budget has no limit: of a small problem they take about the default one."""
+"""Ends a search without a budget."""
 
 
 @documented
@@ -79,44 +76,37 @@ def solve(
     ----------
     problem : LCP, MixedLCP or Program
     homotopy : str
-        "auto": what is cheap and cannot mislead first (active sets, pivots, exclusion of faces, reflections), then
-        Wang's path, then the KKT path, then restarts (`search.table` has the order). Or one of "kkt", "wang", "yu",
-        "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
+        "auto" tries active sets, pivots, exclusion of faces and reflections, then Wang's path, the KKT path and
+        restarts (order: `search.table`). Or "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu"
+        or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
-        "auto" zeros are welcome, as in the solution of a problem nearby: where x0 > A x0 + q is tried first.
+        A positive start; for "kkt" it may be infeasible, and at a feasible one z1 = z2 = e, the paper's start. "auto"
+        accepts zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Of a problem nearby, of the same order: the piecewise linear path from its data to these is tried first, which
-        for a small change has a few kinks (time steps, moving loads; for one A and many q see `Solver`).
+        Solution of a nearby problem of the same order: first the piecewise linear path from its data is followed.
     finish : bool
-        Whether active sets are tried, before the path and along it. Without it `path` is the pure homotopy.
+        Whether active sets are tried, before and along the path; without them `path` is the pure homotopy.
     path : bool
-        Trace a path even where "auto" needs none, to look at it. Its turning points and branch points are looked for;
-        else only without the finish, as active sets find certified ends.
+        Trace a path even if "auto" needs none, and locate its turning and branch points.
     restarts : int, optional
-        Paths from random starts after the first has failed, as the budget allows. Default: 0 for a named homotopy, and
-        1000 for "auto".
+        Paths from random starts after the first fails. Default: 0 for a named homotopy, 1000 for "auto".
     seed : int
-        Of the random starts, of reflections and of restarts; the k-th restart depends on `seed` and k alone. The same
-        call gives the same answer on the same machine; elsewhere sums may be rounded otherwise, and reflections of a
-        problem with several solutions come to another one.
+        Seeds random starts and reflections; restart k depends on `seed` and k alone. A call repeats its answer on one
+        machine; elsewhere rounding differs.
     budget : continuation.Budget, optional
-        Of everything together. By default as many factorisations as take about a minute, which depends on n alone
-        (`default_budget`), so that no clock decides the answer; reflections, which need none, take half a minute more
-        at most. ``Budget(seconds=60)`` counts seconds of the processor, so that a busy machine makes no difference.
+        For the whole search. Default: the factorisations of about a minute, from n alone (`default_budget`), so no
+        clock decides; reflections add at most half a minute. ``Budget(seconds=60)`` counts CPU seconds.
     tolerance : float
-        What `Certificate.solves` is asked before anything is called a solution.
+        For `Certificate.solves`, which every solution passes.
     archive : path, optional
-        A new HDF5 file for every path traced, of restarts over an executor only the ends. Where no path is traced it
-        holds the message, and the solution as one point (x, w, x), the end of the KKT path. It changes nothing of what
-        is done.
+        A new HDF5 file for all traced paths; of restarts over an executor only the ends. Without paths it holds the
+        message and the solution as one point (x, w, x), the KKT path's end.
     progress : bool
-        A progress bar a path (needs tqdm).
+        One progress bar per path (needs tqdm).
     executor : concurrent.futures.Executor, optional
         For the restarts.
     sparse : str
-        What factors the equations of sparse active sets: "superlu", or if installed "cholmod" (cvxopt); "auto" takes
-        what suits the matrix and is there. The message says what did it.
+        Factorisation of sparse active sets: "superlu", "cholmod" (needs cvxopt), or "auto". The message names it.
     {parts}
 
     Returns
@@ -128,7 +118,7 @@ def solve(
     TypeError, ValueError
         For bad input, naming the argument.
     ImportError
-        If what `sparse` asks for is not installed.
+        If the package for `sparse` is missing.
 
     References
     ----------
@@ -178,7 +168,7 @@ def solve(
         Asked(homotopy, start, near, restarts, seed, executor, path, log, progress, dict(options)),
         scaled,
     )
-    # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
+    # No certificate accepts an overflow.
     with Silence(), one_thread, log if log is not None else nullcontext():
         if beyond:
             found = beyond_floats(problem, tolerance)
@@ -194,12 +184,10 @@ def solve(
 
 
 def _given(arguments: dict[str, Any]) -> dict[str, Any]:
-    """The arguments of `solve` by name, as they were given."""
     return {name: arguments[name] for name in solve.__kwdefaults__ or ()}
 
 
 def _title(problem: MixedLCP) -> str:
-    """Of an archive: it holds paths of a problem, whatever homotopies they belong to."""
     bounds = "" if problem.standard else " with bounds"
     return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
 
@@ -215,7 +203,7 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 def _check_arguments(
     tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
-    """Refuse what would otherwise show late, or, where no path is traced, never."""
+    """Refuse at once what would fail late or never."""
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
@@ -232,7 +220,7 @@ def _check_arguments(
 
 
 def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
-    """A start of a path is positive; for "auto" it may have zeros, in place of which paths take small numbers."""
+    """A start: positive for a path; "auto" accepts zeros, which paths replace."""
     if not problem.standard:
         return inside_vector("x0", x0, _unfixed(problem))
     if not automatic:
@@ -245,7 +233,6 @@ def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
 
 
 def _near(guess: Any, problem: MixedLCP) -> Nearby | None:
-    """The point of a guess."""
     if guess is None:
         return None
     if not isinstance(guess, (Solution, Nearby)):
@@ -258,7 +245,6 @@ def _near(guess: Any, problem: MixedLCP) -> Nearby | None:
 
 
 def _nothing(problem: MixedLCP, archive: Any) -> Solution:
-    """The answer to a problem without unknowns."""
     if archive is not None:
         raise ValueError("archive: expected None for a problem without unknowns, of which there is no path")
     message = f"{Outcome.SOLVED} There are no unknowns."
@@ -266,8 +252,6 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    """What was done: what settled the problem, or what the paths came to and how many there were."""
-    # What was never asked of the matrix was not needed.
     parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
@@ -284,10 +268,7 @@ def _account(search: Search, settled: str) -> str:
 
 
 def _archive_without_path(log: PathLog, found: Solution) -> None:
-    """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
-
-    A solution satisfies the equations of that homotopy at lambda = 0: see `at_solution`.
-    """
+    """Archive the message, and the solution as the KKT path's end (`at_solution`)."""
     homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate

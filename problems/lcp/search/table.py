@@ -1,11 +1,8 @@
-"""What `solve` tries, in which order: one table for all problems.
+"""The methods of `solve` and their order.
 
-A solution lies on one of 2^n complementary faces, and a face is settled by one linear system. Five methods look for it:
-*active sets* move to the face that the signs on the last one ask for, *pivots* to a neighbour, *reflections* through
-points of no face, *paths* through points inside, *exclusion* proves of faces, many at once, that they hold none. The
-first two are quick and mostly right; reflections find what is of no class; exclusion proves that there is nothing;
-paths need no class at all. Each face goes to one judge (`Finish.judged`), and the outcome to another (`judge.answer`).
-The problem was scaled before, once. A row tells its method how far to go: in work, so that no clock decides.
+A solution lies on one of 2^n complementary faces; one linear system settles a face. *Active sets* move to the face that
+the last signs ask for, *pivots* to a neighbour, *reflections* through points of no face, *paths* through interior
+points; *exclusion* proves many faces empty at once. Rows limit work, so that no clock decides.
 """
 
 from __future__ import annotations
@@ -25,15 +22,15 @@ from problems.lcp.search.search import Search
 
 
 class Method(Protocol):
-    """A method on one problem, which it is made with; called again it goes on where it was left."""
+    """A method for one problem; a second call continues it."""
 
     def run(self, work: float) -> str:
-        """What settled the problem, as a sentence; empty where nothing did."""
+        """Say what settled the problem, or ""."""
 
 
 @frozen
 class Row:
-    """A method, where it is tried, and how long: `unit` says of what."""
+    """A method, its condition, and its work in `unit`."""
 
     name: str
     method: Callable[[Search], Method]
@@ -63,14 +60,14 @@ AUTOMATIC = (
 *_, _GROUPS, _PATHS, _REFLECTIONS, _RESTARTS = AUTOMATIC
 
 PATHS = (_PATHS, _GROUPS, _REFLECTIONS, _RESTARTS)
-"""The same where a path is wanted."""
+"""If a path is wanted."""
 
 NAMED = (_PATHS, Row("root", Exclusion, always, 0, "linear programs beside the first"), _RESTARTS)
 """For a homotopy by name."""
 
 
 def settled_by(search: Search, table: tuple[Row, ...]) -> str:
-    """What settled the problem, as a sentence: a solution, or a proof that there is none; empty where nothing did."""
+    """Run the rows in order; say what settled the problem, or ""."""
     made: dict[Callable[[Search], Method], Method] = {}
     for row in table:
         if row.when(search):
