@@ -1,4 +1,4 @@
-"""What may be claimed of a point: its residual in compensated arithmetic, and on demand an exact rational solution."""
+"""Certificates of a point: residuals in compensated arithmetic, and exact rational solutions."""
 
 from __future__ import annotations
 
@@ -22,46 +22,46 @@ from problems.options import finite_vector
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
 
 LARGEST_ACTIVE_SET = 400
-"""An exact solve of this order takes tens of seconds; its cost grows like n^3 times the digits, which grow like n."""
+"""An exact solve of this order takes tens of seconds; the cost grows like n^3 times the digits, and these like n."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""A relative residual below this is what rounding x leaves; refining x in twice the precision reaches it."""
+"""Relative residuals below this are round-off; refining x in twice the precision reaches it."""
 
 BOTH_ZERO = 1e-6
-"""Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
+"""An x_i and a w_i below this, relative to the terms of the rows, may both be zero."""
 
 MOST_MADE_UP = 2.0**-50
-"""2^-1074 times the largest float: more of one x_j no row can have."""
+"""The spacing 2^-1074 of subnormals times the largest float: rounding of one x_j moves no row by more."""
 
 
 @frozen(eq=False)
 class Certificate:
     """How well x solves the problem, evaluated in twice the working precision.
 
-    For bounds l, u other than 0 and infinity read |x - mid(l, x - w, u)|_i for |min(x_i, w_i)|, and the distances of
-    x_i from its bounds for x_i.
+    With bounds l, u other than 0 and infinity, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|, and the distances of
+    x_i from its bounds replace x_i.
 
     Attributes
     ----------
     x, w : Array of shape (n,)
-        w is A x + q, correctly rounded unless it cancels beyond 32 digits.
+        w is A x + q, correctly rounded unless more than 32 digits cancel.
     residual : float
-        The natural residual max_i |min(x_i, w_i)|, absolute: it has the units of the problem.
+        The natural residual max_i |min(x_i, w_i)|, in the problem's units.
     relative_residual : float
-        max_i |min(x_i, w_i)|, each w_i relative to the terms of its row, (|A| |x| + |q|)_i, and each x_i to its largest
-        share in the terms of a row. It does not depend on the units of x, of w, or of any row or column. For x >= 0
-        whose zeros are exact it is the componentwise backward error: x solves exactly some LCP(q + dq, A + dA) with
-        |dq| <= eps |q|, |dA| <= eps |A| for eps = relative_residual, and for no smaller one.
+        max_i |min(x_i, w_i)| with w_i relative to the terms (|A| |x| + |q|)_i of row i, and x_i replaced by its largest
+        share in the terms of a row. It does not depend on units. For x >= 0 with exact zeros it is the componentwise
+        backward error: the smallest eps for which x solves some LCP(q + dq, A + dA) with |dq| <= eps |q| and |dA| <=
+        eps |A|.
     negative_x, negative_w : float
-        max_i max(-x_i, 0) and max_i max(-w_i, 0): zero at a feasible point. With bounds: how far x is beyond them, and
-        how large a w_i is whose sign they do not allow.
+        max_i max(-x_i, 0) and max_i max(-w_i, 0). With bounds: the largest distance of x beyond them, and the largest
+        w_i of a forbidden sign.
     complementarity : float
-        max_i |x_i w_i|; with bounds the distance from the lower one times a positive w_i, from the upper one times a
-        negative one.
+        max_i |x_i w_i|; with bounds, a positive w_i times the distance from the lower bound, a negative one from the
+        upper.
     drowned : float
-        By how much a row is off relative to the largest |q_i|, in balanced units (`problems.lcp.data.scaling`). It is
-        large at a point that runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
-        Zero up to 1e-10, and where every |min(x_i, w_i)| is so far below |q_i| that there is no need to ask.
+        Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`). It is large where
+        x runs off to infinity along a solution of LCP(0, A), while the relative residual is small. Zero up to 1e-10, or
+        where all defects are clearly below |q_i|.
 
     References
     ----------
@@ -79,10 +79,9 @@ class Certificate:
     drowned: float
 
     def solves(self, tolerance: float = 1e-10) -> bool:
-        """Whether x may be called a solution: its relative residual is small, and q has not drowned in rounding.
+        """Whether x is a solution: its relative residual and `drowned` are small.
 
-        Relative to its terms alone a row would pass at a point that runs off to infinity on a problem without
-        solution; so what it is off may not exceed `DROWNED` times q either. The answer is the same in all units.
+        `drowned` excludes points that run off to infinity. The answer does not depend on units.
 
         Parameters
         ----------
@@ -97,7 +96,7 @@ class Certificate:
 
 
 def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
-    """Evaluate the natural residual and its parts at x with compensated arithmetic.
+    """Evaluate the residuals at x with compensated arithmetic.
 
     Parameters
     ----------
@@ -105,14 +104,14 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
         Dense or sparse.
     x : Array of shape (n,)
     zero : float
-        Entries of x up to this, in natural units (|q|_inf over the largest row norm of A), are taken for zeros (so
-        near to a bound, for the bound), and the certificate is that of the point with zeros there: the end of a path is
-        near a solution whose zeros are exact, and a small x_i may be a large part of row i.
+        Entries of x within this distance of zero or a bound, in natural units (|q|_inf over the largest row norm of A),
+        are set to it first: the solution near a path's end has exact zeros, and a small x_i may be a large part of row
+        i.
 
     Raises
     ------
     TypeError
-        If the problem is none.
+        If `problem` is no problem.
     ValueError
         If x is not a finite vector of n numbers.
     """
@@ -132,7 +131,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @without_warnings(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite vector of n > 0 numbers, which nobody else changes.
+    """The certificate of a finite x, n > 0; the caller must not change x afterwards.
 
     Parameters
     ----------
@@ -150,7 +149,6 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
     shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
-        # A mid of three, in which what was not asked for is infinite.
         relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
     return Certificate(
@@ -166,17 +164,16 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
-    """How far each row is off, but for those that entries of x that no float holds can make up for.
+    """The defects `off`, zero in rows where the rounding of subnormal x_j explains the defect.
 
-    So it is at the far end of a solution that falls off by powers: a row with a term of a normal float is off by that.
-    An x_j at its bound counts only where w_j is not pressed against it: another one is exactly there.
+    An x_j at its bound explains a defect only where w_j does not press it against that bound.
     """
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    # Below this an x_j is a multiple of 2^-1074, and may be off by half of that.
+    # Subnormal x_j are multiples of 2^-1074, with errors up to half of that.
     sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
     asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
     reach = sizes @ (subnormal & away).astype(float)
@@ -186,7 +183,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """The same where there are no upper bounds, and no row is over a power of two: in a third of the time."""
+    """`certified` without upper bounds and scaled rows, in a third of the time."""
     w, low = terms.w, least(x)
     relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     complementarity = largest(x * w)
@@ -211,16 +208,16 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
 
 @frozen(eq=False)
 class ExactCertificate:
-    """An exact rational point on an active set, the data taken as the exact dyadic rationals that floats are.
+    """An exact rational point on an active set; floats are exact dyadic rationals.
 
     Attributes
     ----------
     solves : bool
-        Whether x >= 0, A x + q >= 0 and x_i w_i = 0 hold exactly, or what the bounds ask in place of that: a proof.
+        Whether the point satisfies the problem's conditions exactly: a proof.
     x, w : tuple of n Fraction, or None
         None if the active set's equations have no solution.
     active : tuple of int
-        The indices with w_i = 0 imposed; x_i is zero, or at a bound, elsewhere.
+        Indices with w_i = 0 imposed; the other x_i are zero, or at a bound.
     message : str
     """
 
@@ -232,25 +229,24 @@ class ExactCertificate:
 
     @property
     def x_rounded(self) -> Array:
-        """The exact x, each entry rounded to the nearest double, shape (n,)."""
+        """The exact x, rounded to the nearest doubles, shape (n,)."""
         if self.x is None:
             raise ValueError("x: there is no exact point on this active set")
         return np.array([float(value) for value in self.x])
 
 
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
-    """Solve on the active set of x in rational arithmetic and decide exactly whether that solves the problem.
+    """Solve on the active set of x in rational arithmetic, and decide exactly whether the result solves the problem.
 
-    The active set is {x_i > w_i}, each relative to the terms of the rows, or with bounds the piece of the natural map
-    on which x is; if its point is not a solution, two more are tried, in which the indices that are zero in both x and
-    w (at a bound, and zero in w), to `BOTH_ZERO`, are left out or taken in. On a singular
-    active set the dependent entries of x keep their float values, so degenerate and rank-deficient problems have
-    certificates too.
+    The active set is {x_i > w_i}, each relative to the terms of the rows; with bounds it is the piece of the natural
+    map that holds x. If its point is no solution, two more sets are tried: indices with x_i at a bound and w_i zero, up
+    to `BOTH_ZERO`, are left out, then taken in. On a singular active set dependent entries of x keep their float
+    values, so degenerate problems have certificates too.
 
     Parameters
     ----------
     problem : MixedLCP
-        Of any size; its active set is at most `LARGEST_ACTIVE_SET`.
+        Of any size; its active set has at most `LARGEST_ACTIVE_SET` indices.
     x : Array of shape (n,)
         An approximate solution.
 
@@ -276,7 +272,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """That of x and w relative to the terms of the rows, then without and with what is about zero in both."""
+    """The state of x and w relative to the terms, then with doubtful indices at their nearest bound, then between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -295,10 +291,10 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
 
 
 def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Array) -> ExactCertificate:
-    """The exact solution on one active set, and its signs."""
+    """The exact solution on one active set, with its signs checked."""
     active = np.flatnonzero(state == BETWEEN)
     chosen = tuple(int(i) for i in active)
-    # The equations times 2^shift, by which bounds other than zero become integers.
+    # The factor 2^shift makes nonzero bounds integers.
     at_bounds, shift = integers(problem.at(state))
     right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
     solution = solve_exactly(block_of([rows[i] for i in chosen], active, problem.n) << shift, right, x[active])
@@ -308,7 +304,6 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
     for i, value in zip(chosen, solution[0]):
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
-    # An integer row is a power of two times the float row, and that power is divided out.
     exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
     wrong = _wrong_sign(problem, state, exact_x, exact_w)
     if wrong:
@@ -318,7 +313,7 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    """What forbids the point of a state: the first x_i beyond a bound, or w_i of the wrong sign there; else empty."""
+    """The first x_i beyond a bound or w_i of the wrong sign, in words; empty if there is none."""
     for i, value in enumerate(x):
         low, high = problem.lower[i], problem.upper[i]
         if low > -math.inf and value < Fraction(low):

@@ -1,4 +1,4 @@
-"""A x + q as if computed in twice the working precision, with a bound on what is left of the error."""
+"""A x + q in twice the working precision, with an error bound."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from problems.lcp.proof.inequalities import Inequalities
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.array(~0x7FFFFFF)
-"""Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
+"""Keeps the leading 26 bits of a double: products of two such numbers are exact."""
 
 _BLOCK = 2**15
-"""Entries of a dense A in a block of rows: 256 KiB, of which two at a time stay in the cache. Of a quarter of them all
-products are taken at once; of more slices are quicker."""
+"""Entries in a block of rows of a dense A: two blocks of 256 KiB stay in the cache. Up to a quarter of this, all
+products are formed at once; above, slices are faster."""
 
 DOUBLE_BITS = 53
-"""Of a double."""
+"""Bits of a double's mantissa."""
 
 LARGEST_TERMS = 1e240
-"""Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
-of products below 1e-260 are no longer exact."""
+"""Rows whose terms sum to more than this, or less than its inverse, are scaled by a power of two: low halves of
+products below 1e-260 are inexact."""
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """W = A x + q by compensated summation of error-free products, and a bound on the error of each entry.
+    """Compute w = A x + q by compensated summation of error-free products, and a bound on each entry's error.
 
-    `problem`: Dense or sparse; no copy of A is made. `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i|
-    <= bound_i; both infinite where a product overflows.
+    `problem`: Dense or sparse; A is not copied. `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i| <=
+    bound_i; both infinite where a product overflows.
 
     References
     ----------
@@ -49,7 +49,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
 
 def error_bound(w: Array, size: Array, terms: int) -> Array:
-    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off."""
+    """Error bound of a compensated sum w of `terms` terms whose magnitudes add up to `size`."""
     gamma = 4.0 * (terms + 2) * _UNIT
     bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     return bound
@@ -57,11 +57,11 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 
 @frozen(eq=False)
 class Terms:
-    """The rows of A x + q for a matrix A and vectors x, q, each row over a power of two of its own.
+    """The rows of A x + q, row i divided by 2^exponents[i].
 
-    `A` of shape (n, n). `x`, of shape (n,): With `A`: the products A_ij x_j over 2^exponents[i]. `w`, `size`, of shape
-    (n,): (A x + q)_i in twice the working precision, and (|A| |x| + |q|)_i, both over 2^exponents[i]. `exponents`, of
-    shape (n,): Zero but for data or x near the ends of the range of floats.
+    `A` of shape (n, n), `x` of shape (n,): Scaled so that A_ij x_j are the divided products. `w`, `size`, of shape
+    (n,): (A x + q)_i in twice the working precision and (|A| |x| + |q|)_i, divided. `exponents`, of shape (n,): Zero
+    unless data or x are near the ends of the float range.
     """
 
     A: Matrix
@@ -73,7 +73,7 @@ class Terms:
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
-    """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
+    """Each row of A x + q and the sizes of its terms, without overflow or underflow of rows.
 
     `x`, of shape (n,): Finite.
     """
@@ -101,7 +101,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
         row_of = np.arange(problem.n)[:, None]
         exponents = np.maximum(exponents, products.max(axis=1))
     exponents = np.where(exponents == lowest, 0, exponents)
-    # Products that are smaller than their row's largest by 2^-1000 may vanish: they are below its last digits.
+    # Products below 2^-1000 of the row's largest may vanish: they cannot change its last digits.
     moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
     q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
     A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
@@ -110,7 +110,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
 
 
 def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int]:
-    """(w, the sum of the magnitudes of its terms, their number) of each row."""
+    """Returns w, the sums of magnitudes of the terms, and the number of terms of a row."""
     A, q, count = problem.A, problem.q, x.size
     if problem.sparse:
         A = sp.csr_array(A)
@@ -125,7 +125,7 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int
 
 
 def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
-    """Where a row has a term that is not zero."""
+    """Whether each row has a nonzero term."""
     support = x != 0.0
     if not support.any():
         return problem.q != 0.0
@@ -133,9 +133,9 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
-    """Sums of products along the first axis, and constants: the rounded sum, what it lost, the sum of magnitudes.
+    """Sums of products along the first axis plus constants: rounded sums, their rounding errors, sums of magnitudes.
 
-    `entries` of shape (m, ...). `factors`: That broadcasts to the same shape. `constants` of shape (...).
+    `entries` of shape (m, ...). `factors`: Broadcasts to that shape. `constants` of shape (...).
     """
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])
@@ -145,11 +145,11 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 
 
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
-    """The same of a dense matrix, by products of slices of which BLAS loses nothing.
+    """`summed` for a dense matrix, with exact BLAS products.
 
-    A and x are cut into slices of so few digits that sums of products of two slices are exact: two of A, three of x,
-    which are all of it. What is left of A is 2^-42 or less of the largest product of the row and multiplied as usual,
-    with an error below that of sums of products in twice the working precision.
+    A is cut into two slices and x into three, of so few bits that sums of products of slices are exact. Three slices
+    are all of x. The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual; the error stays below
+    that of twice the working precision.
 
     References
     ----------
@@ -157,10 +157,10 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
     multiplication and its applications", Numer. Algorithms 59, 2012.
     """
     mantissas, powers = np.frexp(x)
-    # Integers below 2^(digits - 1): so many products of two of them add up to less than 2^53.
+    # n products of two integers below 2^(digits - 1) sum to less than 2^53.
     digits = (DOUBLE_BITS - int(np.ceil(np.log2(x.size)))) // 2 + 1
     factors = np.stack([*_leading(mantissas.copy(), np.ones(1), digits, 3)], axis=1)
-    # Times powers of two, so that the largest entry of a row is about its largest product.
+    # Powers of two make a row's largest entry about its largest product.
     left = A * np.where(x == 0.0, 0.0, np.ldexp(1.0, powers))
     magnitudes = np.abs(left)
     sizes, top = magnitudes @ np.abs(mantissas), np.ldexp(1.0, np.frexp(magnitudes.max(axis=1))[1])[:, None]
@@ -170,7 +170,7 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
 
 
 def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array]:
-    """Slices of so many digits of numbers that are at most top, which they leave what is left."""
+    """Cut `count` slices of `digits` bits off `left`, at most `top` in size; `left` becomes the rest."""
     for _ in range(count):
         shift = top * (1.5 * 2.0 ** (DOUBLE_BITS - digits))
         part = left + shift
@@ -181,13 +181,13 @@ def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array
 
 
 def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, int]:
-    """The same for a sparse matrix, and the most entries of a row: the k-th stored entries of all rows together."""
+    """`summed` for a sparse matrix, and the largest number of entries of a row; step k adds each row's k-th entry."""
     total, lost, size = q.copy(), np.zeros(q.size), np.abs(q)
     lengths: NDArray[Any] = np.diff(A.indptr)
     longest_first = np.argsort(-lengths, kind="stable")
     ordered = lengths[longest_first]
     for k in range(int(ordered[0])):
-        # Slices where every row has a k-th entry: gathering rows costs more than the sums do.
+        # Slices where every row has a k-th entry: gathering rows costs more than the sums.
         everywhere = k < ordered[-1]
         rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = A.indptr[:-1][rows] + k
@@ -200,13 +200,13 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
 
 
 def _lost(a: Array, b: Array, total: Array) -> Array:
-    """The rounding error of a sum, exactly (Knuth)."""
+    """The exact rounding error of a + b (Knuth)."""
     virtual = total - a
     return (a - (total - virtual)) + (b - virtual)
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its rounding error to 2^-106 (Dekker, split by masking so that it cannot overflow)."""
+    """The rounded product and its rounding error to 2^-106 (Dekker; masking cannot overflow)."""
     product = a * b
     a_high, b_high = _high(a), _high(b)
     a_low, b_low = a - a_high, b - b_high

@@ -1,4 +1,4 @@
-"""How far a point is off in each row: shares of x in the terms of the rows, and q that drowns in their rounding."""
+"""Defects per row: shares of x in the terms of rows, and rows where rounding drowns q."""
 
 from __future__ import annotations
 
@@ -13,22 +13,21 @@ from problems.lcp.data.spread import alike
 from problems.lcp.proof.compensated import Terms
 
 DROWNED = 1e-6
-"""The most that a row may be off, relative to the largest |q_i| in balanced units, however large its terms are."""
+"""Largest allowed defect of a row relative to max |q_i| in balanced units."""
 
 FAR_BELOW_Q = 1e-10
-"""What is no more than this counts as zero: any point that runs off to infinity is far above it; the ends of the
-Maros-Meszaros programs that are solved to precision are below 1e-12."""
+"""Smaller values of `drowned` count as zero: points that run off to infinity are far above this, accurate ends of the
+Maros-Meszaros programs below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
-"""The same relative to the least |q_i| that is not zero, in the units given, where these are `alike`: then no units are
-to be found, which takes longer than all else (arches of five stones: 0.45 of 1.2 ms)."""
+"""Defects below this part of the least nonzero |q_i| count as zero if entries are `alike`: computing units would take
+longest (five-stone arches: 0.45 of 1.2 ms)."""
 
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
+    """The signed distance of each x_i from a bound, as its largest share in the terms of a row.
 
-    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
-    not zero: any other is off by all of itself.
+    It is infinite where not asked for. An x_i that is in no row and not at its bound has share 1.
 
     `terms`: Of the rows at x. `x`, `distance` of shape (n,). `asked` of shape (n,).
     """
@@ -39,7 +38,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
         sizes = np.abs(terms.x[indices])
         moved = distance[indices] != x[indices]
         if moved.any():
-            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
+            # Scaled rows hold shares of x_i; the shares of the distance follow from these.
             with np.errstate(all="ignore"):
                 scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
             known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
@@ -58,13 +57,13 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 
 
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i.
+    """Compute `Certificate.drowned`; balanced units are computed only where a defect exceeds `DROWNED` times |q_i|.
 
-    `terms`: Of the rows at x. `off`, of shape (n,): How far each row is off, relative to its terms.
+    `terms`: Of the rows at x. `off`, of shape (n,): Defects relative to the terms.
     """
     moved = np.count_nonzero(terms.exponents)
     q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q
-    asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
+    asked = off * terms.size > DROWNED * np.abs(q)
     if not np.count_nonzero(asked):
         return 0.0
     if not moved:

@@ -1,4 +1,4 @@
-"""Phase I: a strictly feasible start x0 > 0, A x0 + q > 0 by a linear program, or a proof that there is none."""
+"""Phase I: a strictly feasible start x0 > 0, A x0 + q > 0 by linear programs, or a proof that none exists."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class NoStrictlyFeasiblePoint(ValueError):
     Attributes
     ----------
     certificate : Farkas or None
-        The exact proof that none exists; None if the linear program says so only in floating point.
+        The exact proof that none exists; None if only floating point says so.
     margin : float
         The largest scaled margin t that the linear program found; at most about 0.
     """
@@ -32,11 +32,11 @@ class NoStrictlyFeasiblePoint(ValueError):
 
 
 def strictly_feasible_start(problem: LCP) -> Array:
-    """A point of F = {x > 0, A x + q > 0}, of the largest scaled margin up to 1.
+    """Find a point of F = {x > 0, A x + q > 0} of the largest scaled margin up to 1.
 
-    Rows of [A, q] and columns of A are scaled by powers of two. HiGHS first looks for the least x of margin 1, and
-    if there is none maximises t <= 1 subject to x >= t and A x + q >= t in scaled units; that program has a dense
-    column and is much slower on large sparse A. Positivity is verified with a rigorous error bound.
+    Powers of two scale the rows of [A, q] and the columns of A. HiGHS first looks for the least x of margin 1; if none
+    exists it maximises t <= 1 subject to x >= t, A x + q >= t, whose dense column is slow for large sparse A. A
+    rigorous error bound verifies positivity.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
     Raises
     ------
     NoStrictlyFeasiblePoint
-        If F is empty, with the exact certificate, or if no point could be verified; the message says which.
+        If F is empty, with the exact certificate, or no point could be verified.
 
     References
     ----------
@@ -75,7 +75,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
 
 
 def is_strictly_feasible(problem: LCP, x: Array) -> bool:
-    """Whether x > 0 and A x + q > 0 beyond doubt: each w_i exceeds a bound on its own rounding error."""
+    """Whether x > 0 and each w_i exceeds the bound on its rounding error."""
     if not (np.isfinite(x).all() and (x > 0).all()):
         return False
     w, bound = accurate_w(problem, x)
@@ -83,9 +83,9 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
 
 
 def _programs(problem: LCP) -> Iterator[tuple[Array | None, float]]:
-    """The x of least scaled sum with scaled margin 1; then that of the largest margin t <= 1, and t.
+    """The x of least scaled sum with margin 1, and 1; then x of the largest margin t <= 1, and t.
 
-    (None, nan) where HiGHS finds none, or gave up.
+    Yields (None, nan) where HiGHS finds none.
     """
     rows, columns = scales(problem)
     (matrix, vector), n, none = scaled_data(problem, rows, columns), problem.n, (None, float("nan"))

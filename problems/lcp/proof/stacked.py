@@ -1,4 +1,4 @@
-"""Points of many small dense LCPs judged together: what this accepts `certify` and `confirmed` accept one by one."""
+"""Judges points of many small dense LCPs together; `certify` and `confirmed` accept every point accepted here."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
 POINT_CORRECTIONS = 2
-"""Of a point with w in twice the working precision, as in `active_set.finish`."""
+"""Corrections of a point with w in twice the working precision, as in `active_set.finish`."""
 
 
 @frozen(eq=False)
 class Judged:
     """Points of a stack of LCPs, and which of them are solutions.
 
-    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified: round-off in each row relative to its own
-    terms, no row off by what q is, and up to order 12 an exact solution nearby. Where not, nothing is said. `residual`,
-    `relative_residual`, of shape (k,): As in `Certificate`.
+    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified (round-off in each row, q not drowned, up to
+    order 12 an exact solution nearby); False decides nothing. `residual`, `relative_residual`, of shape (k,): As in
+    `Certificate`.
     """
 
     x: Array
@@ -33,7 +33,7 @@ class Judged:
 
 
 def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> Judged:
-    """The points of faces, corrected in twice the working precision.
+    """Points of faces, corrected in twice the working precision.
 
     Parameters
     ----------
@@ -50,7 +50,6 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     for _ in range(1 + POINT_CORRECTIONS):
         moved = x - np.where(active, (inverse @ np.where(active, w, 0.0)[..., None])[..., 0], 0.0)
         x = np.where(np.isfinite(moved).all(axis=1, keepdims=True), np.maximum(moved, 0.0), x)
-        # In twice the working precision.
         total, lost, size = summed(by_columns, x.T[:, :, None], q)
         w = total + lost
         relative = w / np.where(size > 0.0, size, 1.0)
@@ -59,7 +58,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
         if (worst <= ROUND_OFF).all():
             break
     solves: NDArray[np.bool_] = (worst <= min(ROUND_OFF, tolerance)) & ~(off * size > DROWNED * np.abs(q)).any(axis=1)
-    # Beyond this rows are summed over powers of two, one by one.
+    # Larger and smaller rows need scaling by powers of two.
     solves &= (size.max(axis=1) <= LARGEST_TERMS) & ((size >= 1.0 / LARGEST_TERMS).all(axis=1))
     if n <= LARGEST_DECIDED:
         exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
@@ -68,7 +67,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
 
 
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
-    """Which complementary faces are not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
+    """Complementary faces not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
 
     `A` of shape (k, n, n). `q` of shape (k, n).
     """

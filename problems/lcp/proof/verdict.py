@@ -1,4 +1,4 @@
-"""What may be said of a point: whether it is a solution, and whether it is stationary."""
+"""Decides whether a point is a solution, and whether it is stationary."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from problems.lcp.proof.pieces import identity, inverses
 EPS = float(np.finfo(float).eps)
 
 UNDERFLOW = float(np.finfo(float).tiny) / EPS
-"""Below this products may have lost digits to underflow."""
+"""Smaller products may have lost digits to underflow."""
 
 LARGEST_DECIDED = 12
-"""Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
-solves a problem to the tolerance but not to round-off is called a solution only if exact arithmetic agrees."""
+"""Up to this order all faces are tried exactly (about 1 s) before the first restart, and points that solve only to the
+tolerance need exact confirmation."""
 
 ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
-"""A relative residual below this is within rounding: half an eps for x, and half for each factor that gave the entries
-their units, of a row and of a column; the last half is for their products."""
+"""Relative residuals below this are rounding: half an eps for x, the row unit, the column unit and the products
+each."""
 
 STATIONARY = 1e-6
-"""Relative to their terms: how well the optimality conditions hold at what is called stationary.
-
-A degenerate end is a series in the root of lambda, so that half of the digits of a good end can be asked of it.
+"""Tolerance, relative to the terms, of the optimality conditions at a stationary point: a degenerate end is a series in
+the root of lambda and has half of the digits.
 """
 
 NEARLY = 1e-5
-"""An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
+"""An end that solves the problem to this, but not to the tolerance, is an inaccurate solution, not a stationary
+point."""
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point may be called a solution.
+    """Whether the point is a solution.
 
-    One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
-    unless its rows are off by no more than the rounding of the entries.
+    It must pass `Certificate.solves`. For small problems exact arithmetic must agree too, unless defects are rounding
+    of the entries.
 
     `certificate`: Of the point. `tolerance`: Of its relative residual.
     """
@@ -53,11 +53,10 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
-    """Whether x solves the conditions of a program whose data differ by round-off, relative to the largest of them.
+    """Whether x solves the conditions of a program up to round-off relative to its largest data.
 
-    `confirmed` asks that of each row relative to its own terms, which no x can do where the files of a program have
-    sides of rows of 1e-16 in place of zeros. A point that runs off to infinity, where the objective falls for ever, is
-    told by q, which drowns there.
+    No x passes `confirmed`, which compares each row with its own terms, where files give sides of rows as 1e-16 instead
+    of zero. `drowned` excludes points that run off to infinity, where the objective falls without end.
 
     `problem`: In balanced units. `certificate`: Of the point.
     """
@@ -67,9 +66,9 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
 
 
 def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether the problem has a solution, exactly, on the face of x or on one that x touches.
+    """Whether the problem has an exact solution on the face of x or on an adjacent face.
 
-    Where rounding cannot matter floats prove it; in doubt the equations are solved in rationals.
+    Floats prove it where rounding cannot matter; otherwise the equations are solved in rationals.
 
     Parameters
     ----------
@@ -78,13 +77,13 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     x : ndarray, shape (n,)
         A point that is `confirmed`.
     w : ndarray, shape (n,), optional
-        That of its certificate.
+        The certificate's w.
 
     References
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    # Asked by the finish, by the search and for the outcome, of the same point.
+    # Several callers ask about the same point.
     point, answer = problem.known.get("exact", (None, False))
     if point is None or not (point is x or np.array_equal(point, x)):
         answer = (problem.standard and _clearly_exact(problem, x, w)) or certify_exactly(problem, x).solves
@@ -93,14 +92,14 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether floats prove it, as `Faced` does of many points; w is in twice the working precision."""
+    """Whether floats prove an exact solution nearby (`Faced`); w is in twice the working precision."""
     if not x.any():
         return least(problem.q) >= 0.0
     if least(x) < 0.0:
         return False
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     size = np.abs(A).dot(x) + np.abs(problem.q)
-    # Beyond this w is summed over powers of two, and what it lost is not known here.
+    # Outside this range w is computed from scaled rows, and its error is unknown here.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
         return False
     w = accurate_w(problem, x)[0] if w is None else w
@@ -109,14 +108,14 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 @frozen(eq=False)
 class Faced:
-    """The equations of the faces of points of a stack of LCPs, in units of x, with approximate inverses.
+    """Face equations of points of a stack of LCPs, in units of x, with approximate inverses.
 
-    Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
-    |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
+    B is the face's block with rows of the identity off the face. With an approximate inverse R and |I - R B| <= d < 1,
+    B is nonsingular, and B u = r has |u| <= |R| |r| / (1 - d) in the maximum norm.
 
-    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and largest of the terms of each
-    row of A x, the largest 1 off the face. `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or
-    infinite where nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of the terms of each row of
+    A x; the maximum is 1 off the face. `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d; NaN or infinite
+    where nothing is proved.
     """
 
     on: NDArray[np.bool_]
@@ -127,14 +126,14 @@ class Faced:
 
     @classmethod
     def of(cls, A: Array, x: Array) -> Faced:
-        """For points x >= 0.
+        """Set up the equations for points x >= 0.
 
         `A` of shape (..., n, n). `x` of shape (..., n).
         """
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
         sizes = np.abs(terms)
-        # Reductions of ufuncs: for the small problems that come here methods of arrays take half as long again.
+        # Reductions of ufuncs: array methods take 1.5 times as long on small problems.
         total = np.add.reduce(sizes, axis=-1)
         top = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
         fine = np.minimum.reduce(top, axis=-1) > UNDERFLOW
@@ -142,8 +141,7 @@ class Faced:
         block = np.where(on[..., None], terms, one)
         block /= top[..., None]
         inverse = inverses(block)
-        # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
-        # more than n.
+        # Twice the rounding of block and product (Higham, section 3.5); rows of |B| sum to at most n.
         size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
         off = np.abs(inverse @ block - one)
         off += n * rounding * size
@@ -153,7 +151,7 @@ class Faced:
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
         """Whether the equations have a solution near x with w > 0 elsewhere.
 
-        `w`, `bound`, of shape (..., n): w, and how far it may be off.
+        `w`, `bound`, of shape (..., n): w and its error bound.
         """
         right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
@@ -166,9 +164,9 @@ class Faced:
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
-    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
-    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference. With bounds those of the
-    gap, as `KKTHomotopy` has them.
+    These are (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0, relative to the sizes of x,
+    w, z1 and z2, so that factors of (A, q) or of q do not matter. With bounds they are the conditions of the gap, as in
+    `KKTHomotopy`.
     """
     rows = Rows(problem)
     if y.size != rows.size:
