@@ -1,1 +1,1 @@
-"""Proofs: residuals in twice the working precision, exact solutions, Farkas vectors, strictly feasible points."""
+"""Proofs: accurate residuals, exact solutions, Farkas vectors, strictly feasible points."""

@@ -1,4 +1,4 @@
-"""Certificates of a point: residuals in compensated arithmetic, and exact rational solutions."""
+"""Certificates: accurate residuals of a point, and exact rational solutions."""
 
 from __future__ import annotations
 
@@ -22,46 +22,41 @@ from problems.options import finite_vector
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
 
 LARGEST_ACTIVE_SET = 400
-"""An exact solve of this order takes tens of seconds; the cost grows like n^3 times the digits, and these like n."""
+"""An exact solve of this order takes tens of seconds; its cost grows about like n^4."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""Relative residuals below this are round-off; refining x in twice the precision reaches it."""
+"""Smaller relative residuals are round-off."""
 
 BOTH_ZERO = 1e-6
-"""An x_i and a w_i below this, relative to the terms of the rows, may both be zero."""
+"""An x_i and a w_i below this part of the terms may both be zero."""
 
 MOST_MADE_UP = 2.0**-50
-"""The spacing 2^-1074 of subnormals times the largest float: rounding of one x_j moves no row by more."""
+"""2^-1074 times the largest float: rounding a subnormal x_j changes no row by more."""
 
 
 @frozen(eq=False)
 class Certificate:
     """How well x solves the problem, evaluated in twice the working precision.
 
-    With bounds l, u other than 0 and infinity, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|, and the distances of
-    x_i from its bounds replace x_i.
+    For bounds l, u other than 0 and infinity, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|.
 
     Attributes
     ----------
     x, w : Array of shape (n,)
-        w is A x + q, correctly rounded unless more than 32 digits cancel.
+        w = A x + q, correctly rounded unless 32 digits cancel.
     residual : float
         The natural residual max_i |min(x_i, w_i)|, in the problem's units.
     relative_residual : float
-        max_i |min(x_i, w_i)| with w_i relative to the terms (|A| |x| + |q|)_i of row i, and x_i replaced by its largest
-        share in the terms of a row. It does not depend on units. For x >= 0 with exact zeros it is the componentwise
-        backward error: the smallest eps for which x solves some LCP(q + dq, A + dA) with |dq| <= eps |q| and |dA| <=
-        eps |A|.
+        max_i |min(x_i, w_i)| with w_i relative to the terms (|A| |x| + |q|)_i, and x_i replaced by its largest share in
+        a row's terms; independent of units. For x >= 0 with exact zeros it is the componentwise backward error: the
+        least eps such that x solves an LCP(q + dq, A + dA) with |dq| <= eps |q|, |dA| <= eps |A|.
     negative_x, negative_w : float
-        max_i max(-x_i, 0) and max_i max(-w_i, 0). With bounds: the largest distance of x beyond them, and the largest
-        w_i of a forbidden sign.
+        Largest violation of the bounds of x, and largest w_i of a forbidden sign.
     complementarity : float
-        max_i |x_i w_i|; with bounds, a positive w_i times the distance from the lower bound, a negative one from the
-        upper.
+        max_i |x_i w_i|; with bounds, w_i times the distance from the bound that its sign belongs to.
     drowned : float
-        Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`). It is large where
-        x runs off to infinity along a solution of LCP(0, A), while the relative residual is small. Zero up to 1e-10, or
-        where all defects are clearly below |q_i|.
+        Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`), zero up to 1e-10.
+        It is large where x runs off to infinity along a solution of LCP(0, A), although the relative residual is small.
 
     References
     ----------
@@ -79,9 +74,7 @@ class Certificate:
     drowned: float
 
     def solves(self, tolerance: float = 1e-10) -> bool:
-        """Whether x is a solution: its relative residual and `drowned` are small.
-
-        `drowned` excludes points that run off to infinity. The answer does not depend on units.
+        """Whether x is a solution: small relative residual, and no run to infinity (`drowned`).
 
         Parameters
         ----------
@@ -101,12 +94,10 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse.
     x : Array of shape (n,)
     zero : float
-        Entries of x within this distance of zero or a bound, in natural units (|q|_inf over the largest row norm of A),
-        are set to it first: the solution near a path's end has exact zeros, and a small x_i may be a large part of row
-        i.
+        Entries this near to zero or a bound, in natural units (|q|_inf over the largest row norm of A), are moved there
+        first: a small x_i may be a large part of row i.
 
     Raises
     ------
@@ -131,7 +122,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @without_warnings(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite x, n > 0; the caller must not change x afterwards.
+    """The certificate of a finite x that nobody changes, n > 0.
 
     Parameters
     ----------
@@ -164,16 +155,13 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
-    """The defects `off`, zero in rows where the rounding of subnormal x_j explains the defect.
-
-    An x_j at its bound explains a defect only where w_j does not press it against that bound.
-    """
+    """The defects `off`, zero in rows where rounding of subnormal x_j explains them."""
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    # Subnormal x_j are multiples of 2^-1074, with errors up to half of that.
+    # Subnormal x_j have errors up to 2^-1075.
     sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
     asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
     reach = sizes @ (subnormal & away).astype(float)
@@ -183,7 +171,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """`certified` without upper bounds and scaled rows, in a third of the time."""
+    """`certified` without upper bounds and scaled rows, three times as fast."""
     w, low = terms.w, least(x)
     relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     complementarity = largest(x * w)
@@ -208,16 +196,16 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
 
 @frozen(eq=False)
 class ExactCertificate:
-    """An exact rational point on an active set; floats are exact dyadic rationals.
+    """An exact rational point on an active set.
 
     Attributes
     ----------
     solves : bool
-        Whether the point satisfies the problem's conditions exactly: a proof.
+        Whether the point solves the problem exactly: a proof.
     x, w : tuple of n Fraction, or None
-        None if the active set's equations have no solution.
+        None if the equations are inconsistent.
     active : tuple of int
-        Indices with w_i = 0 imposed; the other x_i are zero, or at a bound.
+        Indices with w_i = 0 imposed; other x_i are at a bound.
     message : str
     """
 
@@ -229,7 +217,7 @@ class ExactCertificate:
 
     @property
     def x_rounded(self) -> Array:
-        """The exact x, rounded to the nearest doubles, shape (n,)."""
+        """The exact x, rounded to doubles, shape (n,)."""
         if self.x is None:
             raise ValueError("x: there is no exact point on this active set")
         return np.array([float(value) for value in self.x])
@@ -238,22 +226,20 @@ class ExactCertificate:
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
     """Solve on the active set of x in rational arithmetic, and decide exactly whether the result solves the problem.
 
-    The active set is {x_i > w_i}, each relative to the terms of the rows; with bounds it is the piece of the natural
-    map that holds x. If its point is no solution, two more sets are tried: indices with x_i at a bound and w_i zero, up
-    to `BOTH_ZERO`, are left out, then taken in. On a singular active set dependent entries of x keep their float
-    values, so degenerate problems have certificates too.
+    The active set is {x_i > w_i}, relative to the rows' terms, or with bounds the piece of the natural map. If that
+    fails, indices where both are nearly zero (`BOTH_ZERO`) are left out, then taken in. On a singular active set
+    dependent x_i keep their float values.
 
     Parameters
     ----------
     problem : MixedLCP
-        Of any size; its active set has at most `LARGEST_ACTIVE_SET` indices.
     x : Array of shape (n,)
         An approximate solution.
 
     Raises
     ------
     ValueError
-        If x is not a finite vector of n numbers, or its active set is too large.
+        If x is not a finite vector of n numbers, or its active set exceeds `LARGEST_ACTIVE_SET`.
     """
     require_problem(problem)
     x = finite_vector("x", x, problem.n)
@@ -272,7 +258,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """The state of x and w relative to the terms, then with doubtful indices at their nearest bound, then between."""
+    """The state of x, then with doubtful indices at their nearest bound, then between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -291,10 +277,9 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
 
 
 def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Array) -> ExactCertificate:
-    """The exact solution on one active set, with its signs checked."""
     active = np.flatnonzero(state == BETWEEN)
     chosen = tuple(int(i) for i in active)
-    # The factor 2^shift makes nonzero bounds integers.
+    # The shift makes nonzero bounds integers.
     at_bounds, shift = integers(problem.at(state))
     right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
     solution = solve_exactly(block_of([rows[i] for i in chosen], active, problem.n) << shift, right, x[active])
@@ -313,7 +298,7 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    """The first x_i beyond a bound or w_i of the wrong sign, in words; empty if there is none."""
+    """The first violated condition in words, or an empty string."""
     for i, value in enumerate(x):
         low, high = problem.lower[i], problem.upper[i]
         if low > -math.inf and value < Fraction(low):

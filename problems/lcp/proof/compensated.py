@@ -17,26 +17,24 @@ from problems.lcp.proof.inequalities import Inequalities
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.array(~0x7FFFFFF)
-"""Keeps the leading 26 bits of a double: products of two such numbers are exact."""
+"""Keeps 26 leading bits of a double: products are exact."""
 
 _BLOCK = 2**15
-"""Entries in a block of rows of a dense A: two blocks of 256 KiB stay in the cache. Up to a quarter of this, all
-products are formed at once; above, slices are faster."""
+"""Entries in a block of rows: two blocks of 256 KiB fit the cache. Up to a quarter, forming all products at once is
+faster than slices."""
 
 DOUBLE_BITS = 53
-"""Bits of a double's mantissa."""
+"""Mantissa bits."""
 
 LARGEST_TERMS = 1e240
-"""Rows whose terms sum to more than this, or less than its inverse, are scaled by a power of two: low halves of
-products below 1e-260 are inexact."""
+"""Rows with larger terms, or below its inverse, are scaled: low halves of products below 1e-260 are inexact."""
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """Compute w = A x + q by compensated summation of error-free products, and a bound on each entry's error.
+    """A x + q by compensated summation of error-free products, and a bound on each entry's error.
 
-    `problem`: Dense or sparse; A is not copied. `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i| <=
-    bound_i; both infinite where a product overflows.
+    `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i| <= bound_i; infinite where a product overflows.
 
     References
     ----------
@@ -49,7 +47,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
 
 def error_bound(w: Array, size: Array, terms: int) -> Array:
-    """Error bound of a compensated sum w of `terms` terms whose magnitudes add up to `size`."""
+    """Error bound of a compensated sum w of `terms` terms whose magnitudes sum to `size`."""
     gamma = 4.0 * (terms + 2) * _UNIT
     bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     return bound
@@ -59,9 +57,8 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 class Terms:
     """The rows of A x + q, row i divided by 2^exponents[i].
 
-    `A` of shape (n, n), `x` of shape (n,): Scaled so that A_ij x_j are the divided products. `w`, `size`, of shape
-    (n,): (A x + q)_i in twice the working precision and (|A| |x| + |q|)_i, divided. `exponents`, of shape (n,): Zero
-    unless data or x are near the ends of the float range.
+    `A` of shape (n, n), `x` of shape (n,): Give the divided products A_ij x_j. `w`, `size`, of shape (n,): (A x + q)_i
+    and (|A| |x| + |q|)_i, divided. `exponents`, of shape (n,): Zero for ordinary data.
     """
 
     A: Matrix
@@ -73,7 +70,7 @@ class Terms:
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
-    """Each row of A x + q and the sizes of its terms, without overflow or underflow of rows.
+    """The rows of A x + q and their terms' sizes, without overflow or underflow.
 
     `x`, of shape (n,): Finite.
     """
@@ -101,7 +98,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
         row_of = np.arange(problem.n)[:, None]
         exponents = np.maximum(exponents, products.max(axis=1))
     exponents = np.where(exponents == lowest, 0, exponents)
-    # Products below 2^-1000 of the row's largest may vanish: they cannot change its last digits.
+    # Products below 2^-1000 of the row's largest may vanish.
     moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
     q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
     A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
@@ -110,7 +107,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
 
 
 def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int]:
-    """Returns w, the sums of magnitudes of the terms, and the number of terms of a row."""
+    """Returns w, the terms' magnitude sums, the number of terms per row."""
     A, q, count = problem.A, problem.q, x.size
     if problem.sparse:
         A = sp.csr_array(A)
@@ -125,7 +122,6 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int
 
 
 def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
-    """Whether each row has a nonzero term."""
     support = x != 0.0
     if not support.any():
         return problem.q != 0.0
@@ -133,9 +129,9 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
-    """Sums of products along the first axis plus constants: rounded sums, their rounding errors, sums of magnitudes.
+    """Sums of products along the first axis plus constants: rounded sums, errors, magnitude sums.
 
-    `entries` of shape (m, ...). `factors`: Broadcasts to that shape. `constants` of shape (...).
+    `entries` of shape (m, ...). `factors`: Broadcasts to it. `constants` of shape (...).
     """
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])
@@ -145,11 +141,9 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 
 
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
-    """`summed` for a dense matrix, with exact BLAS products.
+    """`summed` for a dense matrix, by exact BLAS products of slices: two of A, three of x.
 
-    A is cut into two slices and x into three, of so few bits that sums of products of slices are exact. Three slices
-    are all of x. The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual; the error stays below
-    that of twice the working precision.
+    The three slices are all of x. The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
 
     References
     ----------
@@ -157,10 +151,10 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
     multiplication and its applications", Numer. Algorithms 59, 2012.
     """
     mantissas, powers = np.frexp(x)
-    # n products of two integers below 2^(digits - 1) sum to less than 2^53.
+    # n products of integers below 2^(digits - 1) sum to less than 2^53.
     digits = (DOUBLE_BITS - int(np.ceil(np.log2(x.size)))) // 2 + 1
     factors = np.stack([*_leading(mantissas.copy(), np.ones(1), digits, 3)], axis=1)
-    # Powers of two make a row's largest entry about its largest product.
+    # Makes a row's largest entry about its largest product.
     left = A * np.where(x == 0.0, 0.0, np.ldexp(1.0, powers))
     magnitudes = np.abs(left)
     sizes, top = magnitudes @ np.abs(mantissas), np.ldexp(1.0, np.frexp(magnitudes.max(axis=1))[1])[:, None]
@@ -170,7 +164,7 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
 
 
 def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array]:
-    """Cut `count` slices of `digits` bits off `left`, at most `top` in size; `left` becomes the rest."""
+    """Cut slices of `digits` bits off `left`, at most `top` in size; `left` keeps the rest."""
     for _ in range(count):
         shift = top * (1.5 * 2.0 ** (DOUBLE_BITS - digits))
         part = left + shift
@@ -181,13 +175,13 @@ def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array
 
 
 def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, int]:
-    """`summed` for a sparse matrix, and the largest number of entries of a row; step k adds each row's k-th entry."""
+    """`summed` for a sparse matrix, entry by entry of all rows, and the longest row's length."""
     total, lost, size = q.copy(), np.zeros(q.size), np.abs(q)
     lengths: NDArray[Any] = np.diff(A.indptr)
     longest_first = np.argsort(-lengths, kind="stable")
     ordered = lengths[longest_first]
     for k in range(int(ordered[0])):
-        # Slices where every row has a k-th entry: gathering rows costs more than the sums.
+        # Slices avoid gathering rows, which costs more than the sums.
         everywhere = k < ordered[-1]
         rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = A.indptr[:-1][rows] + k
@@ -200,13 +194,13 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
 
 
 def _lost(a: Array, b: Array, total: Array) -> Array:
-    """The exact rounding error of a + b (Knuth)."""
+    """The rounding error of a + b (Knuth)."""
     virtual = total - a
     return (a - (total - virtual)) + (b - virtual)
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its rounding error to 2^-106 (Dekker; masking cannot overflow)."""
+    """The rounded product and its error to 2^-106 (Dekker; masking cannot overflow)."""
     product = a * b
     a_high, b_high = _high(a), _high(b)
     a_low, b_low = a - a_high, b - b_high

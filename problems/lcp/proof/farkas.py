@@ -1,8 +1,8 @@
-"""Proofs that an LCP has no feasible, or no strictly feasible, point: multipliers checked in integers.
+"""Proofs that an LCP has no (strictly) feasible point: multipliers checked in integers.
 
-For y >= 0 with A'y <= 0, every x >= 0 with w = A x + q >= 0 gives 0 <= y'w = (A'y)'x + q'y <= q'y.
-So q'y < 0 proves that no x is feasible (Farkas). If q'y = 0 and y is not zero, then y'w = 0, so F = {x > 0, A x + q >
-0} is empty (Motzkin). By duality both conditions are also necessary.
+For y >= 0 with A'y <= 0, every x >= 0 with w = A x + q >= 0 gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves
+that no x is feasible (Farkas). If q'y = 0 and y is not zero, then y'w = 0: F = {x > 0, w > 0} is empty (Motzkin). By
+duality both are necessary too.
 """
 
 from __future__ import annotations
@@ -24,40 +24,39 @@ from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions
 from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers, solve_exactly
 
 HIGHS_TOLERANCE = 1e-10
-"""The tightest feasibility tolerance that HiGHS accepts."""
+"""The tightest that HiGHS accepts."""
 MULTIPLIER_ZERO = 1e-9
-"""Ten times HiGHS's tolerance: scaled multipliers up to this are zero, and scaled conditions this near zero are tried
-as equations."""
+"""Ten times HiGHS's tolerance: smaller scaled multipliers are zero, smaller scaled conditions equations."""
 
 PRECISION = 100 * float(np.finfo(float).eps)
 """Relative errors of A'y <= 0 up to this are rounding."""
 GAP_IN_DOUBT = 1e-6
-"""With a gap -q'y below this part of |q|'y, only an exact proof shows infeasibility."""
+"""Smaller gaps, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
-"""Conditions this near zero, relative to their terms, are equations in the refinement of y."""
+"""Relative size below which the refinement treats a condition as an equation."""
 _REFINEMENTS = 4
-"""Refinement steps: each squares the linear program's 1e-10; the last ones confirm."""
+"""Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
-"""Most multipliers that are refined: least squares of this order take seconds."""
+"""Largest refinement: least squares of this order take seconds."""
 LARGEST_VERTEX = 300
-"""Largest order at which a multiplier's tight equations are solved in rationals."""
+"""Largest order of a rational solve."""
 AFFORDABLE_VERTEX = 100
-"""`LARGEST_VERTEX` for proofs not asked for: order 100 takes 0.1 s, order 300 six seconds."""
+"""Its limit for unrequested proofs: 0.1 s, against six at order 300."""
 
 
 @frozen(eq=False)
 class Farkas:
     """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, checked in integers on the float data.
 
-    With bounds y_i may be negative where x_i has no lower bound, and is zero where it has two; see `inequalities`.
+    With bounds y_i may be negative without a lower bound of x_i, and is zero with two; see `inequalities`.
 
     Attributes
     ----------
     y : tuple of n int
         Without a common factor.
     gap : Fraction
-        Exactly q'y, with bounds q'y + sup {(A'y)'x : l <= x <= u}: negative if no feasible point exists, zero if only
-        no strictly feasible one.
+        Exactly q'y (with bounds, q'y + sup (A'y)'x): negative if no point is feasible, zero if none is strictly
+        feasible.
     """
 
     y: tuple[int, ...]
@@ -65,11 +64,11 @@ class Farkas:
 
     @property
     def no_feasible_point(self) -> bool:
-        """Whether {x >= 0, A x + q >= 0} is proved empty, so the LCP has no solution."""
+        """Whether {x >= 0, A x + q >= 0} is proved empty."""
         return self.gap < 0
 
     def in_units(self, problem: MixedLCP, rows: NDArray[np.int64]) -> Farkas | None:
-        """Convert a multiplier of the problem with rows multiplied by 2^rows to one of `problem`.
+        """The multiplier for `problem`, from one for its rows multiplied by 2^rows.
 
         Parameters
         ----------
@@ -81,7 +80,7 @@ class Farkas:
         return multiplier(problem, y)
 
     def holds(self, problem: MixedLCP) -> bool:
-        """Whether the multiplier proves that `problem` has no feasible point.
+        """Whether it proves that `problem` has no feasible point.
 
         Parameters
         ----------
@@ -94,8 +93,7 @@ class Farkas:
 class FloatFarkas:
     """A multiplier that proves infeasibility up to rounding: y >= 0, A'y <= 0 nearly, q'y < 0.
 
-    A matrix whose entries differ from those of A by at most `error`, relatively, has A'y <= 0 exactly; its LCP is
-    infeasible for every q with q'y < 0.
+    For a matrix with entries within `error`, relatively, of A's, A'y <= 0 holds exactly.
 
     Attributes
     ----------
@@ -112,7 +110,7 @@ class FloatFarkas:
     gap: float
 
     def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
-        """Convert to the multiplier of the problem with rows multiplied by 2^-rows.
+        """The multiplier after rows are multiplied by 2^-rows.
 
         Parameters
         ----------
@@ -128,12 +126,11 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse, of any scaling.
 
     Returns
     -------
     Farkas or None
-        None if feasible points exist, or no multiplier passed the exact check.
+        None if points are feasible, or no multiplier passed the exact check.
 
     References
     ----------
@@ -144,15 +141,14 @@ def farkas(problem: MixedLCP) -> Farkas | None:
 
 
 def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
-    """Prove that {x >= 0, A x + q >= 0} is empty: exactly, else to working precision; None if neither works.
+    """Prove that {x >= 0, A x + q >= 0} is empty, exactly or to working precision; else None.
 
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse, of any scaling and order. Tight conditions are solved in rationals up to order
-        `AFFORDABLE_VERTEX` (`farkas` goes further).
+        Tight conditions are solved in rationals up to order `AFFORDABLE_VERTEX`.
     guess : Array of shape (n,), optional
-        A multiplier tried in place of the linear program's.
+        A multiplier tried instead of the linear program's.
     """
     scaled = _Scaled.of(problem)
     if (scaled.system.q >= 0.0).all():
@@ -167,7 +163,7 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
-    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if HiGHS finds none.
+    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0, or None.
 
     `matrix`, of shape (m, k): A. `vector`, of shape (m,): q.
     """
@@ -192,12 +188,11 @@ def empty_interior(problem: LCP) -> Farkas | None:
     Parameters
     ----------
     problem : LCP
-        Dense or sparse.
 
     Returns
     -------
     Farkas or None
-        Preferably a proof that no feasible point exists (`no_feasible_point`).
+        Preferably a proof of `no_feasible_point`.
 
     References
     ----------
@@ -208,7 +203,7 @@ def empty_interior(problem: LCP) -> Farkas | None:
 
 
 def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
-    """Powers of two r, c, shape (n,): rows of [A, q] divided by r, then columns of A by c, have maximum about 1."""
+    """Powers of two: rows of [A, q] over r, then columns of A over c, have maximum about 1."""
     size: Matrix = abs(problem.A)
     largest = np.asarray(size.max(axis=1).toarray()).ravel() if problem.sparse else size.max(axis=1)
     rows = _power_of_two(np.maximum(largest, np.abs(problem.q)))
@@ -218,7 +213,7 @@ def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
 
 
 def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -> tuple[Matrix, Array]:
-    """A and q with rows divided by `rows` and columns by `columns`; exact for powers of two."""
+    """A and q, rows over `rows` and columns over `columns`; exact for powers of two."""
     if problem.sparse:
         return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
     return problem.A / rows[:, None] / columns, problem.q / rows
@@ -239,7 +234,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
 
 @frozen(eq=False)
 class _Scaled:
-    """The inequalities of a problem, and A, q with rows, columns and q scaled by powers of two."""
+    """The inequalities, and A and q scaled by powers of two."""
 
     problem: MixedLCP
     system: Inequalities
@@ -249,15 +244,14 @@ class _Scaled:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> _Scaled:
-        """Scale the inequalities of a problem."""
         system = inequalities(problem)
         rows, columns = scales(system)
         matrix, vector = scaled_data(system, rows, columns)
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess (its floats, then vertices) that passes the check in integers."""
-        # The check uses the data as given: rounding and underflow of the scaling do not matter.
+        """The first candidate near a scaled guess (its floats, its vertices) that passes the integer check."""
+        # The check uses the unscaled data, so scaling errors do not matter.
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):
@@ -266,7 +260,6 @@ class _Scaled:
         return None
 
     def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:
-        # The unscaled y is the scaled y over the row scales.
         weights = integers(self.rows.max() / self.rows)[0]
         yield [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
         slack = np.asarray(self.A.T @ guess).ravel()
@@ -277,7 +270,7 @@ class _Scaled:
                 yield found
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact y on the support of the guess, at most `order` entries, that makes the equations vanish."""
+        """The exact y on the guess's support that satisfies the equations."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None
@@ -292,7 +285,7 @@ class _Scaled:
         return y
 
     def nearly(self, guess: Array) -> FloatFarkas | None:
-        """The guess with its tight conditions solved to round-off, unscaled; None if it proves nothing."""
+        """The guess with tight conditions solved to round-off, unscaled; None if it proves nothing."""
         y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
         conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
         for _ in range(_REFINEMENTS):
@@ -319,7 +312,7 @@ class _Scaled:
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
-    """A Farkas vector without common factor, with its exact gap; None if y proves nothing."""
+    """A Farkas vector without common factor; None if y proves nothing."""
     common = gcd(*y) or 1
     y = [value // common for value in y]
     gap = conditions_of(problem).gap(y)

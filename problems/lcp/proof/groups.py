@@ -1,8 +1,8 @@
-"""Complementary faces excluded in groups, one multiplier each: a proof that a feasible LCP has no solution.
+"""Groups of complementary faces, excluded by one multiplier each: a feasible LCP without a solution.
 
-A group fixes some x_i = 0 and some w_i = 0 and leaves the rest open. Take y with y_i >= 0 unless w_i is fixed and
-(A'y)_j <= 0 unless x_j is fixed; then every point of the group has 0 <= y'w - (A'y)'x = q'y. So q'y < 0 excludes all
-its faces (Farkas), and groups that cover all faces exclude a solution.
+A group fixes some x_i = 0 and some w_i = 0. Take y with y_i >= 0 unless w_i is fixed, (A'y)_j <= 0 unless x_j is fixed:
+its points have 0 <= y'w - (A'y)'x = q'y. So q'y < 0 excludes the group (Farkas); groups that cover all faces exclude
+solutions.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ Fixed = NDArray[np.bool_]
 
 @frozen(eq=False)
 class Group:
-    """Faces with common fixed variables, and the proof that none holds a solution.
+    """Faces with common fixed variables, and why none holds a solution.
 
-    `fixed`, of shape (2n,): Of x, then of w. `y`, of length n: The multiplier in floats (exact rationals) or integers;
-    None for a single face decided in rationals.
+    `fixed`, of shape (2n,). `y`, of length n: The multiplier, floats (exact) or integers; None for one face decided in
+    rationals.
     """
 
     fixed: Fixed
@@ -40,7 +40,7 @@ class Group:
 
 @frozen(eq=False)
 class Groups:
-    """Groups of faces without solutions that together cover all faces."""
+    """Groups without solutions that cover all faces."""
 
     groups: tuple[Group, ...]
 
@@ -49,12 +49,12 @@ class Groups:
 
     @property
     def root(self) -> list[int] | None:
-        """The multiplier, a Farkas vector, if one excludes all faces."""
+        """The multiplier that excludes all faces alone (a Farkas vector), if any."""
         one = self.groups[0] if len(self.groups) == 1 else None
         return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
 
     def in_units(self, rows: NDArray[np.int64]) -> Groups:
-        """Convert multipliers of the problem with rows multiplied by 2^rows to those of the problem itself.
+        """The multipliers after undoing a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class Groups:
         return Groups(tuple(moved(group) for group in self.groups))
 
     def holds(self, problem: LCP) -> bool:
-        """Whether the groups prove in exact arithmetic that the problem has no solution.
+        """Whether the groups prove exactly that the problem has no solution.
 
         Parameters
         ----------
@@ -92,10 +92,7 @@ def _whole(y: Array | Sequence[int]) -> list[int]:
 
 
 def _all_of_them(groups: NDArray[np.bool_]) -> bool:
-    """Whether groups cover all faces: a pair (x_i, w_i) of which every group fixes one divides them, recursively.
-
-    `groups` of shape (number, 2, n): Fixed of x and of w.
-    """
+    """Whether groups, of shape (number, 2, n), cover all faces: recursion on a pair of which each fixes one."""
     if not groups.size:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
@@ -110,10 +107,7 @@ def _all_of_them(groups: NDArray[np.bool_]) -> bool:
 
 @frozen(eq=False, slots=False)
 class Excluding:
-    """Finds and checks multipliers of groups of one problem.
-
-    `problem`: Dense.
-    """
+    """Finds and checks multipliers of groups of one dense problem."""
 
     problem: LCP
 
@@ -128,16 +122,16 @@ class Excluding:
 
     @cached_property
     def exact(self) -> tuple[list[list[int]], list[int], Conditions]:
-        """A and q in integers of one scale, and the conditions on multipliers."""
+        """A and q in integers, and the conditions on multipliers."""
         return *whole_numbers(self.problem)[:2], conditions_of(self.problem)
 
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
-        """The group if a row of a dictionary excludes it: the basic variable times `sign` would be negative.
+        """The group, if a dictionary's row makes its basic variable times `sign` negative; else None.
 
-        A small multiple of the other rows makes the inequalities strict beyond rounding. If floats prove nothing (zeros
-        from small integers), the multiplier is solved in integers.
+        A small multiple of the other rows gives strict inequalities beyond rounding; otherwise the multiplier is solved
+        in integers.
 
-        `fixed`, of shape (2n,). `basic`, of shape (n,): The basic variables. `row`: Index in `basic`. `sign`: 1 or -1.
+        `fixed`, of shape (2n,). `basic`, of shape (n,). `row`: Index in `basic`. `sign`: 1 or -1.
         """
         right = np.zeros((basic.size, 2))
         right[:, 1] = ~fixed[basic]
@@ -162,7 +156,7 @@ class Excluding:
         return group if group is not None and self.exactly(group) else None
 
     def _clearly(self, fixed: Fixed, y: Array) -> bool:
-        """Whether floats prove the exclusion despite rounding."""
+        """Whether floats prove it despite rounding."""
         n, q = y.size, self.problem.q
         unit, size = (n + 4) * SUM_OF_TERMS_ROUNDING, np.abs(y)
         terms = self._sizes[:n] @ size
@@ -172,7 +166,7 @@ class Excluding:
         return bool(q @ y + unit * (np.abs(q) @ size) + SMALLEST_NORMAL < 0.0)
 
     def _solved(self, basic: NDArray[np.intp], row: int, sign: int) -> list[int] | None:
-        """The multiplier of the row alone, in integers."""
+        """The row's multiplier, in integers."""
         entries, q, _ = self.exact
         n = len(q)
         rows: list[IntRow] = [
@@ -182,7 +176,7 @@ class Excluding:
         return None if found is None else [value[0] for value in found[0]]
 
     def exactly(self, group: Group) -> bool:
-        """Whether exact arithmetic shows that the group holds no solution."""
+        """Whether the group holds no solution, exactly."""
         entries, q, conditions = self.exact
         n, fixed = len(q), group.fixed.tolist()
         if group.y is None:

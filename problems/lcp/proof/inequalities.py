@@ -1,11 +1,11 @@
-"""The inequalities that every solution satisfies, without complementarity, and the conditions on their multipliers.
+"""Inequalities that solutions satisfy, without complementarity, and the conditions on their multipliers.
 
-At a solution l <= x <= u, w_i >= 0 where x_i has no upper bound, w_i <= 0 where it has no lower one, w_i = 0 where it
-has neither. Multipliers y with signs that make y'w >= 0 give 0 <= y'(A x + q), so
+A solution has l <= x <= u, w_i >= 0 without an upper bound, w_i <= 0 without a lower one, w_i = 0 without both.
+Multipliers y with y'w >= 0 give 0 <= y'(A x + q), so
 
     q'y + sum_j sup {(A'y)_j x_j : l_j <= x_j <= u_j} < 0
 
-proves that no such x exists. For l = 0 and u = inf this is A'y <= 0 and q'y < 0.
+proves that no such x exists. For an LCP: A'y <= 0 and q'y < 0.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from problems.lcp.proof.rational import IntegerRow, integer_rows
 
 @frozen(eq=False)
 class Inequalities:
-    """The points z >= 0 with A z + q >= 0, A of any shape.
+    """The points z >= 0 with A z + q >= 0.
 
-    `A` of shape (m, k). `q` of shape (m,). `rows`, of shape (m,): Each one's row of the problem, -1 for a bound; None
-    means unchanged rows. `signs`, of shape (m,): Their signs.
+    `A` of shape (m, k). `q` of shape (m,). `rows`, of shape (m,): Their rows of the problem, -1 for bounds; None if
+    unchanged. `signs`, of shape (m,).
     """
 
     A: Matrix
@@ -48,7 +48,7 @@ class Inequalities:
         return bool(sp.issparse(self.A))
 
     def on_rows(self, y: Any, n: int) -> Any:
-        """Convert multipliers of these rows to multipliers of the problem's n rows."""
+        """Multipliers of these rows as multipliers of the problem's n rows."""
         y = np.asarray(y)
         if self.rows is None or self.signs is None:
             return y
@@ -58,12 +58,12 @@ class Inequalities:
 
 
 def inequalities(problem: MixedLCP) -> Inequalities:
-    """The inequalities of a problem; no entry is rounded."""
+    """A problem's inequalities, without rounding."""
     if problem.standard:
         return Inequalities(problem.A, problem.q)
     n, low, high = problem.n, problem.lower, problem.upper
     finite_low, finite_high = low > -np.inf, high < np.inf
-    # An x_j with a bound at zero is z_j or -z_j, any other x_j is a difference of two z.
+    # An x_j with a bound at zero is z_j or -z_j, others a difference of two z.
     up = low == 0.0
     down = (high == 0.0) & ~up
     both = np.flatnonzero(~up & ~down)
@@ -71,7 +71,6 @@ def inequalities(problem: MixedLCP) -> Inequalities:
     columns = sp.csr_array(sp.diags_array(np.where(down, -1.0, 1.0)))
     columns = sp.hstack([columns, -sp.eye_array(n, format="csr")[:, both]], format="csr")
     A, identity = sp.csr_array(problem.A), sp.eye_array(n, format="csr")
-    # Rows, which of them apply, sign, constant, row of the problem.
     parts = [
         (A, ~finite_high, 1.0, problem.q, every),
         (A, ~finite_low, -1.0, -problem.q, every),
@@ -89,7 +88,7 @@ def inequalities(problem: MixedLCP) -> Inequalities:
 class Conditions:
     """The conditions on a multiplier in integers: rows (A'y)_j and q'y.
 
-    `lower`, `upper`: Bounds of the x_j. `signs`: Whether each y_i may be positive, and negative.
+    `lower`, `upper`: Bounds of x. `signs`: Whether y_i may be positive, negative.
     """
 
     columns: list[IntegerRow]
@@ -99,7 +98,7 @@ class Conditions:
     signs: list[tuple[bool, bool]]
 
     def gap(self, y: list[int]) -> Fraction | None:
-        """Exactly q'y + sup (A'y)'x; None where it is infinite, a sign is wrong, or y is zero."""
+        """Exactly q'y + sup (A'y)'x; None if infinite, or y is zero or has a wrong sign."""
         if not any(y):
             return None
         for value, (positive, negative) in zip(y, self.signs):
@@ -117,13 +116,13 @@ class Conditions:
         return total
 
     def hold(self, y: list[int], strict: bool) -> bool:
-        """Whether y is nonzero with allowed signs and its `gap` is <= 0, < 0 if strict."""
+        """Whether the `gap` exists and is <= 0, or < 0 if strict."""
         gap = self.gap(y)
         return gap is not None and (gap < 0 or (gap == 0 and not strict))
 
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
-    """The conditions on a multiplier, for the data as given."""
+    """The conditions on a multiplier of unscaled data."""
     A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
     columns = integer_rows(A, np.zeros(A.shape[0]))
     constant = integer_rows(problem.q[None, :], np.zeros(1))[0]

@@ -1,4 +1,4 @@
-"""Defects per row: shares of x in the terms of rows, and rows where rounding drowns q."""
+"""Defects of rows: shares of x in their terms, and q drowned in rounding."""
 
 from __future__ import annotations
 
@@ -13,23 +13,22 @@ from problems.lcp.data.spread import alike
 from problems.lcp.proof.compensated import Terms
 
 DROWNED = 1e-6
-"""Largest allowed defect of a row relative to max |q_i| in balanced units."""
+"""Largest allowed defect relative to max |q_i| in balanced units."""
 
 FAR_BELOW_Q = 1e-10
-"""Smaller values of `drowned` count as zero: points that run off to infinity are far above this, accurate ends of the
-Maros-Meszaros programs below 1e-12."""
+"""Smaller values count as zero: runs to infinity are far above, Maros-Meszaros solutions below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
-"""Defects below this part of the least nonzero |q_i| count as zero if entries are `alike`: computing units would take
-longest (five-stone arches: 0.45 of 1.2 ms)."""
+"""Defects below this part of the least nonzero |q_i| count as zero if entries are `alike`: units would cost 0.45 of 1.2
+ms (five-stone arches)."""
 
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """The signed distance of each x_i from a bound, as its largest share in the terms of a row.
+    """Signed distances of x_i from a bound, each as its largest share in a row's terms; infinite where not asked.
 
-    It is infinite where not asked for. An x_i that is in no row and not at its bound has share 1.
+    An x_i in no row, and not at its bound, has share 1.
 
-    `terms`: Of the rows at x. `x`, `distance` of shape (n,). `asked` of shape (n,).
+    `x`, `distance`, `asked` of shape (n,).
     """
     shares = np.where(distance == 0.0, 0.0, np.inf)
     indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
@@ -38,7 +37,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
         sizes = np.abs(terms.x[indices])
         moved = distance[indices] != x[indices]
         if moved.any():
-            # Scaled rows hold shares of x_i; the shares of the distance follow from these.
+            # Scaled rows hold shares of x_i, from which those of the distance follow.
             with np.errstate(all="ignore"):
                 scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
             known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
@@ -57,9 +56,9 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 
 
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """Compute `Certificate.drowned`; balanced units are computed only where a defect exceeds `DROWNED` times |q_i|.
+    """See `Certificate.drowned`; units are computed only for defects above `DROWNED` |q_i|.
 
-    `terms`: Of the rows at x. `off`, of shape (n,): Defects relative to the terms.
+    `off`, of shape (n,): Defects relative to the terms.
     """
     moved = np.count_nonzero(terms.exponents)
     q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q

@@ -1,8 +1,7 @@
-"""Complementary pieces that may hold a solution: floats with rounding bounds exclude most others.
+"""Complementary pieces that may hold a solution; floats with rounding bounds exclude most others.
 
-A piece imposes x_i = l_i and w_i >= 0, and so on. If its block B is nonsingular, its equations have one solution. With
-an approximate inverse R and |I - R B| <= d < 1, a point with residual r is within |R r| / (1 - d) of it in the maximum
-norm. A sign that is wrong beyond this excludes the piece.
+If a piece's block B is nonsingular its equations have one solution. With an approximate inverse R and |I - R B| <= d <
+1, a point with residual r is within |R r| / (1 - d) of it (maximum norm). A sign wrong beyond this excludes the piece.
 
 References
 ----------
@@ -22,10 +21,10 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
 
 TOGETHER = 1024
-"""Pieces in one array: a few megabytes at the orders where all are tried."""
+"""Pieces in one array: a few megabytes."""
 
 SUM_OF_TERMS_ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""More than twice the error of a sum of k + 4 terms over k + 4 (Higham, section 3.5)."""
+"""Twice the error of a sum of k + 4 terms, over k + 4 (Higham, section 3.5)."""
 
 SMALLEST_NORMAL = float(np.finfo(float).tiny)
 
@@ -33,9 +32,9 @@ States = NDArray[np.int8]
 
 
 def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
-    """Which pieces are not proved to hold no solution, shape (number,).
+    """Which pieces may hold a solution, shape (number,).
 
-    `states`, of shape (number, n): -1 where x is at its lower bound, 1 at its upper, 0 between.
+    `states`, of shape (number, n): -1, 0, 1 for x at its lower bound, between, at its upper.
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
@@ -49,17 +48,14 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=16)
 def all_faces(n: int) -> NDArray[np.bool_]:
-    """All active sets, shape (2^n, n), read-only; the first index changes fastest."""
+    """All active sets, shape (2^n, n), read-only."""
     faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
     faces.flags.writeable = False
     return faces
 
 
 def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Faces not excluded by signs alone: rows where surely w_i < 0, or w_i > 0 on the face, exclude the rest.
-
-    No rounding is involved. This decides singular faces, and most faces of small-integer problems.
-    """
+    """Faces that no row excludes by signs alone: without rounding, also on singular faces."""
     support = inside.astype(float)
     rises, falls = support @ (A > 0.0).T > 0.0, support @ (A < 0.0).T > 0.0
     forbidden = (~rises & (q < 0.0)) | (inside & ~falls & (q > 0.0))
@@ -67,7 +63,7 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 
 
 def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
-    """Which pieces, of one problem or one problem each, are not proved to hold no solution; shape (number,).
+    """Which pieces, of one problem or one each, may hold a solution, shape (number,).
 
     `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, shape (n,) each; None for an
     LCP.
@@ -89,7 +85,7 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
     d = np.maximum.reduce(defect @ ones, axis=1) * (1.0 + unit)
     lost = np.where(between, unit * known, 0.0) + unit * (np.abs(right) + _times(block, np.abs(x))) + SMALLEST_NORMAL
     off = _times(size, np.abs(right - _times(B, x)) + lost)
-    # SMALLEST_NORMAL exceeds losses by underflow.
+    # SMALLEST_NORMAL exceeds underflow losses.
     off = np.maximum.reduce(off, axis=1)[:, None] * (1.0 + unit) / (1.0 - d[:, None]) + SMALLEST_NORMAL
     whole = x if bounds is None else np.where(between, x, ends)
     w = q + _times(A, whole)
@@ -102,21 +98,21 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
         wrong = between & ((x + off < low) | (x - off > high))
         wrong_w = ((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0))
         wrong |= (low < high) & wrong_w
-    # Comparisons with NaN are false: overflow leaves doubt.
+    # Comparisons with NaN are false.
     excluded = (d < 0.5) & (off[:, 0] < np.inf) & np.logical_or.reduce(wrong, axis=1)
     asked: NDArray[np.bool_] = ~excluded
     return asked
 
 
 def _times(A: Array, v: Array) -> Array:
-    """Multiply one matrix, or each, with each vector."""
+    """One matrix, or each, times each vector."""
     product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
     return product
 
 
 @lru_cache(maxsize=32)
 def identity(n: int) -> Array:
-    """The identity matrix, read-only."""
+    """The read-only identity."""
     one = np.eye(n)
     one.flags.writeable = False
     return one
@@ -125,7 +121,7 @@ def identity(n: int) -> Array:
 def inverses(B: Array) -> Array:
     """Approximate inverses, NaN for singular matrices.
 
-    `B` of shape (number, n, n), or (n, n): there direct LAPACK takes a third of the time.
+    `B` of shape (number, n, n), or (n, n): direct LAPACK is three times as fast.
     """
     if B.ndim == 2:
         found, singular = dgesv(B, identity(len(B)))[2:]

@@ -1,7 +1,6 @@
-"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b in rationals.
+"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b.
 
-A row of floats (dyadic rationals) times a power of two is a row of integers with the same signs and solutions. Every
-result is checked in integers.
+Floats are dyadic rationals: a row times a power of two is a row of integers. Every result is checked in integers.
 """
 
 from __future__ import annotations
@@ -22,12 +21,12 @@ Integers = NDArray[Any]
 """An object array of Python integers."""
 
 PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
-"""Below 2^31, so products of residues fit an int64; several, in case one divides a determinant."""
+"""Residue products fit an int64; several, in case one divides a determinant."""
 
 
 @frozen
 class IntegerRow:
-    """One row of [matrix, vector] times 2^shift: nonzero columns, their integers, the vector's integer."""
+    """A row of [matrix, vector] times 2^shift: nonzero columns, their integers, the vector's integer."""
 
     columns: NDArray[Any]
     values: list[int]
@@ -35,7 +34,7 @@ class IntegerRow:
     shift: int
 
     def times(self, numerators: list[int], denominator: int) -> int:
-        """(row . z + constant) times the denominator, for z = numerators / denominator."""
+        """(row . numerators / denominator + constant) times the denominator."""
         total = self.constant * denominator
         for column, value in zip(self.columns, self.values):
             total += value * numerators[column]
@@ -43,7 +42,7 @@ class IntegerRow:
 
 
 def integers(values: Array) -> tuple[list[int], int]:
-    """Integers m and shift k >= 0 with values = m / 2^k exactly."""
+    """Integers m and k >= 0 with values = m / 2^k exactly."""
     mantissas, exponents = np.frexp(values)
     whole = np.ldexp(mantissas, 53).astype(np.int64).tolist()
     powers = np.where(mantissas == 0.0, 0, exponents - 53)
@@ -52,7 +51,7 @@ def integers(values: Array) -> tuple[list[int], int]:
 
 
 def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
-    """The rows of [matrix, vector] as integers, each scaled by its own power of two."""
+    """Rows of [matrix, vector] as integers, each with its own scale."""
     rows = []
     stored = sp.csr_array(matrix) if sp.issparse(matrix) else None
     for i, constant in enumerate(vector):
@@ -68,7 +67,7 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
-    """The selected columns (of n) of rows, shape (number of rows, number of columns)."""
+    """Selected columns (of n) of rows, shape (number of rows, number of columns)."""
     place = np.full(n, -1)
     place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)
@@ -82,9 +81,8 @@ def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> I
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
     """A rational solution of an integer system of any shape and rank.
 
-    `matrix`, of shape (m, k): Python integers. `guess`, of shape (k,): Floats; large entries get pivots first, columns
-    without a pivot keep these values. Returns (numerators, denominator), checked in integers on every row, or None if
-    the system is inconsistent at the guess.
+    `matrix`, of shape (m, k). `guess`, of shape (k,): Floats; large entries get pivots first, columns without a pivot
+    keep them. Returns (numerators, denominator), checked on every row; None if inconsistent.
 
     References
     ----------
@@ -115,21 +113,18 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
 
 
 def full_row_rank(matrix: Integers) -> bool:
-    """Whether the rows are independent modulo one of `PRIMES`, hence independent; False is no proof.
-
-    `matrix`, of shape (m, k): Python integers.
-    """
+    """Whether the rows are independent modulo a prime, hence independent; False proves nothing."""
     order = np.arange(matrix.shape[1])
     return any(_invert(matrix, order, prime)[0].size == matrix.shape[0] for prime in PRIMES)
 
 
 def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
-    """Reduced fractions with a common denominator."""
+    """Reduced fractions."""
     return tuple(Fraction(value, denominator) for value in numerators)
 
 
 def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rows and columns of a largest block that is nonsingular modulo the prime, and its inverse modulo the prime."""
+    """Rows and columns of a largest nonsingular block modulo the prime, and its inverse."""
     m = matrix.shape[0]
     work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
     unused = np.ones(m, dtype=bool)
@@ -148,15 +143,15 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
         columns.append(int(column))
     k = matrix.shape[1]
     chosen = np.array(rows, dtype=np.intp)
-    # Pivot rows combine only pivot rows, so this block is the inverse.
+    # Pivot rows combine only pivot rows.
     return chosen, np.array(columns, dtype=np.intp), work[np.ix_(chosen, k + chosen)]
 
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
-    """Solve block z = right by lifting modulo powers of the prime until a rational vector passes the exact check."""
+    """Solve block z = right, lifting until a rational vector passes the exact check."""
     residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    # Beyond this Hadamard's and Cramer's bounds leave no other rational vector.
+    # Hadamard's and Cramer's bounds: beyond, no other rational vector.
     bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
     enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:
@@ -175,11 +170,11 @@ def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) 
 
 
 def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
-    """Numerators and a common denominator, below sqrt(modulus / 2), congruent to the expansion; else None."""
+    """Numerators and common denominator, below sqrt(modulus / 2), congruent to the expansion; else None."""
     bound = isqrt(modulus // 2)
     denominator = 1
     for value in expansion:
-        # Euclid's algorithm, stopped halfway, gives the congruent fraction with numerator at most bound.
+        # Euclid's algorithm, stopped halfway.
         before, now = modulus, int(value) * denominator % modulus
         factor_before, factor = 0, 1
         while min(now, modulus - now) > bound:

@@ -1,4 +1,4 @@
-"""Judges points of many small dense LCPs together; `certify` and `confirmed` accept every point accepted here."""
+"""Judges points of many small dense LCPs together, as `certify` and `confirmed` do one by one."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
 POINT_CORRECTIONS = 2
-"""Corrections of a point with w in twice the working precision, as in `active_set.finish`."""
+"""With w in twice the working precision, as in `active_set.finish`."""
 
 
 @frozen(eq=False)
 class Judged:
-    """Points of a stack of LCPs, and which of them are solutions.
+    """Points of a stack of LCPs, and which are solutions.
 
-    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified (round-off in each row, q not drowned, up to
-    order 12 an exact solution nearby); False decides nothing. `residual`, `relative_residual`, of shape (k,): As in
-    `Certificate`.
+    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified; False decides nothing. `residual`,
+    `relative_residual`, of shape (k,): As in `Certificate`.
     """
 
     x: Array
@@ -40,7 +39,6 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     A : ndarray, shape (k, n, n)
     q : ndarray, shape (k, n)
     active : ndarray of bool, shape (k, n)
-        The faces.
     tolerance : float
         Of the relative residual.
     """
@@ -58,7 +56,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
         if (worst <= ROUND_OFF).all():
             break
     solves: NDArray[np.bool_] = (worst <= min(ROUND_OFF, tolerance)) & ~(off * size > DROWNED * np.abs(q)).any(axis=1)
-    # Larger and smaller rows need scaling by powers of two.
+    # Other rows need scaling.
     solves &= (size.max(axis=1) <= LARGEST_TERMS) & ((size >= 1.0 / LARGEST_TERMS).all(axis=1))
     if n <= LARGEST_DECIDED:
         exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
@@ -67,7 +65,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
 
 
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
-    """Complementary faces not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
+    """Faces that may hold a solution, shape (k, 2^n).
 
     `A` of shape (k, n, n). `q` of shape (k, n).
     """

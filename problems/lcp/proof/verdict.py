@@ -17,33 +17,29 @@ from problems.lcp.proof.pieces import identity, inverses
 EPS = float(np.finfo(float).eps)
 
 UNDERFLOW = float(np.finfo(float).tiny) / EPS
-"""Smaller products may have lost digits to underflow."""
+"""Smaller products may have lost digits."""
 
 LARGEST_DECIDED = 12
-"""Up to this order all faces are tried exactly (about 1 s) before the first restart, and points that solve only to the
-tolerance need exact confirmation."""
+"""Up to this order all faces are tried exactly (about 1 s) before a restart, and inaccurate solutions need exact
+confirmation."""
 
 ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
-"""Relative residuals below this are rounding: half an eps for x, the row unit, the column unit and the products
-each."""
+"""Smaller residuals are rounding: half an eps each for x, row unit, column unit, products."""
 
 STATIONARY = 1e-6
-"""Tolerance, relative to the terms, of the optimality conditions at a stationary point: a degenerate end is a series in
-the root of lambda and has half of the digits.
+"""Relative tolerance of optimality conditions: a degenerate end is a series in the root of lambda and has half the
+digits.
 """
 
 NEARLY = 1e-5
-"""An end that solves the problem to this, but not to the tolerance, is an inaccurate solution, not a stationary
-point."""
+"""Ends with smaller residuals are inaccurate solutions, not stationary points."""
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point is a solution.
+    """Whether the point is a solution: `Certificate.solves`, and for small problems exact arithmetic unless defects are
+    rounding.
 
-    It must pass `Certificate.solves`. For small problems exact arithmetic must agree too, unless defects are rounding
-    of the entries.
-
-    `certificate`: Of the point. `tolerance`: Of its relative residual.
+    `tolerance`: Of the relative residual.
     """
     if not certificate.solves(tolerance):
         return False
@@ -53,12 +49,12 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
-    """Whether x solves the conditions of a program up to round-off relative to its largest data.
+    """Whether x solves a program's conditions up to round-off of its largest data.
 
-    No x passes `confirmed`, which compares each row with its own terms, where files give sides of rows as 1e-16 instead
-    of zero. `drowned` excludes points that run off to infinity, where the objective falls without end.
+    No x passes `confirmed` where files give sides of rows as 1e-16 instead of zero. `drowned` excludes runs to
+    infinity.
 
-    `problem`: In balanced units. `certificate`: Of the point.
+    `problem`: In balanced units.
     """
     if problem.primal == 0 or certificate.drowned > 0.0:
         return False
@@ -66,16 +62,15 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
 
 
 def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether the problem has an exact solution on the face of x or on an adjacent face.
+    """Whether the problem has an exact solution on the face of x or an adjacent one.
 
-    Floats prove it where rounding cannot matter; otherwise the equations are solved in rationals.
+    Floats prove it where rounding cannot matter, else rationals.
 
     Parameters
     ----------
     problem : MixedLCP
         Small: dense matrices are made.
     x : ndarray, shape (n,)
-        A point that is `confirmed`.
     w : ndarray, shape (n,), optional
         The certificate's w.
 
@@ -83,7 +78,6 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    # Several callers ask about the same point.
     point, answer = problem.known.get("exact", (None, False))
     if point is None or not (point is x or np.array_equal(point, x)):
         answer = (problem.standard and _clearly_exact(problem, x, w)) or certify_exactly(problem, x).solves
@@ -92,14 +86,14 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether floats prove an exact solution nearby (`Faced`); w is in twice the working precision."""
+    """Whether floats prove it (`Faced`); w is in twice the working precision."""
     if not x.any():
         return least(problem.q) >= 0.0
     if least(x) < 0.0:
         return False
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     size = np.abs(A).dot(x) + np.abs(problem.q)
-    # Outside this range w is computed from scaled rows, and its error is unknown here.
+    # Elsewhere rows are scaled, and the error of w is unknown here.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
         return False
     w = accurate_w(problem, x)[0] if w is None else w
@@ -110,12 +104,12 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 class Faced:
     """Face equations of points of a stack of LCPs, in units of x, with approximate inverses.
 
-    B is the face's block with rows of the identity off the face. With an approximate inverse R and |I - R B| <= d < 1,
-    B is nonsingular, and B u = r has |u| <= |R| |r| / (1 - d) in the maximum norm.
+    The face's block B has rows of the identity off the face. If |I - R B| <= d < 1, B is nonsingular and B u = r has
+    |u| <= |R| |r| / (1 - d) (maximum norm).
 
-    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of the terms of each row of
-    A x; the maximum is 1 off the face. `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d; NaN or infinite
-    where nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of the terms of rows of A x
+    (maximum 1 off the face). `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or infinite where
+    nothing is proved.
     """
 
     on: NDArray[np.bool_]
@@ -126,14 +120,14 @@ class Faced:
 
     @classmethod
     def of(cls, A: Array, x: Array) -> Faced:
-        """Set up the equations for points x >= 0.
+        """For points x >= 0.
 
         `A` of shape (..., n, n). `x` of shape (..., n).
         """
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
         sizes = np.abs(terms)
-        # Reductions of ufuncs: array methods take 1.5 times as long on small problems.
+        # Ufunc reductions: array methods take 1.5 times as long here.
         total = np.add.reduce(sizes, axis=-1)
         top = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
         fine = np.minimum.reduce(top, axis=-1) > UNDERFLOW
@@ -151,7 +145,7 @@ class Faced:
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
         """Whether the equations have a solution near x with w > 0 elsewhere.
 
-        `w`, `bound`, of shape (..., n): w and its error bound.
+        `w`, `bound`, of shape (..., n): w, its error bound.
         """
         right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
@@ -164,9 +158,8 @@ class Faced:
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
-    These are (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0, relative to the sizes of x,
-    w, z1 and z2, so that factors of (A, q) or of q do not matter. With bounds they are the conditions of the gap, as in
-    `KKTHomotopy`.
+    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0, relative to the sizes of x, w, z1,
+    z2. With bounds, the conditions of `KKTHomotopy`.
     """
     rows = Rows(problem)
     if y.size != rows.size:
