@@ -1,9 +1,8 @@
-"""Rows and columns brought to comparable size by powers of two, which is exact, and undone in the answer.
+"""Scaling of rows and columns by powers of two, which is exact.
 
-LCP(q, A) and LCP(R q, R A C) have the same solutions up to their units, for all positive diagonal R and C. The units
-taken here make the largest entry of each row and column of A about 1. Such units are not unique; those are taken to
-which Ruiz's iteration leads from the units in which the logarithms of the entries have the least sum of squares. So
-they lead to the same problem, up to the rounding to powers of two, whatever the units of the problem as given.
+LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. The units chosen make
+the largest entry of each row and column of A about 1. Least squares of the logarithms of entries, then Ruiz's
+iteration, make them unique: up to rounding, the scaled problem does not depend on the units given.
 """
 
 from __future__ import annotations
@@ -23,35 +22,34 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each takes the root of what the largest entries of rows and columns are off."""
+"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
 
 GRADIENT_STEPS = 30
-"""Of conjugate gradients. A full matrix needs one, sparse random ones about ten; on long chains what is then still
-missing is smooth, a common unit of neighbours, and changes no entry of the scaled matrix."""
+"""Conjugate gradient steps: a full matrix needs one, sparse random ones about ten. On long chains the remaining error
+is smooth and changes no scaled entry."""
 
 LOGARITHM_TOLERANCE = 1e-6
-"""Of the logarithms: far below the 1/2 at which rounding decides."""
+"""Tolerance of the logarithms: far below the 1/2 where rounding decides."""
 
 LEAST_EXPONENT = -1021
-"""Base-2 logarithm below which a float has fewer digits, so that scaling may round it."""
+"""Base-2 exponent of the smallest normal floats: below, scaling may round."""
 
 HALVES = 1e-3
-"""Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
+"""Fractions this near to 1/2 round up: above the noise of logarithms, below differences that matter."""
 
 NEGLIGIBLE = -27.0
-"""An a_ij with |a_ij a_ji| below 2^-27 (1e-8) of |a_ii a_jj|, which knows no units, says nothing about units: such are
-the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
+"""An a_ij with |a_ij a_ji| < 2^-27 |a_ii a_jj| (unit-free; 1e-8) gives no information on units: kernel matrices
+exp(-d^2) have entries down to 1e-300."""
 
 LEVEL = 0.02
-"""Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
+"""Sweeps end when all logarithms of largest entries are below this: rounding to powers of two changes them more."""
 
 
 @frozen(eq=False)
 class Scaled:
-    """LCP(R q, R A C): its solution u gives x = C u, and its w is R w.
+    """LCP(R q, R A C) for R = diag(2^rows), C = diag(2^columns): its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,): R = diag(2^rows) and C = diag(2^columns). `exact`: Whether no entry was rounded:
-    one below 1e-290 of the others may be, or vanish.
+    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded; entries 1e-290 of others may be.
     """
 
     problem: MixedLCP
@@ -60,21 +58,21 @@ class Scaled:
     exact: bool
 
     def x(self, u: Array) -> Array:
-        """The point of the problem as given; infinite or zero where it is beyond the range of floats."""
+        """The original x; infinite or zero beyond the float range."""
         return _times(u, self.columns)
 
     def u(self, x: Array) -> Array:
-        """The point of the scaled problem."""
+        """The scaled point."""
         return _times(x, -self.columns)
 
     @property
     def common(self) -> bool:
-        """Whether all rows have one factor, and the columns none."""
+        """Whether R is a multiple of I, and C = I."""
         return not self.columns.any() and not np.ptp(self.rows).any()
 
 
 def balanced(problem: MixedLCP) -> Scaled | None:
-    """The problem in units of its own, or None where these are the units in which it is given.
+    """The problem in balanced units, or None if it needs no change.
 
     References
     ----------
@@ -94,19 +92,18 @@ def balanced(problem: MixedLCP) -> Scaled | None:
         bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
         ends = zip(bounds, (problem.lower, problem.upper))
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
-            return None  # a bound that vanishes or overflows would make another problem
+            return None  # a vanishing or infinite bound would change the problem
         scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
-    # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
+    # A balanced problem is its own balanced problem.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
 
 
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
-    """LCP(s q, s A) with s = 1, or a power of two where entries are extreme; and whether active sets can begin with it.
+    """LCP(s q, s A), s a power of two for extreme entries (None for s = 1), and whether active sets can use it.
 
-    They can where the largest entries of rows and columns are alike, but for that factor, and it rounds nothing. Within
-    the range of products a factor that is a power of two changes nothing of what active sets and pivots do.
-    The problem has no bounds; None stands for s = 1.
+    They can where `alike` holds and s rounds nothing. Within the range of products s changes nothing for them. The
+    problem has no bounds.
     """
     if not alike(problem):
         return None, False
@@ -122,10 +119,10 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for the rows of [A, q] and the columns of A; found once for a problem.
+    """The exponents of two for rows of [A, q] and columns of A; computed once.
 
-    Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
-    they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
+    Powers of two in the given units come out exactly. Row i and column i are rounded together: matrices symmetric up to
+    units become symmetric.
     """
     if "units" not in problem.known:
         problem.known["units"] = _units(problem)
@@ -136,7 +133,7 @@ def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     logs, counts = _logarithms(problem.A)
     r, c = _equilibrated(logs, *_least_squares(logs, counts))
-    # Negligible or not, an entry ties its row to its column: what is free is free of all of them.
+    # Negligible entries also connect rows and columns.
     pattern = counts if sp.issparse(logs) else (logs > -np.inf).astype(float)
     part_of_row, part_of_column = _parts(pattern)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
@@ -144,13 +141,13 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     difference = _rounded(about_r - about_c)
     rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
-    # What rounding has added to all entries of a connected part of A is taken off again.
+    # Undo what rounding added to all entries of a connected part of A.
     in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # Each part leaves a factor between its rows and columns free: the largest entry of q there becomes about 1.
+    # Each part has one free factor between rows and columns: it makes the part's largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
@@ -159,9 +156,9 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 
 
 def _logarithms(A: Matrix) -> tuple[Any, Any]:
-    """The base-2 logarithms of the entries of A, -inf for zeros of a dense A, and ones where an entry counts.
+    """Base-2 logarithms of |A| (-inf for dense zeros), and 1 where an entry counts.
 
-    Of a sparse matrix all entries count: it has zeros in place of negligible ones.
+    All sparse entries count: zeros replace negligible ones there.
     """
     if sp.issparse(A):
         stored = sp.csr_array((A.data, A.indices, A.indptr), shape=A.shape, copy=True)
@@ -172,16 +169,16 @@ def _logarithms(A: Matrix) -> tuple[Any, Any]:
         logs = np.log2(np.abs(A))
         diagonal = logs.diagonal()
         counts = logs > -np.inf
-        # Where a_ji, a_ii or a_jj is zero there is nothing to compare with: inf or NaN, and the entry counts.
+        # inf or NaN where a_ji, a_ii or a_jj is zero: the entry counts.
         excess = logs + logs.T
         excess -= diagonal[:, None] + diagonal
     return logs, (counts & ~((excess < NEGLIGIBLE) & (excess > -np.inf))).astype(float)
 
 
 def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
-    """The r and c of least sum of (log |a_ij| + r_i + c_j)^2 over what counts; zero for empty rows and columns.
+    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2 over counted entries.
 
-    Conjugate gradients for c, after elimination of r.
+    Conjugate gradients for c, after eliminating r.
     """
     if sp.issparse(logs):
         row_sums, column_sums = np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
@@ -210,7 +207,7 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration from r and c towards largest entries 1 in all rows and columns."""
+    """Ruiz's iteration from r and c: largest entries approach 1."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -233,7 +230,7 @@ def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
 
 
 def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Which connected part each row and each column is of."""
+    """The connected part of each row and column."""
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
@@ -244,15 +241,15 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _rounded(values: Array) -> Array:
-    """To the nearest integers; halves, which small integers in A make common, always upwards whatever their noise."""
+    """Round to integers, noisy halves upwards: small integers in A make halves common."""
     return np.floor(values + (0.5 + HALVES))
 
 
 def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
-    """For each value the mean of the fractions in its part, about which it is rounded: what is alike stays so."""
+    """The mean fraction of each value's part: rounding about it keeps equal values equal."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
-    # Where fractions cancel around the circle, only noise has a mean: the fraction of the first takes its place.
+    # Where fractions cancel around the circle, their mean is noise: use the first one.
     present, first = np.unique(parts, return_index=True)
     cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
     sums[present[cancelled]] = turns[first[cancelled]]
@@ -275,7 +272,7 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
 
 
 def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
-    """The base-2 logarithm of the smallest entry that is not zero, once scaled; at most zero."""
+    """Base-2 logarithm of the smallest nonzero scaled entry, at most 0."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]

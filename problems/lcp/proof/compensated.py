@@ -24,10 +24,11 @@ _BLOCK = 2**15
 faster than slices."""
 
 DOUBLE_BITS = 53
-"""Mantissa bits."""
+"""Bits of a double's mantissa."""
 
 LARGEST_TERMS = 1e240
-"""Rows with larger terms, or below its inverse, are scaled: low halves of products below 1e-260 are inexact."""
+"""Rows whose terms sum to more than this, or less than its inverse, are scaled: low halves of products below 1e-260 are
+inexact."""
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")

@@ -24,14 +24,14 @@ from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions
 from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers, solve_exactly
 
 HIGHS_TOLERANCE = 1e-10
-"""The tightest that HiGHS accepts."""
+"""The tightest feasibility tolerance of HiGHS."""
 MULTIPLIER_ZERO = 1e-9
-"""Ten times HiGHS's tolerance: smaller scaled multipliers are zero, smaller scaled conditions equations."""
+"""Ten times HiGHS's tolerance: scaled multipliers below this are zero, scaled conditions below this are equations."""
 
 PRECISION = 100 * float(np.finfo(float).eps)
 """Relative errors of A'y <= 0 up to this are rounding."""
 GAP_IN_DOUBT = 1e-6
-"""Smaller gaps, relative to |q|'y, need an exact proof."""
+"""Smaller gaps -q'y, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
 """Relative size below which the refinement treats a condition as an equation."""
 _REFINEMENTS = 4
@@ -39,16 +39,16 @@ _REFINEMENTS = 4
 LARGEST_REFINED = 1500
 """Largest refinement: least squares of this order take seconds."""
 LARGEST_VERTEX = 300
-"""Largest order of a rational solve."""
+"""Largest order at which tight equations are solved in rationals."""
 AFFORDABLE_VERTEX = 100
-"""Its limit for unrequested proofs: 0.1 s, against six at order 300."""
+"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s, against 6 s at order 300."""
 
 
 @frozen(eq=False)
 class Farkas:
     """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, checked in integers on the float data.
 
-    With bounds y_i may be negative without a lower bound of x_i, and is zero with two; see `inequalities`.
+    With bounds, y_i may be negative where x_i has no lower bound, and is zero where x_i has two; see `inequalities`.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Farkas:
 class FloatFarkas:
     """A multiplier that proves infeasibility up to rounding: y >= 0, A'y <= 0 nearly, q'y < 0.
 
-    For a matrix with entries within `error`, relatively, of A's, A'y <= 0 holds exactly.
+    Some matrix whose entries differ from A's by at most `error`, relatively, has A'y <= 0 exactly.
 
     Attributes
     ----------

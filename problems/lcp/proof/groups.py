@@ -1,8 +1,8 @@
-"""Groups of complementary faces, excluded by one multiplier each: a feasible LCP without a solution.
+"""Proves that a feasible LCP has no solution: one multiplier excludes each group of complementary faces.
 
 A group fixes some x_i = 0 and some w_i = 0. Take y with y_i >= 0 unless w_i is fixed, (A'y)_j <= 0 unless x_j is fixed:
-its points have 0 <= y'w - (A'y)'x = q'y. So q'y < 0 excludes the group (Farkas); groups that cover all faces exclude
-solutions.
+its points have 0 <= y'w - (A'y)'x = q'y. So q'y < 0 excludes the group (Farkas). Groups that cover all faces exclude
+all solutions.
 """
 
 from __future__ import annotations

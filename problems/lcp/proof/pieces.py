@@ -24,7 +24,7 @@ TOGETHER = 1024
 """Pieces in one array: a few megabytes."""
 
 SUM_OF_TERMS_ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Twice the error of a sum of k + 4 terms, over k + 4 (Higham, section 3.5)."""
+"""Over twice the error of a sum of k + 4 terms, per k + 4 (Higham, section 3.5)."""
 
 SMALLEST_NORMAL = float(np.finfo(float).tiny)
 

@@ -14,7 +14,7 @@ from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
 POINT_CORRECTIONS = 2
-"""With w in twice the working precision, as in `active_set.finish`."""
+"""Corrections with w in twice the working precision, as in `active_set.finish`."""
 
 
 @frozen(eq=False)
