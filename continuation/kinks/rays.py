@@ -1,15 +1,15 @@
-"""All branches that meet in a kink: rays in the kernels of the pieces that meet there.
+"""All branches that meet in a kink: rays in the kernels of its pieces.
 
-Near a kink at which the switches of `beta` vanish, a piecewise smooth map is to first order piecewise linear, one piece
-for each of the 2^|beta| choices of their signs (Scholtes, Introduction to Piecewise Differentiable Equations, 2012,
-Chapter 4). A branch that leaves is a ray v in the kernel of a piece, on which every switch of beta takes its sign.
-Where one switch vanishes two pieces agree, so that their derivatives differ by rank one: H'_tau = H'_sigma + C_tau G,
-G the gradients of beta. With M = [H'_sigma; border] factored once, M v = e_{N+1} and Z = M^{-1} [C; 0], the kernel is
+Near a kink where the switches `beta` vanish, a piecewise smooth map is to first order piecewise linear, with one piece
+for each choice of their signs (Scholtes, Introduction to Piecewise Differentiable Equations, 2012, Chapter 4). A branch
+is a ray v in a piece's kernel on which every switch has that piece's sign. Neighbouring pieces agree where their switch
+vanishes, so H'_tau = H'_sigma + C_tau G, G the gradients of beta. With one factorisation of M = [H'_sigma; border], M v
+= e_{N+1} and Z = M^{-1} [C; 0], the kernel is
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-a system of order |beta|. Of many switches only the ray to which pivots lead is found: with w = D (p - n), D the signs
-on which the path came, p and n not negative and complementary, p = (I + D G Z D) n + alpha D G v.
+a system of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n
+complementary and nonnegative, p = (I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -30,30 +30,31 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
-"""Switches whose 2^10 pieces are gone through; twice as many for each one more, so that beyond pivots find one ray."""
+"""Up to so many switches all 2^10 pieces are tried; each further switch would double them, so pivots find one ray
+instead."""
 
 RANK_ONE = 1e-5
-"""How well the derivatives of two pieces with one common border differ by rank one. Derivatives by differences have
-eight digits; pieces that do not agree on their border differ by one."""
+"""Largest relative defect of the rank-one difference of two neighbouring pieces: derivatives by differences have eight
+digits, pieces that disagree on their border differ by one."""
 
 TILT = 1e-7
-"""The derivative of a switch along a ray, relative to what it is in a general direction, below which first order does
-not tell its sign: derivatives by differences have eight digits."""
+"""Smaller derivatives of a switch along a ray, relative to a general direction, do not show its sign: derivatives by
+differences have eight digits."""
 
 KERNEL = 1e-9
-"""The least singular value, relative to the largest, of a piece whose kernel is a line."""
+"""Least relative singular value of a piece whose kernel is a line."""
 
 SAME_RAY = 1e-6
-"""Rays whose unit vectors differ by less are one."""
+"""Unit vectors that differ by less are one ray."""
 
 
 class UnresolvedError(ArithmeticError):
-    """The branches that meet in a kink cannot be told; the sentence says why."""
+    """The branches at a kink cannot be determined; the sentence says why."""
 
 
 @frozen(eq=False)
 class Ray:
-    """A branch that leaves a kink: its unit direction and the signs of its piece."""
+    """A branch that leaves a kink: unit direction and signs of its piece."""
 
     v: Array
     signs: Signs
@@ -61,7 +62,7 @@ class Ray:
 
 @frozen(eq=False)
 class Corner:
-    """A kink from the side of one piece: the point linearized there, the piece's signs, the switches that vanish."""
+    """A kink seen from one piece: its linearization there, the piece's signs, the vanishing switches."""
 
     pieces: Pieces
     evaluator: Evaluator
@@ -70,28 +71,28 @@ class Corner:
     beta: tuple[int, ...]
 
     def signs_with(self, of_beta: Sequence[int]) -> Signs:
-        """The signs with others for the switches that vanish."""
+        """The signs with others for the vanishing switches."""
         changed = list(self.signs)
         for j, sign in zip(self.beta, of_beta):
             changed[j] = sign
         return tuple(changed)
 
     def on(self, signs: Signs) -> Evaluator:
-        """Counted access to one piece."""
+        """An evaluator of one piece, with shared counts."""
         return Evaluator(self.pieces.piece(signs), self.evaluator.counts)
 
     def tilts(self, v: Array) -> Array:
-        """Derivatives of the switches that vanish, along v."""
+        """Derivatives along v of the vanishing switches."""
         return self.pieces.along(self.point.u, v)[list(self.beta)]
 
 
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
-    """All branches that leave the corner, in no particular order, each once.
+    """All branches that leave the corner, each once.
 
-    Of too many switches it is the one to which pivots lead, if a path has `come` there along the corner's tangent.
+    For too many switches only pivots' ray, if a path has `come` along the corner's tangent.
 
-    Raises `UnresolvedError` if too many switches vanish, the pieces do not agree on their borders, or one has a kernel
-    of more dimensions. Raises `EvaluationError` if a derivative cannot be evaluated.
+    Raises `UnresolvedError` if too many switches vanish, pieces disagree on their borders, or a kernel has more
+    dimensions. Raises `EvaluationError` if a derivative cannot be evaluated.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(
@@ -127,11 +128,11 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 
 @frozen(eq=False)
 class _Family:
-    """The derivatives of the pieces that meet, as changes of low rank of the one of the corner's own piece.
+    """The derivatives of the corner's pieces, as low-rank changes of its own piece's.
 
-    `sizes` are the switches' derivatives in a general direction, `R` general directions, `GR` the switches' derivatives
-    along them, `columns` the c_j of H'_{j changed} - H'_sigma = c_j grad s_j, `Z` what M^{-1} makes of them and `GZ`
-    the switches' derivatives of that. Without `columns` each piece is factored by itself.
+    `sizes`: Switches' derivatives in general directions `R`; `GR`: along each. `columns`: The c_j of H'_{j changed} -
+    H'_sigma = c_j grad s_j. `Z`: M^{-1} of these; `GZ`: the switches' derivatives along it. Without `columns` each
+    piece is factored.
     """
 
     corner: Corner
@@ -145,7 +146,7 @@ class _Family:
 
     @classmethod
     def of(cls, corner: Corner) -> _Family:
-        """With one factorisation where pieces can be applied to a direction."""
+        """Uses one factorisation if derivatives can be applied to vectors."""
         point, b = corner.point, len(corner.beta)
         R = np.random.default_rng(4).standard_normal((b, point.u.size)) / np.sqrt(point.weights)
         GR = np.array([corner.tilts(r) for r in R]).T
@@ -167,12 +168,12 @@ class _Family:
         return cls(corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T)
 
     def applied(self, signs: Signs, r: Array) -> Array | None:
-        """The derivative of a piece along r; None where it has no matrix to be applied."""
+        """The derivative of a piece along r, or None."""
         apply = self.corner.on(signs).differential(self.corner.point.u)
         return None if apply is None else apply(r)
 
     def column(self, k: int, signs: Signs, own: Array) -> Array:
-        """The c of the piece that differs in the k-th switch alone: the derivatives differ by c grad s_k."""
+        """The c of c grad s_k, the change of the derivative when only switch k changes."""
         corner = self.corner
         change = np.array([self.applied(signs, r) for r in self.R]) - own
         c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
@@ -182,13 +183,13 @@ class _Family:
         return c
 
     def kernel(self, signs: Signs, taus: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
-        """Both directions of the kernel of a piece, and the switches' derivatives along them."""
+        """Both directions of a piece's kernel, with the switches' derivatives."""
         flipped = np.array(taus) != np.array(self.corner.signs)[list(self.corner.beta)]
         if self.columns is None or self.Z is None or self.GZ is None or not self._adds_up(signs, flipped):
             v = self._factored(signs)
             w = self.corner.tilts(v)
         else:
-            # In units of the switches, so that the singular values can be compared.
+            # In units of the switches, so that singular values are comparable.
             small = np.eye(len(taus)) + self.GZ * (flipped * self.sizes)[None, :] / self.sizes[:, None]
             small = np.column_stack([small, -self.tilts / self.sizes])
             _, values, rows = np.linalg.svd(small)
@@ -201,7 +202,7 @@ class _Family:
         yield -v, -w
 
     def by_pivots(self) -> tuple[int, ...]:
-        """The signs on the ray to which pivots lead from the one come on."""
+        """The signs on the ray to which pivots lead."""
         corner = self.corner
         many = f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through"
         if self.GZ is None:
@@ -221,7 +222,7 @@ class _Family:
         return taus
 
     def _adds_up(self, signs: Signs, flipped: NDArray[np.bool_]) -> bool:
-        """Whether the change of several switches is the sum of the changes of each, as in complementarity problems."""
+        """Whether changes of several switches add up, as in complementarity problems."""
         if int(flipped.sum()) < 2 or self.columns is None:
             return True
         own, there = (self.applied(s, self.R[0]) for s in (self.corner.signs, signs))
@@ -231,7 +232,7 @@ class _Family:
         return float(np.abs(left).max()) <= RANK_ONE * float(np.abs(there).max() + np.abs(own).max())
 
     def _factored(self, signs: Signs) -> Array:
-        """The kernel of one piece from factors of its own, with two borders: one that depends on them is no line."""
+        """A piece's kernel by its own factorisation; two borders must give one line."""
         corner, found = self.corner, []
         for seed in (5, 6):
             border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
@@ -242,10 +243,10 @@ class _Family:
         return found[0]
 
     def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
-        """A piece whose kernel is a plane is of no account only if no direction in that plane stays in the piece."""
+        """Raise unless a piece's kernel is a plane with no direction inside the piece."""
         a, b = np.array(taus), kernel[:, :-1]
         if len(kernel) == 2:
-            # The cone of a plane that some half-planes leave has edges on theirs, or is all of it.
+            # Half-planes cut a cone with edges on their lines out of the plane, or leave all of it.
             edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
             if b.any() and not any((a * (x @ b) >= -KERNEL * norm(np.ones(2), x)).all() for x in edges if x.any()):
                 return
@@ -253,15 +254,15 @@ class _Family:
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5
-"""How far ahead, in the metric, a ray is followed where first order does not tell whether it stays in its piece."""
+"""Lengths, in the metric, at which a ray is checked if first order does not show whether it stays in its piece."""
 
 LAST_CORRECTION, OFF = 1e-3, 1e-9
-"""The last correction there, relative to the square of the length, by which a curved branch leaves a border; and the
-part of a switch's first order over that length which is round-off, far below that square."""
+"""Limits of the last correction relative to length^2, by which a curved branch leaves a border, and of a switch's
+round-off relative to its first order, far below length^2."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
-    """Whether the branch along v stays in the piece: its point a little ahead, corrected, has the piece's signs."""
+    """Whether the corrected point a little ahead along v has the piece's signs."""
     point, evaluator = corner.point, corner.on(signs)
     which = [corner.beta[k] for k in unsure]
     try:
