@@ -24,19 +24,19 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
-"""Weights of the interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where speeds are known."""
+"""Weights of degree 5 on the inner Gauss nodes and the ends."""
 
 _AGREEMENT = 1e-8
-"""Relative difference of the two rules: Gauss's, of degree 9, is then far more accurate."""
+"""Relative difference of the rules; Gauss's is far more accurate."""
 
 _DIVISIONS = 20
 
 
 def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
-    """The length of a traced path, by Gauss quadrature on points of the path.
+    """The length of a traced path, by Gauss quadrature on its points.
 
-    Planes orthogonal to a step's chord (in the homotopy's metric) cut the step; at the cut the speed is |v| / (border .
-    v), v the tangent. Five nodes a step, more on demand: the error is that of quadrature, about 1e-9.
+    Planes orthogonal to a step's chord cut the path; there its speed is |v| / (border . v), v the tangent. Five nodes a
+    step, more on demand; the error is about 1e-9.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     ValueError
         If the path has no step.
     ArithmeticError
-        If the path cannot be followed between two points, as at a branch point.
+        If the path cannot be followed, as at a branch point.
     """
     require_path(path)
     check_metric(metric)
@@ -75,7 +75,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
 
 
 def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
-    """The length from a to b in the metric `measure`; planes are orthogonal in the metric of a."""
+    """The length from a to b in the metric `measure`; planes use that of a."""
     chord = norm(a.weights, b.u - a.u)
     if chord <= 1e-14 * norm(a.weights, a.u):
         return norm(measure, b.u - a.u)

@@ -1,4 +1,4 @@
-"""Checks of a traced path by a retrace, and points between its own."""
+"""Retraces, and points between those of a path."""
 
 from __future__ import annotations
 
@@ -30,17 +30,15 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
 BEFORE = 0.1
-"""A retrace begins this part of the last step before a branch point that ends the path: near enough to miss little, far
-enough for a regular matrix."""
+"""The retrace begins this part of the last step before a branch point: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
 class Audit:
     """The result of a retrace.
 
-    `same`: Whether the retrace passes through every point in order and direction, with equal numbers of turning points
-    and branch points. `sentence`: The finding in words. `first`: Index of the first step missed, or None. `retraced`:
-    The retrace.
+    `same`: Whether it passes every point in order and direction, with equal numbers of turning points and branch
+    points. `sentence`: The finding. `first`: First step missed, or None. `retraced`: The retrace.
     """
 
     same: bool
@@ -54,10 +52,7 @@ class Audit:
 
 @frozen(eq=False)
 class Halved:
-    """A controller that takes at most half of another trace's step at each arclength.
-
-    State: the accumulated arclength.
-    """
+    """A controller that takes at most half of another trace's steps; its state is the arclength."""
 
     knots: Array
     max_angle: float = 0.3
@@ -74,7 +69,7 @@ class Halved:
 
     def update(self, state: tuple[float, ...], attempt: StepMeasures) -> Decision:
         """Half the other trace's step after success, half the attempt's after failure."""
-        # A correction as long as the step leads elsewhere, even to a parallel path.
+        # Such a correction leads elsewhere.
         if not attempt.converged or attempt.angle > self.max_angle or attempt.distance > 0.3 * attempt.h:
             return Decision(False, 0.5 * attempt.h, state)
         s = state[0] + attempt.h
@@ -91,10 +86,10 @@ def audit(
     tolerance: float | Tolerance = 1e-8,
     backwards: bool = False,
 ) -> Audit:
-    """Check that the tracer stayed on one path: a retrace with half the steps must pass through the same points.
+    """Check that the tracer stayed on one path: a retrace with half the steps must pass the same points.
 
-    If the tracer jumped to another path, or over a loop, the retrace misses the first point behind the jump. It takes
-    about twice the time of the trace, and four times its factorisations.
+    After a jump to another path, or over a loop, the retrace misses the next point. It takes twice the time of the
+    trace, and four times its factorisations.
 
     Parameters
     ----------
@@ -106,7 +101,7 @@ def audit(
     tolerance : float or Tolerance
         As in the trace; points may differ by a thousand times as much.
     backwards : bool
-        Retrace from end to start: jumps rarely occur in both directions.
+        Retrace from end to start: jumps rarely occur both ways.
 
     Returns
     -------
@@ -174,7 +169,7 @@ def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Me
 
 
 def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
-    """The number of knots that the trace meets, in order, before it ends or clearly misses one."""
+    """The number of knots met in order before the trace ends or misses one."""
     solver = PathSolver(Evaluator(tracer.homotopy, Counts()), tolerance)
     met, met_at = 1, 0.0
     before: Linearization | None = None
@@ -182,7 +177,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
         assert tracer.state is not None
         weights = tracer.state.weights
         here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
-        # No plane meets a branch point regularly: the retrace must locate the same branch point.
+        # Branch points are met where the retrace locates them.
         located = [event for event in tracer.path.branch_points if event.step == step.index]
         while (
             before is not None
@@ -193,7 +188,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
             )
         ):
             met, met_at = met + 1, step.arclength
-        # An arc is little longer than its chord; a missed loop is longer.
+        # A missed loop is longer than the chord.
         if met == len(knots) or step.arclength - met_at > 2.0 * (knots[met].arclength - knots[met - 1].arclength):
             break
         before = here
@@ -213,7 +208,7 @@ def _same(weights: Array, point: Linearization | LocatedEvent, knot: Knot, toler
 
 
 def _passed(tracer: Tracer, events: list[LocatedEvent], end: Knot, tolerance: Tolerance) -> int:
-    """The number of events up to the end, which the last step may pass."""
+    """The number of events up to the end."""
     assert tracer.state is not None
     last, weights = len(tracer.path) - 1, tracer.state.weights
     return sum(

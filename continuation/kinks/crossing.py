@@ -1,4 +1,4 @@
-"""The rays that leave a kink, and the one that continues the path."""
+"""Continues a path through a kink."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
 PIECES_AGREE = 1e-6
-"""Largest correction, in the metric, of the kink on the next piece: pieces agree there to round-off."""
+"""Largest correction, in the metric, of a kink on the next piece."""
 
 STILL = 1e-12
-"""A smaller share of the parameter in a tangent is round-off: the path does not turn there."""
+"""Smaller parameter shares of a tangent are round-off."""
 
 
 @frozen(eq=False)
 class Crossing:
     """A kink, resolved as far as possible.
 
-    `at`: The kink on the incoming piece, with the incoming tangent. `switches`: Those that vanish there. `rays`, of
-    shape (k, N + 1): Leaving directions: first back, then onward. `onward`: The kink on the next piece, None where the
-    path ends. `signs`: Of that piece. `reason`: Why the path ends although rays may exist.
+    `at`: The kink with the incoming tangent. `switches`: Those that vanish. `rays`, of shape (k, N + 1): First back,
+    then onward, then others. `onward`: The kink on the next piece, or None. `signs`: Of that piece. `reason`: Why the
+    path ends, if rays may be missing.
     """
 
     at: Linearization
@@ -54,11 +54,11 @@ def cross(
 ) -> Crossing:
     """Resolve a kink.
 
-    Among several branches, the path continues on those with its determinant's sign, as if the map were perturbed
-    (Allgower and Georg, Section 2.1); the straightest is taken.
+    The path continues on the straightest branch with its determinant's sign, as if the map were perturbed (Allgower and
+    Georg, Section 2.1).
 
-    `solver`, `signs`: Of the incoming piece. `point`: The kink, with the incoming tangent. `orientation`: The
-    determinant's sign along the path. `beta`: The switches that vanish.
+    `solver`, `signs`: Of the incoming piece. `point`: The kink. `orientation`: The determinant's sign. `beta`:
+    Vanishing switches.
     """
     back = -point.tangent[None]
     try:
@@ -84,7 +84,7 @@ def cross(
 
 
 def _linearized(corner: Corner, ray: Ray) -> Linearization:
-    """The kink on a ray's piece, with the ray as a more accurate tangent."""
+    """The kink linearized on a ray's piece."""
     point, evaluator = corner.point, corner.on(ray.signs)
     there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
     off = norm(point.weights, there.solve(-evaluator.residual(point.u)))

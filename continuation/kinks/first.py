@@ -17,29 +17,23 @@ SEEN = 4.0
 """Two round-off samples show the largest of many values within this factor."""
 
 DIP = 0.25
-"""A switch that falls below this part of its values on both sides may have two zeros: the segment is accurate to a few
-thousandths of its length, so the path is checked."""
+"""A switch that falls below this part of its neighbouring values may have two zeros; the path is checked."""
 
 TIED = 16.0
-"""Round-off samples at two points agree within this factor. So a zero at an arc's beginning was a zero at the end of
-the arc before, and switches this near to zero vanish together."""
+"""Two round-off samples agree within this factor: zeros persist to the next arc, and such switches vanish together."""
 
 NEAR_ZERO = 1e-6
-"""Ends nearer to zero, relative to the switch's largest value on the arc, are corrected onto the path first."""
+"""Ends nearer to zero, relative to a switch's largest value, are corrected first."""
 
 TOUCHING = 1e-9
-"""Allowed wrong sign, relative to a switch's largest value, at a limit of the path, which is known to a root of
-round-off."""
+"""Allowed wrong sign, relative to the largest value, at a path's limit: that is known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
-"""Most zeros located on one arc, each before the last found; two path points have no more between them."""
+"""Most zeros located on one arc."""
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
-    """The effect of round-off at a path point on the switches, shape (m,).
-
-    Errors in the last places of each equation's terms, with general signs, move the point.
-    """
+    """The effect of round-off at a path point on the switches, shape (m,)."""
     evaluator, generic = solver.evaluator, generic_vector(point.u.size)
     terms = evaluator.round_off(point.u, evaluator.residual(point.u))
     signs = np.sign(generic)
@@ -53,11 +47,10 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
 def first_zero(
     solver: PathSolver, pieces: Pieces, signs: Signs, arc: Arc
 ) -> tuple[Linearization, tuple[int, ...]] | None:
-    """The first point of an arc where a switch vanishes, with all switches that vanish there; None if there is none.
+    """The first point of an arc where a switch vanishes, with all that vanish there, or None.
 
-    A switch that vanishes at the beginning counts again once it has left zero.
-
-    `signs`: Of the arc's piece. Raises `EvaluationError` where the path cannot be evaluated, or has too many zeros.
+    A switch that vanishes at the beginning counts once it has left zero. `signs`: Of the arc's piece. Raises
+    `EvaluationError` if the path cannot be evaluated, or has too many zeros.
     """
     s = np.array(signs)
     try:
@@ -67,7 +60,7 @@ def first_zero(
         near = np.abs(grid[[0, -1]]) <= NEAR_ZERO * np.abs(grid).max(axis=0)
         if not (_suspects(grid) | near[1]).any():
             return None
-        # Points are accurate only to the tolerance: the sign of a switch that is nearly zero needs round-off accuracy.
+        # Signs of nearly vanishing switches need points accurate to round-off.
         a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
         if a is not arc.a or b is not arc.b:
             arc = part_between(arc, a, b)
@@ -90,7 +83,7 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the straight way from a path point to u stays on the point's piece."""
+    """Whether the straight way from a path point to u stays on its piece."""
     try:
         way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
@@ -100,7 +93,7 @@ def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> 
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:
-    """Switches that may vanish after the beginning: a wrong sign on the grid, or a dip between grid points."""
+    """Switches with a wrong sign after the beginning, or a dip between grid points."""
     wrong = (grid[1:] < 0.0).any(axis=0) | (grid[-1] <= 0.0)
     left, middle, right = grid[:-2], grid[1:-1], grid[2:]
     bend = left - 2.0 * middle + right
@@ -114,10 +107,7 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
-    """The first zero of the suspects, then of switches that have changed sign before it.
-
-    Each zero found shortens the arc for the others.
-    """
+    """The first zero of the suspects and of switches that changed sign before it."""
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
@@ -147,7 +137,7 @@ def _first(
 def _zero(
     solver: PathSolver, switch: Function, noise: float, arc: Arc, end: Linearization, values: Array
 ) -> Linearization | None:
-    """The first zero of one switch between an arc's beginning and `end`; `values` are its grid values."""
+    """The first zero of one switch up to `end`; `values` are on the grid."""
 
     def seen(point: Linearization) -> float:
         g = switch(point.u, point.tangent)
@@ -155,8 +145,7 @@ def _zero(
 
     begin, ga = arc.a, float(values[0])
     if ga <= 0.0:
-        # The switch vanishes at the beginning: search once it has left zero, or take its last zero if it leaves to the
-        # wrong side.
+        # The switch vanishes at the beginning.
         first = int(np.flatnonzero(values[1:])[0]) + 1
         if first == 1 and values[1] < 0.0:
             raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")

@@ -1,7 +1,6 @@
-"""Passes corners where many switches vanish, by pivots in the small LCP whose solutions are its rays.
+"""Passes corners where many switches vanish, by pivots in the small LCP of their rays.
 
-``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the distances that vanish, v their complements, e the driving
-variable.
+``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u vanish, v are their complements, e drives.
 """
 
 from __future__ import annotations
@@ -12,10 +11,10 @@ from attrs import frozen
 from continuation.arrays import Array
 
 ZERO_COMPONENT = 1e-9
-"""Smaller components of a ray, and singular values of pieces, relative to the largest, are zero."""
+"""Smaller relative components and singular values are zero."""
 
 IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
-"""Its multiples modulo one are generic: they perturb the corner's switches."""
+"""Its multiples modulo one are generic; they perturb the switches."""
 
 PIVOTS_PER_SWITCH = 50
 """Most pivots per switch."""
@@ -41,7 +40,7 @@ class Ray:
 class Way:
     """The basis behind a corner.
 
-    `switched`: The switches that change pieces. `driver`: The switch whose pair drives next. `ray`: Its ray.
+    `switched`: Switches that change pieces. `driver`: The next driving pair. `ray`: Its ray.
     """
 
     switched: tuple[int, ...]
@@ -50,8 +49,7 @@ class Way:
 
 
 def way(S: Array, r: Array) -> Way | None:
-    """The basis behind the corner, by pivots with perturbed switches: no two vanish at once. None if rounding defeats
-    it.
+    """The basis behind the corner, by pivots with perturbed switches, or None.
 
     References
     ----------

@@ -1,15 +1,14 @@
 """All branches that meet in a kink: rays in the kernels of its pieces.
 
-Near a kink where the switches `beta` vanish, a piecewise smooth map is to first order piecewise linear, with one piece
-for each choice of their signs (Scholtes, Introduction to Piecewise Differentiable Equations, 2012, Chapter 4). A branch
-is a ray v in a piece's kernel on which every switch has that piece's sign. Neighbouring pieces agree where their switch
-vanishes, so H'_tau = H'_sigma + C_tau G, G the gradients of beta. With one factorisation of M = [H'_sigma; border], M v
-= e_{N+1} and Z = M^{-1} [C; 0], the kernel is
+Near a kink a piecewise smooth map is to first order piecewise linear, with a piece for each choice of signs of the
+vanishing switches beta (Scholtes, Introduction to Piecewise Differentiable Equations, 2012, Chapter 4). A branch is a
+ray v in a piece's kernel with that piece's signs. Neighbours agree where their switch vanishes: H'_tau = H'_sigma +
+C_tau G, G the gradients of beta. With M = [H'_sigma; border], M v = e_{N+1} and Z = M^{-1} [C; 0],
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-a system of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n
-complementary and nonnegative, p = (I + D G Z D) n + alpha D G v.
+of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n complementary, p =
+(I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -30,16 +29,14 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
-"""Up to so many switches all 2^10 pieces are tried; each further switch would double them, so pivots find one ray
-instead."""
+"""For more switches (over 2^10 pieces) pivots find one ray instead."""
 
 RANK_ONE = 1e-5
-"""Largest relative defect of the rank-one difference of two neighbouring pieces: derivatives by differences have eight
-digits, pieces that disagree on their border differ by one."""
+"""Largest relative defect of rank-one differences of pieces: derivatives by differences have eight digits, disagreement
+gives one."""
 
 TILT = 1e-7
-"""Smaller derivatives of a switch along a ray, relative to a general direction, do not show its sign: derivatives by
-differences have eight digits."""
+"""Smaller relative derivatives of a switch along a ray do not show its sign: differences have eight digits."""
 
 KERNEL = 1e-9
 """Least relative singular value of a piece whose kernel is a line."""
@@ -49,12 +46,12 @@ SAME_RAY = 1e-6
 
 
 class UnresolvedError(ArithmeticError):
-    """The branches at a kink cannot be determined; the sentence says why."""
+    """The branches at a kink cannot be determined."""
 
 
 @frozen(eq=False)
 class Ray:
-    """A branch that leaves a kink: unit direction and signs of its piece."""
+    """A branch: unit direction and signs of its piece."""
 
     v: Array
     signs: Signs
@@ -62,7 +59,7 @@ class Ray:
 
 @frozen(eq=False)
 class Corner:
-    """A kink seen from one piece: its linearization there, the piece's signs, the vanishing switches."""
+    """A kink seen from one piece, and the vanishing switches."""
 
     pieces: Pieces
     evaluator: Evaluator
@@ -89,10 +86,10 @@ class Corner:
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
     """All branches that leave the corner, each once.
 
-    For too many switches only pivots' ray, if a path has `come` along the corner's tangent.
+    For too many switches, pivots give one ray if a path has `come` there.
 
-    Raises `UnresolvedError` if too many switches vanish, pieces disagree on their borders, or a kernel has more
-    dimensions. Raises `EvaluationError` if a derivative cannot be evaluated.
+    Raises `UnresolvedError` if there are too many switches, pieces disagree on borders, or a kernel has more
+    dimensions; `EvaluationError` if a derivative fails.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(
@@ -128,11 +125,10 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 
 @frozen(eq=False)
 class _Family:
-    """The derivatives of the corner's pieces, as low-rank changes of its own piece's.
+    """Derivatives of the corner's pieces, as low-rank changes of one.
 
     `sizes`: Switches' derivatives in general directions `R`; `GR`: along each. `columns`: The c_j of H'_{j changed} -
-    H'_sigma = c_j grad s_j. `Z`: M^{-1} of these; `GZ`: the switches' derivatives along it. Without `columns` each
-    piece is factored.
+    H'_sigma = c_j grad s_j. `Z`: M^{-1} of these. `GZ`: The switches' derivatives along `Z`.
     """
 
     corner: Corner
@@ -146,7 +142,7 @@ class _Family:
 
     @classmethod
     def of(cls, corner: Corner) -> _Family:
-        """Uses one factorisation if derivatives can be applied to vectors."""
+        """Uses one factorisation if derivatives apply to vectors."""
         point, b = corner.point, len(corner.beta)
         R = np.random.default_rng(4).standard_normal((b, point.u.size)) / np.sqrt(point.weights)
         GR = np.array([corner.tilts(r) for r in R]).T
@@ -173,7 +169,7 @@ class _Family:
         return None if apply is None else apply(r)
 
     def column(self, k: int, signs: Signs, own: Array) -> Array:
-        """The c of c grad s_k, the change of the derivative when only switch k changes."""
+        """The c of c grad s_k, the derivative's change with switch k."""
         corner = self.corner
         change = np.array([self.applied(signs, r) for r in self.R]) - own
         c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
@@ -183,7 +179,7 @@ class _Family:
         return c
 
     def kernel(self, signs: Signs, taus: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
-        """Both directions of a piece's kernel, with the switches' derivatives."""
+        """Both kernel directions, with the switches' derivatives."""
         flipped = np.array(taus) != np.array(self.corner.signs)[list(self.corner.beta)]
         if self.columns is None or self.Z is None or self.GZ is None or not self._adds_up(signs, flipped):
             v = self._factored(signs)
@@ -202,7 +198,7 @@ class _Family:
         yield -v, -w
 
     def by_pivots(self) -> tuple[int, ...]:
-        """The signs on the ray to which pivots lead."""
+        """Signs of the ray found by pivots."""
         corner = self.corner
         many = f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through"
         if self.GZ is None:
@@ -222,7 +218,7 @@ class _Family:
         return taus
 
     def _adds_up(self, signs: Signs, flipped: NDArray[np.bool_]) -> bool:
-        """Whether changes of several switches add up, as in complementarity problems."""
+        """Whether changes of switches add up, as in complementarity problems."""
         if int(flipped.sum()) < 2 or self.columns is None:
             return True
         own, there = (self.applied(s, self.R[0]) for s in (self.corner.signs, signs))
@@ -232,7 +228,7 @@ class _Family:
         return float(np.abs(left).max()) <= RANK_ONE * float(np.abs(there).max() + np.abs(own).max())
 
     def _factored(self, signs: Signs) -> Array:
-        """A piece's kernel by its own factorisation; two borders must give one line."""
+        """A kernel by its own factorisation; two borders must agree."""
         corner, found = self.corner, []
         for seed in (5, 6):
             border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
@@ -243,10 +239,10 @@ class _Family:
         return found[0]
 
     def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
-        """Raise unless a piece's kernel is a plane with no direction inside the piece."""
+        """Raise unless the kernel is a plane without directions inside the piece."""
         a, b = np.array(taus), kernel[:, :-1]
         if len(kernel) == 2:
-            # Half-planes cut a cone with edges on their lines out of the plane, or leave all of it.
+            # A cone in the plane has edges on these lines.
             edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
             if b.any() and not any((a * (x @ b) >= -KERNEL * norm(np.ones(2), x)).all() for x in edges if x.any()):
                 return
@@ -254,15 +250,14 @@ class _Family:
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5
-"""Lengths, in the metric, at which a ray is checked if first order does not show whether it stays in its piece."""
+"""Lengths, in the metric, at which rays are checked if first order is unclear."""
 
 LAST_CORRECTION, OFF = 1e-3, 1e-9
-"""Limits of the last correction relative to length^2, by which a curved branch leaves a border, and of a switch's
-round-off relative to its first order, far below length^2."""
+"""Limits of the last correction relative to length^2, and of a switch's round-off relative to its first order."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
-    """Whether the corrected point a little ahead along v has the piece's signs."""
+    """Whether the corrected point ahead along v has the piece's signs."""
     point, evaluator = corner.point, corner.on(signs)
     which = [corner.beta[k] for k in unsure]
     try:

@@ -1,4 +1,4 @@
-"""The piece on which a path begins, also from a kink."""
+"""The piece on which a path begins."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def begin(
     direction: int,
     target: float | None,
 ) -> tuple[Linearization, float, Signs]:
-    """The first point, a first step length and the piece's signs; binds the solver's evaluator to the piece.
+    """The first point, a first step length and the piece's signs; binds the evaluator.
 
-    `u`, of shape (N + 1,): The homotopy's start. `start`: A given start with direction. `metric`, `direction`,
-    `target`: Of the trace. Raises `StartError` if no path point, or no branch in that direction, exists.
+    `u`, of shape (N + 1,): The homotopy's start. `start`: A start with direction. Raises `StartError` without a path
+    point or branch in that direction.
     """
     try:
         if start is not None and start[0].size == u.size:
@@ -71,7 +71,7 @@ def begin(
 def _out_of_kink(
     solver: PathSolver, pieces: Pieces, point: Linearization, signs: Signs, beta: tuple[int, ...], wanted: int
 ) -> tuple[Linearization, Signs]:
-    """The branch that leaves a kink in the wanted direction; of several, that with the fastest parameter."""
+    """The branch that leaves a kink in the wanted direction with the fastest parameter."""
     evaluator = solver.evaluator
     try:
         here = linearize(evaluator, point.u, point.weights, point.border)
@@ -99,7 +99,7 @@ def kink_rays(homotopy: Any, u: Array) -> Array:
     ----------
     homotopy : SupportsPieces
     u : ndarray, shape (N + 1,)
-        A point (y, lam) of the path; two rays leave an ordinary kink, or the inside of an arc.
+        A point (y, lam) of the path.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Foreign file formats, read by scipy in a child process with limits.
 
-scipy's compiled readers trust a file's sizes and types: damaged files have made them crash (SIGSEGV, SIGFPE), loop
-without end, or take all memory.
+scipy trusts a file's sizes and types: damaged files have crashed it (SIGSEGV, SIGFPE), made it loop, or taken all
+memory.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any, BinaryIO, NoReturn
 from continuation.archive.hdf5 import Allowance
 
 BYTES_A_SECOND = 1 << 22
-"""Bytes that a child may read per CPU second, after the first two: scipy reads 20 times as many."""
+"""Bytes a child may read per CPU second after the first two; scipy is 20 times as fast."""
 
 
 def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[str, Any]:
@@ -29,7 +29,7 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
     Raises `ValueError` with the child's message, or how it ended.
     """
     with TemporaryFile() as out:
-        # Python warns of locks that other threads hold; the child takes none of these.
+        # The child takes no locks of other threads.
         with warnings.catch_warnings(action="ignore", category=DeprecationWarning):
             child = os.fork()
         if not child:
@@ -46,7 +46,7 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
         if code < 0:
             limited = -code in (signal.SIGXCPU, signal.SIGALRM)
             raise ValueError("it takes too long to read" if limited else f"its reader ended by signal {-code}")
-        # Unpickling is safe: this program's own child wrote it.
+        # Safe: this program's child wrote it.
         found: Mapping[str, Any] = pickle.load(out)
         return found
 
@@ -68,7 +68,7 @@ def _answer(read: Callable[[str], Mapping[str, Any]], file: str, out: BinaryIO) 
         _lower(resource.RLIMIT_FSIZE, room)
         _lower(resource.RLIMIT_CPU, seconds)
         _lower(resource.RLIMIT_CORE, 0)
-        # A child that waits for a lost lock uses no CPU time: only wall-clock time ends it.
+        # Waiting for a lost lock uses no CPU time.
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(60 * seconds)
         pickle.dump(read(file), out)

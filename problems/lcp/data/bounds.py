@@ -12,11 +12,10 @@ from problems.options import real_array
 
 
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
-    """Bounds as a vector of floats; only the infinity `default` is allowed.
+    """Bounds as a vector of floats; the only infinity allowed is `default`.
 
-    `name`: For messages. `value`, of shape (size,): Or one number for all; None means `default`. `default`: -inf for
-    lower bounds, inf for upper. Raises `ValueError` if the value is sparse (unstored entries are ambiguous), not real,
-    of another length, NaN, or the wrong infinity.
+    `value`, of shape (size,): Or one number; None means `default`. Raises `ValueError` if it is sparse (unstored
+    entries are ambiguous), not real, of another length, NaN, or the wrong infinity.
     """
     if value is None:
         return np.full(size, default)

@@ -1,4 +1,4 @@
-"""File formats that hold arrays: each reader returns arrays by name."""
+"""Readers of files that hold arrays: each returns arrays by name."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from continuation.arrays import Matrix
 from problems.lcp.data.apart import read_apart
 
 ALONE = ""
-"""The name of the array in files with one unnamed array."""
+"""Name of an unnamed array."""
 
 BOUNDS = ("lower", "upper")
 
 PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *BOUNDS, "rows_lower")
-"""The arguments of `from_qp`; a container with c instead of q holds a program."""
+"""The arguments of `from_qp`."""
 
 WANTED = ("A", "q", "x0", *PROGRAM)
 """Names read from an HDF5 file."""
@@ -89,11 +89,11 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
     with Path(file).open("rb") as lines:
         # Skip to the line with the sizes.
         next((line for line in lines if line.strip() and not line.lstrip().startswith(b"%")), None)
-        # scipy ignores parts of a line that it does not understand; numpy checks all of it.
+        # scipy ignores what it does not understand in a line.
         found = np.loadtxt(lines, comments=None, ndmin=2)
     if min(rows, columns) < 1 or (found.shape != claimed and (found.size or entries)):
         raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found.shape}")
-    # One thread: the child has no memory for another stack.
+    # The child has no memory for threads.
     getattr(sys.modules.get("scipy.io._fast_matrix_market"), "__dict__", {})["PARALLELISM"] = 1
     return {ALONE: scipy.io.mmread(file, spmatrix=False)}
 

@@ -1,6 +1,6 @@
-"""LCPs and vectors from files, with one-line errors.
+"""Reads LCPs and vectors from files, with one-line errors.
 
-A container (.npz, .json, .mat, .h5) holds named arrays, ``A`` and ``q``; other formats hold one array.
+Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, sound_sparse
 
 ROWS = 1 << 22
-"""Most rows of a sparse matrix, unless its file has more bytes: empty rows take memory too."""
+"""Most rows of a sparse matrix, or the file's bytes: empty rows take memory."""
 
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
-"""Matches names of files that hold named arrays."""
+"""Names of container files."""
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
-"""The bound that JSON's null stands for."""
+"""Bounds that JSON's null stands for."""
 
 _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
@@ -37,7 +37,7 @@ _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECA
 class InputError(ValueError):
     """A file that cannot be used.
 
-    `argument`: ``path``, or a vector's name. `complaint`: What was expected and found, one line.
+    `argument`: ``path``, or a vector's name. `complaint`: One line.
     """
 
     def __init__(self, argument: str, complaint: str) -> None:
@@ -49,11 +49,10 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A, q and optional bounds lower, upper (JSON's
-    null is infinite; in HDF5 at the root, in group ``problem``, or ``file.h5:/group``); or, with `q`, A alone as
-    ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or the ``.npz`` of `scipy.sparse.save_npz`. A sparse A stays sparse. `q`: A
-    file with q, in any of these formats, used instead of a q beside A. Raises `InputError`: if a file is missing, of
-    another format, or holds no real finite data of matching shapes.
+    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A, q, and optionally lower, upper (JSON's null is
+    infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as ``.mtx``,
+    ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q`: A file, preferred to a q beside A. Raises `InputError`
+    if a file is missing, of another format, or without real finite data of matching shapes.
     """
     contents = _contents("path", path)
     A = _named(contents, "A", "path", path)
@@ -78,10 +77,10 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 
 
 def read_program(path: str | PathLike[str]) -> Program | None:
-    """Read a quadratic or linear program; None if the file holds none.
+    """Read a program; None if the file holds none.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional P, G, h, A_eq, b_eq, lower, upper, rows_lower,
-    as for `from_qp`; or ``.qps``, ``.mps``, ``.lp`` (need highspy). Raises `InputError` as `read_problem`.
+    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``, ``.mps``,
+    ``.lp`` (need highspy). Raises `InputError`.
     """
     if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
         try:
@@ -105,18 +104,12 @@ def read_program(path: str | PathLike[str]) -> Program | None:
 
 
 def read_matrix(path: str | PathLike[str]) -> Matrix:
-    """Read A alone, unchecked, in any format of `read_problem`.
-
-    Raises `InputError` if the file is missing, of another format, or holds no A.
-    """
+    """Read A alone, unchecked; raises `InputError`."""
     return _named(_contents("path", path), "A", "path", path)
 
 
 def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
-    """Read `size` finite numbers, called `name` in messages and containers.
-
-    Raises `InputError` as `read_problem`.
-    """
+    """Read `size` finite numbers; raises `InputError`."""
     value = _flat(_named(_contents(name, path), name, name, path))
     try:
         return finite_vector(name, value, size)
@@ -145,14 +138,13 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
 
 
 def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
-    """The file, and the group in it."""
     text = fspath(path)
     grouped = _HDF5_GROUP.fullmatch(text)
     return (grouped["file"], grouped["group"]) if grouped else (text, None)
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
-    """The array `name`, or the only one of a file without names; sparse, or not of objects."""
+    """The array `name`, or the only unnamed one."""
     if name not in contents and ALONE not in contents:
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
@@ -178,6 +170,6 @@ def _shown(path: str | PathLike[str] | None) -> str:
 
 
 def _flat(value: Matrix) -> Matrix:
-    """A row or a column as a vector: formats differ in which they store."""
+    """A row or column as a vector, as formats differ."""
     array = value.toarray() if sp.issparse(value) else value
     return array.ravel() if array.ndim == 2 and 1 in array.shape else array

@@ -23,43 +23,42 @@ class MatrixFacts:
 
     @cached_property
     def semidefinite(self) -> bool:
-        """Whether x'Ax >= 0 for all x to working precision (one factorisation): then a feasible LCP is solvable."""
+        """Whether A is positive semidefinite to working precision: then a feasible LCP is solvable."""
         return self.structure.semidefinite
 
     @cached_property
     def negative_diagonal(self) -> bool:
-        """Whether some a_ii < 0: A is not copositive, and Wang's path mostly diverges."""
+        """Whether some a_ii < 0: not copositive, Wang's path mostly diverges."""
         return bool(self.structure.problem.A.diagonal().min() < 0.0)
 
     @property
     def z_matrix(self) -> bool:
-        """Whether no off-diagonal entry is positive.
+        """Whether off-diagonal entries are <= 0.
 
-        Then the active-set method from x = 0 ends within n steps at the least feasible element, or nowhere.
+        Then active sets from x = 0 reach the least feasible element within n steps, or fail.
         """
         return self._off_diagonal[1] <= 0.0
 
     @property
     def nonnegative(self) -> bool:
-        """Whether no entry is negative: copositive, as for bimatrix games."""
+        """Whether all entries are >= 0: copositive, as for bimatrix games."""
         return self._off_diagonal[0] >= 0.0 and not self.negative_diagonal
 
     @cached_property
     def _off_diagonal(self) -> tuple[float, float]:
-        """The least and the largest off-diagonal entry; zeros if there is none."""
+        """Extreme off-diagonal entries, or zeros."""
         problem = self.structure.problem
         if problem.sparse:
             entries = problem.A.tocoo()
             values = entries.data[entries.row != entries.col]
         else:
             n = problem.n
-            # Drop the first entry, then each (n + 1)-th: the diagonal.
+            # Drops the diagonal.
             values = problem.A.ravel()[1:].reshape(n - 1, n + 1)[:, :-1] if n > 1 else np.zeros(0)
         return float(values.min(initial=0.0)), float(values.max(initial=0.0))
 
     def __str__(self) -> str:
         parts = ["symmetric" if self.symmetric else "not symmetric"]
-        # Facts not asked for are left out.
         if "semidefinite" in vars(self):
             parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
         said = {

@@ -1,4 +1,4 @@
-"""An LCP's matrix: products, properties that are cheap to prove, derived matrices; dense, sparse or banded."""
+"""An LCP's matrix (dense, sparse or banded), its properties and derived matrices."""
 
 from __future__ import annotations
 
@@ -18,29 +18,28 @@ WIDEST_BAND = 16
 """Most diagonals, gaps included, of a banded matrix."""
 
 FILL = 8.0
-"""A'DA is formed for a sparse A with at most so many terms per entry of A and I.
+"""Most terms of a sparse A'DA per entry of A and I.
 
-Beyond (a full row fills A'DA) a system of order 2n, as sparse as A, replaces it.
+Beyond, a system of order 2n, as sparse as A, replaces it.
 """
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Shift per unknown of the diagonal (scaled to ones) with which semidefinite matrices pass Cholesky.
+"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky.
 
-Its rounding is at most about n eps of the diagonal (Higham, Theorem 10.3); data such as M M' in floating point have as
-much error again.
+Its rounding is about n eps of the diagonal (Higham, Theorem 10.3), that of data like M M' as much again.
 """
 
 
 LARGEST_SYMMETRIC_PART = 1000
-"""Most nonempty rows of a sparse A, with bounds, for a dense factorisation of A + A'."""
+"""Most nonempty rows of a sparse A with bounds for a dense factorisation of A + A'."""
 
 
 def semidefinite(symmetric: Array) -> bool:
-    """Whether a symmetric matrix is positive semidefinite to working precision: one Cholesky factorisation."""
+    """Whether a symmetric matrix is positive semidefinite to working precision (Cholesky)."""
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    # The shift follows the diagonal: a factorisation does not depend on its scaling.
+    # Shifts follow the diagonal, as factorisations ignore its scaling.
     shifted, sizes = symmetric.copy(), diagonal
     if (diagonal == 0.0).any():
         # A zero diagonal entry takes its row's largest entry.
@@ -137,7 +136,7 @@ class Structure:
 
     @cached_property
     def squarable(self) -> bool:
-        """Whether A'DA may be formed: A is dense, banded, or fills little."""
+        """Whether A'DA may be formed (A dense or banded, or little fill)."""
         if not self.problem.sparse or self.band is not None:
             return True
         terms = float((np.diff(self.problem.A.indptr).astype(float) ** 2).sum())
@@ -150,7 +149,7 @@ class Structure:
             return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
-        # One row and column show most asymmetries at a thousandth of the cost.
+        # One row and column show most asymmetries cheaply.
         A = self.problem.A
         return not np.count_nonzero(A[0] != A[:, 0]) and not np.count_nonzero(A != A.T)
 
@@ -158,8 +157,7 @@ class Structure:
     def semidefinite(self) -> bool:
         """Whether A + A' is proved positive semidefinite, to working precision.
 
-        Dense: by a Cholesky factorisation. Sparse: by diagonal dominance (Gershgorin). It decides only which
-        factorisation comes first: wrong answers cost only time.
+        Dense: by Cholesky. Sparse: by diagonal dominance (Gershgorin). Wrong answers cost only time.
         """
         diagonal = self.symmetrized.diagonal()
         if (diagonal < 0.0).any():
@@ -172,7 +170,7 @@ class Structure:
         return semidefinite(self.symmetrized)
 
     def definite_where_it_has_entries(self) -> bool:
-        """Whether a sparse A + A' is semidefinite: dense factorisation of its nonempty rows (a program's P)."""
+        """Whether a sparse A + A' is semidefinite, by its nonempty rows (a program's P)."""
         S = self.symmetrized
         S.eliminate_zeros()
         rows = np.flatnonzero(np.diff(S.indptr) > 0)
@@ -230,9 +228,9 @@ class Structure:
     def augmented(
         self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array, turn: Array | None
     ) -> Matrix:
-        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` with scaled columns and a diagonal.
+        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]``, the first n columns scaled.
 
-        ``columns`` scale the first half, ``diagonal`` is added there.
+        ``diagonal`` is added to the first block.
 
         Parameters
         ----------

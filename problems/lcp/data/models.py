@@ -17,9 +17,9 @@ MODEL_FORMATS = (".qps", ".mps", ".lp")
 
 
 def read_model(file: str) -> Program:
-    """Read a program; a maximised one changes signs.
+    """Read a program; maximisation changes signs.
 
-    Raises `ImportError` without highspy, `ValueError` if HiGHS cannot read it or it has integer variables.
+    Raises `ImportError` without highspy, `ValueError` if unreadable or with integer variables.
     """
     try:
         import highspy
@@ -28,7 +28,7 @@ def read_model(file: str) -> Program:
     solver = highspy.Highs()
     solver.setOptionValue("output_flag", False)
     with TemporaryDirectory() as folder:
-        # HiGHS reads quadratic MPS files, but does not know the extension .qps.
+        # HiGHS does not know the extension .qps.
         known = file
         if file.lower().endswith(".qps"):
             known = str(shutil.copy(file, Path(folder) / "model.mps"))

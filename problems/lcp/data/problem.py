@@ -1,7 +1,4 @@
-"""The linear complementarity problem: validated data, and its residuals.
-
-`LCP` is a `MixedLCP` with bounds 0 and infinity.
-"""
+"""Linear complementarity problems: validated data, and residuals."""
 
 from __future__ import annotations
 
@@ -44,19 +41,18 @@ def square_matrix(value: Any) -> Matrix:
 class MixedLCP:
     """Find x in [lower, upper] with w = A x + q >= 0 where x = lower, w <= 0 where x = upper, and w = 0 between.
 
-    An unknown without bounds has w_i = 0; one with lower_i = upper_i has any w_i. This is the affine variational
-    inequality over a box.
+    An unknown with lower_i = upper_i has any w_i. This is the affine variational inequality over a box.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Any real matrix, converted to float64; sparse input stays sparse (CSR).
+        Converted to float64; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
     lower, upper : array_like, shape (n,), or one number for all, optional
         Default -inf and inf.
     primal : int, optional
-        Number of leading unknowns that are variables of a quadratic program; the others are its multipliers and row
-        values. Default 0: unknown. See `from_qp`.
+        The first unknowns are so many variables of a quadratic program, the others multipliers and row values; default
+        0: unknown. See `from_qp`.
 
     Raises
     ------
@@ -169,7 +165,7 @@ class MixedLCP:
         return _stated(moved <= self.lower, moved >= self.upper)
 
     def corrected(self, state: State, x: Array, w: Array) -> State:
-        """The piece that the signs of x and w ask for: Newton's method for the natural map.
+        """The piece that signs ask for: Newton's method for the natural map.
 
         Parameters
         ----------
@@ -283,9 +279,9 @@ class LCP(MixedLCP):
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Any real matrix, converted to float64; sparse input stays sparse (CSR).
+        Converted to float64; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
-        n may be 0, as in a time step without contact.
+        n may be 0.
 
     Raises
     ------
@@ -311,8 +307,6 @@ class LCP(MixedLCP):
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q, with the cached units of A.
-
-        A computation from scratch may change these by a factor per connected part of A.
 
         Parameters
         ----------

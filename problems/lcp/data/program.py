@@ -1,4 +1,4 @@
-"""Quadratic and linear programs: their optimality conditions as a problem with bounds, and its unknowns by name."""
+"""Quadratic and linear programs as problems with bounds."""
 
 from __future__ import annotations
 
@@ -22,9 +22,8 @@ from problems.options import check_finite, finite_vector, real_array, sound_spar
 class Program:
     """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
 
-    `from_qp` and `from_lp` make it, `solve` solves it. The unknowns of `problem` are x, free multipliers of equations,
-    nonnegative ones of one-sided rows, free ones of two-sided rows, and the values G x of the latter (in no factored
-    matrix)::
+    Made by `from_qp` or `from_lp`. The unknowns of `problem` are x, free multipliers of equations, nonnegative ones of
+    one-sided rows, free ones of two-sided rows, and these rows' values G x::
 
         P x + c = A_eq' equations + G' rows + bounds
 
@@ -36,9 +35,9 @@ class Program:
     problem : MixedLCP
         The optimality conditions.
     equations : tuple of int
-        Begin and end of their multipliers.
+        Range of their multipliers.
     equal, above, below, both : ndarray of int
-        Rows of G that are equations, have only an upper side, only a lower, two; in the order of multipliers.
+        Rows of G that are equations, or have an upper side, a lower side, or both.
     rows : int
         The number of rows of G.
     """
@@ -60,7 +59,7 @@ class Program:
 
     @cached_property
     def convex(self) -> bool:
-        """Whether P is positive semidefinite to working precision: every KKT point is a minimum."""
+        """Whether P is positive semidefinite to working precision."""
         return semidefinite(self.P.toarray() if sp.issparse(self.P) else self.P)
 
     def objective(self, x: Array) -> float:
@@ -73,9 +72,9 @@ class Program:
         return float(0.5 * (x @ (self.P @ x)) + self.c @ x)
 
     def named(self, unknowns: Array, w: Array) -> Mapping[str, Array]:
-        """A solution of `problem` by name: x, and the multipliers `equations`, `rows` and `bounds`.
+        """A solution of `problem` by name: x, `equations`, `rows` and `bounds`.
 
-        A multiplier is positive at an active lower side, negative at an upper.
+        Multipliers are positive at lower sides, negative at upper.
 
         Parameters
         ----------
@@ -91,7 +90,7 @@ class Program:
         return {"x": unknowns[: self.n], "equations": unknowns[begin:end], "rows": rows, "bounds": w[: self.n]}
 
     def reading(self, multiplier: Array) -> str:
-        """The meaning, for the program, of a proof that its conditions have no solution.
+        """The meaning of a proof that the conditions have no solution.
 
         Parameters
         ----------
@@ -117,8 +116,7 @@ def from_qp(
 ) -> Program:
     """Min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
-    Variables without bounds stay single unknowns, and bounds need no multipliers. If P is not positive semidefinite
-    `solve` finds a KKT point, possibly no minimum, and says so.
+    If P is not positive semidefinite, `solve` finds a KKT point, possibly no minimum, and says so.
 
     Parameters
     ----------
@@ -131,9 +129,9 @@ def from_qp(
     A_eq : array_like or scipy sparse, shape (k, n), optional
     b_eq : array_like, shape (k,), optional
     lower, upper : array_like, shape (n,), or one number, optional
-        Bounds of x, default -inf and inf; x is fixed where they are equal.
+        Default -inf and inf; x is fixed where they are equal.
     rows_lower : array_like, shape (m,), or one number, optional
-        Lower sides of rows; a row where it equals h is an equation.
+        Lower sides of rows; equations where it equals h.
 
     Returns
     -------
@@ -142,7 +140,7 @@ def from_qp(
     Raises
     ------
     ValueError
-        For inconsistent arguments, naming argument and index.
+        For inconsistent arguments.
 
     References
     ----------
@@ -201,7 +199,7 @@ def from_lp(
     *,
     rows_lower: Any = None,
 ) -> Program:
-    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper: `from_qp` with P = 0.
+    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
     Parameters
     ----------
@@ -215,7 +213,7 @@ def from_lp(
     Raises
     ------
     ValueError
-        For inconsistent arguments, naming argument and index.
+        For inconsistent arguments.
     """
     c = finite_vector("c", c)
     P = sp.csr_array((c.size, c.size))
@@ -225,7 +223,6 @@ def from_lp(
 
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
-    """A finite matrix with so many columns, dense or CSR."""
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
@@ -244,7 +241,7 @@ def _check_symmetric(P: Matrix) -> None:
 
 
 def _optimality(P: Matrix, rows: list[Matrix], both: int) -> Matrix:
-    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for stacked rows R; E belongs to the last, two-sided ones."""
+    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for stacked rows R; E marks two-sided rows."""
     if not rows:
         return P
     if sp.issparse(P) or any(sp.issparse(part) for part in rows):

@@ -1,6 +1,6 @@
-"""Rows with two sides, low <= G x <= high: an activity r = G x in [low, high] and a free multiplier mu.
+"""Two-sided rows, low <= G x <= high: an activity r = G x in [low, high] and a free multiplier mu.
 
-Both are unknowns, but r is in no factored matrix: its row holds only mu, its column meets only the row of mu.
+The row of r holds only mu, and its column meets only mu's row, so r is in no factored matrix.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ Mask = NDArray[np.bool_]
 
 @frozen(eq=False)
 class Ranges:
-    """Pairs of indices with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, mu without bounds.
+    """Pairs with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, mu without bounds.
 
-    `activity`, `multiplier`: The r and mu. `up`, `down`: A[r, mu], A[mu, r]. `rest`: Indices without the r. `place`:
-    Positions of the mu in it.
+    `activity`, `multiplier`: The r and mu. `up`, `down`: A[r, mu], A[mu, r]. `rest`: Indices without r. `place`:
+    Positions of mu in `rest`.
     """
 
     A: Matrix
@@ -42,7 +42,7 @@ class Ranges:
         return each
 
     def inside(self, active: Mask) -> Indices:
-        """Active indices to solve together: without pairs whose r is active."""
+        """Active indices to solve together: pairs with active r are left out."""
         kept = active.copy()
         loose = active[self.activity]
         kept[self.activity] = False
@@ -52,10 +52,7 @@ class Ranges:
     def completed(
         self, active: Mask, inside: Indices, solve: Callable[[Array], Array], shift: float
     ) -> Callable[[Array], Array]:
-        """Extend a solve on `inside` to the active set: r's row gives mu, mu's row gives r.
-
-        `shift`: Of the diagonal.
-        """
+        """Extend a solve on `inside` to the active set: r's row gives mu, mu's row gives r."""
         loose = active[self.activity]
         r, mu = self.activity[loose], self.multiplier[loose]
 
@@ -73,7 +70,7 @@ class Ranges:
 
 
 def ranges(problem: MixedLCP) -> Ranges | None:
-    """The pairs of a problem, recognised by zeros; None if there are none."""
+    """A problem's pairs, or None."""
     if problem.standard:
         return None
     free = np.isinf(problem.lower) & np.isinf(problem.upper)
@@ -95,7 +92,7 @@ def ranges(problem: MixedLCP) -> Ranges | None:
 
 
 def _only(rows: Matrix) -> tuple[Indices, Array]:
-    """Column and value of each row's only nonzero entry; -1 for other rows."""
+    """Column and value of each row's only nonzero; -1 for others."""
     entries = sp.csr_array(rows)
     entries.eliminate_zeros()
     one = np.diff(entries.indptr) == 1

@@ -1,8 +1,8 @@
-"""Scaling of rows and columns by powers of two, which is exact.
+"""Exact scaling of rows and columns by powers of two.
 
-LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. The units chosen make
-the largest entry of each row and column of A about 1. Least squares of the logarithms of entries, then Ruiz's
-iteration, make them unique: up to rounding, the scaled problem does not depend on the units given.
+LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. The largest entries of
+scaled rows and columns are about 1. Least squares of logarithms, then Ruiz's iteration, give the same problem for all
+given units, up to rounding.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
+"""Sweeps of Ruiz's iteration: each halves the logarithms."""
 
 GRADIENT_STEPS = 30
-"""Conjugate gradient steps: a full matrix needs one, sparse random ones about ten. On long chains the remaining error
-is smooth and changes no scaled entry."""
+"""Conjugate gradient steps: full matrices need one, sparse random ones about ten; on long chains the remaining smooth
+error changes no scaled entry."""
 
 LOGARITHM_TOLERANCE = 1e-6
 """Tolerance of the logarithms: far below the 1/2 where rounding decides."""
@@ -35,21 +35,21 @@ LEAST_EXPONENT = -1021
 """Base-2 exponent of the smallest normal floats: below, scaling may round."""
 
 HALVES = 1e-3
-"""Fractions this near to 1/2 round up: above the noise of logarithms, below differences that matter."""
+"""Fractions this near to 1/2 round up: above the noise, below differences that matter."""
 
 NEGLIGIBLE = -27.0
-"""An a_ij with |a_ij a_ji| < 2^-27 |a_ii a_jj| (unit-free; 1e-8) gives no information on units: kernel matrices
-exp(-d^2) have entries down to 1e-300."""
+"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| (any units) are ignored: kernel matrices exp(-d^2) have entries down to
+1e-300."""
 
 LEVEL = 0.02
-"""Sweeps end when all logarithms of largest entries are below this: rounding to powers of two changes them more."""
+"""Sweeps end at smaller logarithms: rounding changes them more."""
 
 
 @frozen(eq=False)
 class Scaled:
-    """LCP(R q, R A C) for R = diag(2^rows), C = diag(2^columns): its solution u gives x = C u.
+    """LCP(R q, R A C), R = diag(2^rows), C = diag(2^columns); its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded; entries 1e-290 of others may be.
+    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded.
     """
 
     problem: MixedLCP
@@ -58,7 +58,7 @@ class Scaled:
     exact: bool
 
     def x(self, u: Array) -> Array:
-        """The original x; infinite or zero beyond the float range."""
+        """The original x, perhaps beyond the float range."""
         return _times(u, self.columns)
 
     def u(self, x: Array) -> Array:
@@ -72,7 +72,7 @@ class Scaled:
 
 
 def balanced(problem: MixedLCP) -> Scaled | None:
-    """The problem in balanced units, or None if it needs no change.
+    """The problem in balanced units, or None if unchanged.
 
     References
     ----------
@@ -92,9 +92,8 @@ def balanced(problem: MixedLCP) -> Scaled | None:
         bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
         ends = zip(bounds, (problem.lower, problem.upper))
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
-            return None  # a vanishing or infinite bound would change the problem
+            return None  # it would change the problem
         scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
-    # A balanced problem is its own balanced problem.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
 
@@ -102,8 +101,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     """LCP(s q, s A), s a power of two for extreme entries (None for s = 1), and whether active sets can use it.
 
-    They can where `alike` holds and s rounds nothing. Within the range of products s changes nothing for them. The
-    problem has no bounds.
+    They can if entries are `alike` and s rounds nothing. The problem has no bounds.
     """
     if not alike(problem):
         return None, False
@@ -121,8 +119,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     """The exponents of two for rows of [A, q] and columns of A; computed once.
 
-    Powers of two in the given units come out exactly. Row i and column i are rounded together: matrices symmetric up to
-    units become symmetric.
+    Powers of two in the given units come out exactly; matrices symmetric up to units become symmetric.
     """
     if "units" not in problem.known:
         problem.known["units"] = _units(problem)
@@ -141,13 +138,13 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     difference = _rounded(about_r - about_c)
     rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
-    # Undo what rounding added to all entries of a connected part of A.
+    # Undo the mean of rounding in each connected part.
     in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # Each part has one free factor between rows and columns: it makes the part's largest q_i about 1.
+    # A free factor per part makes its largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
@@ -156,10 +153,7 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 
 
 def _logarithms(A: Matrix) -> tuple[Any, Any]:
-    """Base-2 logarithms of |A| (-inf for dense zeros), and 1 where an entry counts.
-
-    All sparse entries count: zeros replace negligible ones there.
-    """
+    """Base-2 logarithms of |A|, and 1 where an entry counts (sparse: everywhere)."""
     if sp.issparse(A):
         stored = sp.csr_array((A.data, A.indices, A.indptr), shape=A.shape, copy=True)
         stored.eliminate_zeros()
@@ -169,17 +163,14 @@ def _logarithms(A: Matrix) -> tuple[Any, Any]:
         logs = np.log2(np.abs(A))
         diagonal = logs.diagonal()
         counts = logs > -np.inf
-        # inf or NaN where a_ji, a_ii or a_jj is zero: the entry counts.
+        # inf or NaN: the entry counts.
         excess = logs + logs.T
         excess -= diagonal[:, None] + diagonal
     return logs, (counts & ~((excess < NEGLIGIBLE) & (excess > -np.inf))).astype(float)
 
 
 def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
-    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2 over counted entries.
-
-    Conjugate gradients for c, after eliminating r.
-    """
+    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2: conjugate gradients for c, r eliminated."""
     if sp.issparse(logs):
         row_sums, column_sums = np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
     else:
@@ -207,7 +198,7 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration from r and c: largest entries approach 1."""
+    """Ruiz's iteration: largest entries approach 1."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -241,15 +232,15 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _rounded(values: Array) -> Array:
-    """Round to integers, noisy halves upwards: small integers in A make halves common."""
+    """Round to integers, noisy halves (common in integer matrices) upwards."""
     return np.floor(values + (0.5 + HALVES))
 
 
 def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
-    """The mean fraction of each value's part: rounding about it keeps equal values equal."""
+    """The mean fraction of each part, about which equal values round equally."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
-    # Where fractions cancel around the circle, their mean is noise: use the first one.
+    # A mean of cancelling fractions is noise: use the first.
     present, first = np.unique(parts, return_index=True)
     cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
     sums[present[cancelled]] = turns[first[cancelled]]
@@ -272,7 +263,7 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
 
 
 def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
-    """Base-2 logarithm of the smallest nonzero scaled entry, at most 0."""
+    """Base-2 logarithm of the smallest nonzero scaled entry."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]

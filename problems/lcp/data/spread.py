@@ -1,4 +1,4 @@
-"""The spread of a problem's entries, which decides whether scaling is worth its time."""
+"""The spread of entries, which decides whether scaling is worth its time."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ EXTREME = 1e90
 """Products of three entries between this and its inverse are floats."""
 
 LEVELLED = 16.0
-"""Problems with bounds stay unscaled if the largest entries of rows and columns are within this factor of each other
-and of 1: scaling takes longer than solving (n = 1000: 0.25 of 0.45 s)."""
+"""Problems with bounds stay unscaled if largest entries of rows and columns are within this factor of each other and of
+1: scaling takes longer than solving (n = 1000: 0.25 of 0.45 s)."""
 
 UNIT_SPREAD = 256.0
-"""Active sets and pivots use the unscaled LCP if largest entries are within this factor: units take longer (monotone
-LCPs, n = 60: 0.5 of 1.3 ms), and two digits decide nothing; arches of five stones have 50."""
+"""LCPs stay unscaled for active sets and pivots within this factor: units take longer (monotone LCPs, n = 60: 0.5 of
+1.3 ms); arches of five stones have 50."""
 
 
 ARRAY_ORDER = 100
-"""Up to this order forming |A| is cheaper than avoiding it; at n = 300 it takes most of the time."""
+"""Up to this order forming |A| is cheaper; at n = 300 it takes most of the time."""
 
 
 def level(problem: MixedLCP) -> bool:
-    """Whether the largest entries of rows and columns are within `LEVELLED` of each other and of 1."""
+    """Whether largest entries are within `LEVELLED` of each other and of 1."""
     least, most = largest_entries(problem)
     return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
 
@@ -36,7 +36,7 @@ def alike(problem: MixedLCP) -> bool:
 
 
 def largest_entries(problem: MixedLCP) -> tuple[float, float]:
-    """The least and the largest of the rows' and columns' largest entries; computed once."""
+    """Least and largest of the rows' and columns' largest entries; computed once."""
     if "range" not in problem.known:
         problem.known["range"] = _found_entries(problem)
     found: tuple[float, float] = problem.known["range"]
@@ -58,7 +58,7 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
 
 
 def far_apart(problem: MixedLCP) -> bool:
-    """Whether the entries' ratios are `extreme`."""
+    """Whether largest and least entry differ by more than `EXTREME`."""
     low, high = _range(problem)
     return high * (1.0 / EXTREME) > low
 

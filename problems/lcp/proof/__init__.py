@@ -1,1 +1,1 @@
-"""Proofs: accurate residuals, exact solutions, Farkas vectors, strictly feasible points."""
+"""Residuals, exact solutions and proofs."""

@@ -1,4 +1,4 @@
-"""Certificates: accurate residuals of a point, and exact rational solutions."""
+"""Certificates of points: accurate residuals, exact solutions."""
 
 from __future__ import annotations
 
@@ -22,41 +22,41 @@ from problems.options import finite_vector
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
 
 LARGEST_ACTIVE_SET = 400
-"""An exact solve of this order takes tens of seconds; its cost grows about like n^4."""
+"""An exact solve of this order takes tens of seconds; cost grows like n^4."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
 """Smaller relative residuals are round-off."""
 
 BOTH_ZERO = 1e-6
-"""An x_i and a w_i below this part of the terms may both be zero."""
+"""Smaller x_i and w_i, relative to the terms, may both be zero."""
 
 MOST_MADE_UP = 2.0**-50
-"""2^-1074 times the largest float: rounding a subnormal x_j changes no row by more."""
+"""2^-1074 times the largest float bounds the effect of a subnormal x_j on a row."""
 
 
 @frozen(eq=False)
 class Certificate:
-    """How well x solves the problem, evaluated in twice the working precision.
+    """How well x solves the problem, in twice the working precision.
 
-    For bounds l, u other than 0 and infinity, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|.
+    With bounds, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|.
 
     Attributes
     ----------
     x, w : Array of shape (n,)
         w = A x + q, correctly rounded unless 32 digits cancel.
     residual : float
-        The natural residual max_i |min(x_i, w_i)|, in the problem's units.
+        max_i |min(x_i, w_i)|, in the problem's units.
     relative_residual : float
-        max_i |min(x_i, w_i)| with w_i relative to the terms (|A| |x| + |q|)_i, and x_i replaced by its largest share in
-        a row's terms; independent of units. For x >= 0 with exact zeros it is the componentwise backward error: the
-        least eps such that x solves an LCP(q + dq, A + dA) with |dq| <= eps |q|, |dA| <= eps |A|.
+        The residual relative to the terms (|A| |x| + |q|)_i of each row, independent of units. For x >= 0 with exact
+        zeros it is the componentwise backward error: the least eps such that x solves an LCP(q + dq, A + dA) with |dq|
+        <= eps |q|, |dA| <= eps |A|.
     negative_x, negative_w : float
-        Largest violation of the bounds of x, and largest w_i of a forbidden sign.
+        Largest violation of bounds by x, and of signs by w.
     complementarity : float
-        max_i |x_i w_i|; with bounds, w_i times the distance from the bound that its sign belongs to.
+        max_i |x_i w_i|; with bounds, the distance from the bound replaces x_i.
     drowned : float
         Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`), zero up to 1e-10.
-        It is large where x runs off to infinity along a solution of LCP(0, A), although the relative residual is small.
+        It is large if x runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
 
     References
     ----------
@@ -74,7 +74,7 @@ class Certificate:
     drowned: float
 
     def solves(self, tolerance: float = 1e-10) -> bool:
-        """Whether x is a solution: small relative residual, and no run to infinity (`drowned`).
+        """Whether the relative residual and `drowned` are small.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class Certificate:
 
 
 def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
-    """Evaluate the residuals at x with compensated arithmetic.
+    """Evaluate the residuals at x in compensated arithmetic.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     x : Array of shape (n,)
     zero : float
         Entries this near to zero or a bound, in natural units (|q|_inf over the largest row norm of A), are moved there
-        first: a small x_i may be a large part of row i.
+        first.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @without_warnings(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite x that nobody changes, n > 0.
+    """The certificate of a finite, immutable x.
 
     Parameters
     ----------
@@ -155,13 +155,12 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
-    """The defects `off`, zero in rows where rounding of subnormal x_j explains them."""
+    """Defects, zero in rows where rounding of subnormal x_j explains them."""
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    # Subnormal x_j have errors up to 2^-1075.
     sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
     asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
     reach = sizes @ (subnormal & away).astype(float)
@@ -171,7 +170,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """`certified` without upper bounds and scaled rows, three times as fast."""
+    """A faster `certified` without upper bounds and scaled rows."""
     w, low = terms.w, least(x)
     relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     complementarity = largest(x * w)
@@ -224,11 +223,11 @@ class ExactCertificate:
 
 
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
-    """Solve on the active set of x in rational arithmetic, and decide exactly whether the result solves the problem.
+    """Solve exactly on the active set of x, and decide whether the result solves the problem.
 
-    The active set is {x_i > w_i}, relative to the rows' terms, or with bounds the piece of the natural map. If that
-    fails, indices where both are nearly zero (`BOTH_ZERO`) are left out, then taken in. On a singular active set
-    dependent x_i keep their float values.
+    The active set is {x_i > w_i}, relative to the terms, or with bounds the piece of the natural map. If it fails,
+    indices with both nearly zero (`BOTH_ZERO`) are left out, then taken in. On singular sets dependent x_i keep their
+    values.
 
     Parameters
     ----------
@@ -258,7 +257,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """The state of x, then with doubtful indices at their nearest bound, then between."""
+    """The state of x, then two variants with doubtful indices at bounds and between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -298,7 +297,7 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    """The first violated condition in words, or an empty string."""
+    """The first violated condition, or an empty string."""
     for i, value in enumerate(x):
         low, high = problem.lower[i], problem.upper[i]
         if low > -math.inf and value < Fraction(low):

@@ -20,8 +20,7 @@ _HIGH_BITS = np.array(~0x7FFFFFF)
 """Keeps 26 leading bits of a double: products are exact."""
 
 _BLOCK = 2**15
-"""Entries in a block of rows: two blocks of 256 KiB fit the cache. Up to a quarter, forming all products at once is
-faster than slices."""
+"""Entries per block of rows: two blocks of 256 KiB fit the cache. Up to a quarter, slices are slower."""
 
 DOUBLE_BITS = 53
 """Bits of a double's mantissa."""
@@ -33,9 +32,9 @@ inexact."""
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """A x + q by compensated summation of error-free products, and a bound on each entry's error.
+    """A x + q by compensated summation, with an error bound for each entry; both infinite where a product overflows.
 
-    `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i| <= bound_i; infinite where a product overflows.
+    `x`, of shape (n,): Finite.
 
     References
     ----------
@@ -48,7 +47,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
 
 def error_bound(w: Array, size: Array, terms: int) -> Array:
-    """Error bound of a compensated sum w of `terms` terms whose magnitudes sum to `size`."""
+    """Error bound of a compensated sum w; the terms' magnitudes sum to `size`."""
     gamma = 4.0 * (terms + 2) * _UNIT
     bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     return bound
@@ -56,10 +55,10 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 
 @frozen(eq=False)
 class Terms:
-    """The rows of A x + q, row i divided by 2^exponents[i].
+    """The rows of A x + q, each divided by 2^exponents[i].
 
-    `A` of shape (n, n), `x` of shape (n,): Give the divided products A_ij x_j. `w`, `size`, of shape (n,): (A x + q)_i
-    and (|A| |x| + |q|)_i, divided. `exponents`, of shape (n,): Zero for ordinary data.
+    `A` of shape (n, n), `x` of shape (n,): Give the divided products. `w`, `size`, of shape (n,): (A x + q)_i and (|A|
+    |x| + |q|)_i, divided. `exponents`, of shape (n,): Usually zero.
     """
 
     A: Matrix
@@ -71,10 +70,7 @@ class Terms:
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
-    """The rows of A x + q and their terms' sizes, without overflow or underflow.
-
-    `x`, of shape (n,): Finite.
-    """
+    """The rows of A x + q without overflow or underflow; x is finite, of shape (n,)."""
     w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
     if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
@@ -108,7 +104,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
 
 
 def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int]:
-    """Returns w, the terms' magnitude sums, the number of terms per row."""
+    """Returns w, magnitude sums, terms per row."""
     A, q, count = problem.A, problem.q, x.size
     if problem.sparse:
         A = sp.csr_array(A)
@@ -142,9 +138,9 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 
 
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
-    """`summed` for a dense matrix, by exact BLAS products of slices: two of A, three of x.
+    """`summed` for a dense matrix by exact BLAS products of slices, two of A, three (all) of x.
 
-    The three slices are all of x. The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
+    The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
 
     References
     ----------
@@ -165,7 +161,7 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
 
 
 def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array]:
-    """Cut slices of `digits` bits off `left`, at most `top` in size; `left` keeps the rest."""
+    """Cut slices of `digits` bits off `left` (at most `top`); `left` keeps the rest."""
     for _ in range(count):
         shift = top * (1.5 * 2.0 ** (DOUBLE_BITS - digits))
         part = left + shift
@@ -176,7 +172,7 @@ def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array
 
 
 def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, int]:
-    """`summed` for a sparse matrix, entry by entry of all rows, and the longest row's length."""
+    """`summed` for a sparse matrix, and the longest row's length."""
     total, lost, size = q.copy(), np.zeros(q.size), np.abs(q)
     lengths: NDArray[Any] = np.diff(A.indptr)
     longest_first = np.argsort(-lengths, kind="stable")
@@ -201,7 +197,7 @@ def _lost(a: Array, b: Array, total: Array) -> Array:
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its error to 2^-106 (Dekker; masking cannot overflow)."""
+    """The rounded product and its error (Dekker; masking cannot overflow)."""
     product = a * b
     a_high, b_high = _high(a), _high(b)
     a_low, b_low = a - a_high, b - b_high

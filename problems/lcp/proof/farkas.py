@@ -1,8 +1,7 @@
-"""Proofs that an LCP has no (strictly) feasible point: multipliers checked in integers.
+"""Multipliers, checked in integers, prove that an LCP has no (strictly) feasible point.
 
-For y >= 0 with A'y <= 0, every x >= 0 with w = A x + q >= 0 gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves
-that no x is feasible (Farkas). If q'y = 0 and y is not zero, then y'w = 0: F = {x > 0, w > 0} is empty (Motzkin). By
-duality both are necessary too.
+For y >= 0 with A'y <= 0, every feasible x gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves that none exists
+(Farkas). If q'y = 0 and y is not zero, F = {x > 0, w > 0} is empty (Motzkin). Duality: both are necessary.
 """
 
 from __future__ import annotations
@@ -26,14 +25,14 @@ from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers
 HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance of HiGHS."""
 MULTIPLIER_ZERO = 1e-9
-"""Ten times HiGHS's tolerance: scaled multipliers below this are zero, scaled conditions below this are equations."""
+"""Ten times HiGHS's tolerance: scaled values below this are zero."""
 
 PRECISION = 100 * float(np.finfo(float).eps)
 """Relative errors of A'y <= 0 up to this are rounding."""
 GAP_IN_DOUBT = 1e-6
 """Smaller gaps -q'y, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
-"""Relative size below which the refinement treats a condition as an equation."""
+"""Conditions below this, relatively, are equations in the refinement."""
 _REFINEMENTS = 4
 """Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
@@ -46,7 +45,7 @@ AFFORDABLE_VERTEX = 100
 
 @frozen(eq=False)
 class Farkas:
-    """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, checked in integers on the float data.
+    """A multiplier y >= 0, y != 0, with A'y <= 0, q'y <= 0, checked in integers.
 
     With bounds, y_i may be negative where x_i has no lower bound, and is zero where x_i has two; see `inequalities`.
 
@@ -68,7 +67,7 @@ class Farkas:
         return self.gap < 0
 
     def in_units(self, problem: MixedLCP, rows: NDArray[np.int64]) -> Farkas | None:
-        """The multiplier for `problem`, from one for its rows multiplied by 2^rows.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -80,7 +79,7 @@ class Farkas:
         return multiplier(problem, y)
 
     def holds(self, problem: MixedLCP) -> bool:
-        """Whether it proves that `problem` has no feasible point.
+        """Whether it proves `problem` infeasible.
 
         Parameters
         ----------
@@ -91,9 +90,9 @@ class Farkas:
 
 @frozen(eq=False)
 class FloatFarkas:
-    """A multiplier that proves infeasibility up to rounding: y >= 0, A'y <= 0 nearly, q'y < 0.
+    """A multiplier that proves infeasibility up to rounding.
 
-    Some matrix whose entries differ from A's by at most `error`, relatively, has A'y <= 0 exactly.
+    A matrix within `error` of A, relatively in each entry, has A'y <= 0 exactly.
 
     Attributes
     ----------
@@ -110,7 +109,7 @@ class FloatFarkas:
     gap: float
 
     def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
-        """The multiplier after rows are multiplied by 2^-rows.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -130,7 +129,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     Returns
     -------
     Farkas or None
-        None if points are feasible, or no multiplier passed the exact check.
+        None if no multiplier passed the exact check.
 
     References
     ----------
@@ -141,7 +140,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
 
 
 def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
-    """Prove that {x >= 0, A x + q >= 0} is empty, exactly or to working precision; else None.
+    """A proof of infeasibility, exact or to working precision, or None.
 
     Parameters
     ----------
@@ -163,9 +162,9 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
-    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0, or None.
+    """Minimise q'y subject to A'y <= 0, sum y = 1, y >= 0; None on failure.
 
-    `matrix`, of shape (m, k): A. `vector`, of shape (m,): q.
+    `matrix`, of shape (m, k). `vector`, of shape (m,).
     """
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
@@ -213,7 +212,7 @@ def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
 
 
 def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -> tuple[Matrix, Array]:
-    """A and q, rows over `rows` and columns over `columns`; exact for powers of two."""
+    """A over rows and columns, q over rows; exact for powers of two."""
     if problem.sparse:
         return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
     return problem.A / rows[:, None] / columns, problem.q / rows
@@ -250,7 +249,7 @@ class _Scaled:
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess (its floats, its vertices) that passes the integer check."""
+        """The first candidate near a scaled guess that passes the integer check."""
         # The check uses the unscaled data, so scaling errors do not matter.
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
@@ -270,7 +269,7 @@ class _Scaled:
                 yield found
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact y on the guess's support that satisfies the equations."""
+        """The exact y on the guess's support that solves the equations."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None
@@ -285,7 +284,7 @@ class _Scaled:
         return y
 
     def nearly(self, guess: Array) -> FloatFarkas | None:
-        """The guess with tight conditions solved to round-off, unscaled; None if it proves nothing."""
+        """The guess with tight conditions solved to round-off, if it is a proof."""
         y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
         conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
         for _ in range(_REFINEMENTS):
@@ -305,14 +304,13 @@ class _Scaled:
             block = self.A[support][:, tight].T
             block = block.toarray() if sp.issparse(block) else block
             moved = y.copy()
-            # Relative to y: small multipliers move little.
             moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
             y = np.maximum(moved, 0.0)
         return None
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
-    """A Farkas vector without common factor; None if y proves nothing."""
+    """A `Farkas` without common factor, or None."""
     common = gcd(*y) or 1
     y = [value // common for value in y]
     gap = conditions_of(problem).gap(y)

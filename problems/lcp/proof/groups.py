@@ -1,8 +1,8 @@
-"""Proves that a feasible LCP has no solution: one multiplier excludes each group of complementary faces.
+"""Proofs that a feasible LCP has no solution: multipliers exclude groups of complementary faces.
 
-A group fixes some x_i = 0 and some w_i = 0. Take y with y_i >= 0 unless w_i is fixed, (A'y)_j <= 0 unless x_j is fixed:
-its points have 0 <= y'w - (A'y)'x = q'y. So q'y < 0 excludes the group (Farkas). Groups that cover all faces exclude
-all solutions.
+A group fixes some x_i = 0 and some w_i = 0. If y_i >= 0 unless w_i is fixed, and (A'y)_j <= 0 unless x_j is fixed, its
+points have 0 <= y'w - (A'y)'x = q'y; so q'y < 0 excludes it (Farkas). Groups that cover all faces exclude all
+solutions.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Fixed = NDArray[np.bool_]
 class Group:
     """Faces with common fixed variables, and why none holds a solution.
 
-    `fixed`, of shape (2n,). `y`, of length n: The multiplier, floats (exact) or integers; None for one face decided in
+    `fixed`, of shape (2n,). `y`, of length n: The multiplier in floats or integers; None for one face decided in
     rationals.
     """
 
@@ -49,12 +49,12 @@ class Groups:
 
     @property
     def root(self) -> list[int] | None:
-        """The multiplier that excludes all faces alone (a Farkas vector), if any."""
+        """The one multiplier that excludes all faces (a Farkas vector), if any."""
         one = self.groups[0] if len(self.groups) == 1 else None
         return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
 
     def in_units(self, rows: NDArray[np.int64]) -> Groups:
-        """The multipliers after undoing a scaling of rows by 2^rows.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class Groups:
         return Groups(tuple(moved(group) for group in self.groups))
 
     def holds(self, problem: LCP) -> bool:
-        """Whether the groups prove exactly that the problem has no solution.
+        """Whether the groups prove that the problem has no solution.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ def _whole(y: Array | Sequence[int]) -> list[int]:
 
 
 def _all_of_them(groups: NDArray[np.bool_]) -> bool:
-    """Whether groups, of shape (number, 2, n), cover all faces: recursion on a pair of which each fixes one."""
+    """Whether groups, of shape (number, 2, n), cover all faces; recursion on a pair that each fixes."""
     if not groups.size:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
@@ -107,13 +107,13 @@ def _all_of_them(groups: NDArray[np.bool_]) -> bool:
 
 @frozen(eq=False, slots=False)
 class Excluding:
-    """Finds and checks multipliers of groups of one dense problem."""
+    """Finds and checks multipliers for one dense problem."""
 
     problem: LCP
 
     @cached_property
     def slopes(self) -> Array:
-        """Maps y to the coefficients of x and w in 0 = q'y - y'w + (A'y)'x, shape (2n, n)."""
+        """Coefficients of x and w in 0 = q'y - y'w + (A'y)'x from y, shape (2n, n)."""
         return np.vstack([-self.problem.A.T, np.eye(self.problem.n)])
 
     @cached_property
@@ -126,12 +126,11 @@ class Excluding:
         return *whole_numbers(self.problem)[:2], conditions_of(self.problem)
 
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
-        """The group, if a dictionary's row makes its basic variable times `sign` negative; else None.
+        """The group, if a dictionary's row makes its basic variable times `sign` negative.
 
-        A small multiple of the other rows gives strict inequalities beyond rounding; otherwise the multiplier is solved
-        in integers.
+        Adding a little of the other rows exceeds rounding; otherwise integers are used.
 
-        `fixed`, of shape (2n,). `basic`, of shape (n,). `row`: Index in `basic`. `sign`: 1 or -1.
+        `fixed`, of shape (2n,). `basic`, of shape (n,). `row`: Index in `basic`.
         """
         right = np.zeros((basic.size, 2))
         right[:, 1] = ~fixed[basic]
@@ -166,7 +165,6 @@ class Excluding:
         return bool(q @ y + unit * (np.abs(q) @ size) + SMALLEST_NORMAL < 0.0)
 
     def _solved(self, basic: NDArray[np.intp], row: int, sign: int) -> list[int] | None:
-        """The row's multiplier, in integers."""
         entries, q, _ = self.exact
         n = len(q)
         rows: list[IntRow] = [

@@ -1,11 +1,11 @@
-"""Inequalities that solutions satisfy, without complementarity, and the conditions on their multipliers.
+"""Inequalities that solutions satisfy without complementarity, and conditions on their multipliers.
 
 A solution has l <= x <= u, w_i >= 0 without an upper bound, w_i <= 0 without a lower one, w_i = 0 without both.
 Multipliers y with y'w >= 0 give 0 <= y'(A x + q), so
 
     q'y + sum_j sup {(A'y)_j x_j : l_j <= x_j <= u_j} < 0
 
-proves that no such x exists. For an LCP: A'y <= 0 and q'y < 0.
+proves that no such x exists.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from problems.lcp.proof.rational import IntegerRow, integer_rows
 class Inequalities:
     """The points z >= 0 with A z + q >= 0.
 
-    `A` of shape (m, k). `q` of shape (m,). `rows`, of shape (m,): Their rows of the problem, -1 for bounds; None if
-    unchanged. `signs`, of shape (m,).
+    `A` of shape (m, k). `q` of shape (m,). `rows`, `signs`, of shape (m,): Rows of the problem (-1 for bounds) and
+    signs; None if unchanged.
     """
 
     A: Matrix
@@ -48,7 +48,7 @@ class Inequalities:
         return bool(sp.issparse(self.A))
 
     def on_rows(self, y: Any, n: int) -> Any:
-        """Multipliers of these rows as multipliers of the problem's n rows."""
+        """Multipliers in terms of the problem's n rows."""
         y = np.asarray(y)
         if self.rows is None or self.signs is None:
             return y
@@ -63,7 +63,6 @@ def inequalities(problem: MixedLCP) -> Inequalities:
         return Inequalities(problem.A, problem.q)
     n, low, high = problem.n, problem.lower, problem.upper
     finite_low, finite_high = low > -np.inf, high < np.inf
-    # An x_j with a bound at zero is z_j or -z_j, others a difference of two z.
     up = low == 0.0
     down = (high == 0.0) & ~up
     both = np.flatnonzero(~up & ~down)
@@ -98,7 +97,7 @@ class Conditions:
     signs: list[tuple[bool, bool]]
 
     def gap(self, y: list[int]) -> Fraction | None:
-        """Exactly q'y + sup (A'y)'x; None if infinite, or y is zero or has a wrong sign."""
+        """Exactly q'y + sup (A'y)'x; None if infinite or y is not allowed."""
         if not any(y):
             return None
         for value, (positive, negative) in zip(y, self.signs):
@@ -116,13 +115,13 @@ class Conditions:
         return total
 
     def hold(self, y: list[int], strict: bool) -> bool:
-        """Whether the `gap` exists and is <= 0, or < 0 if strict."""
+        """Whether `gap` is <= 0, or < 0 if strict."""
         gap = self.gap(y)
         return gap is not None and (gap < 0 or (gap == 0 and not strict))
 
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
-    """The conditions on a multiplier of unscaled data."""
+    """The conditions on a multiplier."""
     A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
     columns = integer_rows(A, np.zeros(A.shape[0]))
     constant = integer_rows(problem.q[None, :], np.zeros(1))[0]

@@ -1,4 +1,4 @@
-"""Phase I: a strictly feasible start by linear programs, or a proof that none exists."""
+"""Phase I: strictly feasible starts by linear programs."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class NoStrictlyFeasiblePoint(ValueError):
 def strictly_feasible_start(problem: LCP) -> Array:
     """Find a point of F = {x > 0, A x + q > 0} of the largest scaled margin up to 1.
 
-    HiGHS looks for the least x of margin 1; if none exists it maximises t <= 1 with x >= t, A x + q >= t (slow for
-    large sparse A: a dense column). Powers of two scale rows and columns; a rigorous error bound verifies positivity.
+    HiGHS seeks the least x of margin 1, else maximises t <= 1 with x >= t, A x + q >= t (slow for large sparse A: a
+    dense column). A rigorous error bound verifies positivity.
 
     Parameters
     ----------
@@ -81,12 +81,12 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
 
 
 def _programs(problem: LCP) -> Iterator[tuple[Array | None, float]]:
-    """The least x of margin 1, with 1; then the x of largest margin t <= 1, with t; (None, nan) on failure."""
+    """The least x of margin 1; then the x of largest margin t <= 1, and t; (None, nan) on failure."""
     rows, columns = scales(problem)
     (matrix, vector), n, none = scaled_data(problem, rows, columns), problem.n, (None, float("nan"))
     result = linprog(np.ones(n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
     yield (result.x / columns, 1.0) if result.status == 0 else none
-    # Unknowns (u, t), x = u / columns: u >= t, A x + q >= t.
+    # Unknowns (u, t), x = u / columns.
     block, eye = (sp.block_array, sp.eye_array(n)) if problem.sparse else (np.block, np.eye(n))
     left = block([[-eye, np.ones((n, 1))], [-matrix, np.ones((n, 1))]])
     bounds = [(None, None)] * n + [(None, 1.0)]

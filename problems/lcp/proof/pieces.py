@@ -1,7 +1,7 @@
 """Complementary pieces that may hold a solution; floats with rounding bounds exclude most others.
 
-If a piece's block B is nonsingular its equations have one solution. With an approximate inverse R and |I - R B| <= d <
-1, a point with residual r is within |R r| / (1 - d) of it (maximum norm). A sign wrong beyond this excludes the piece.
+Let R be an approximate inverse of a piece's block B with |I - R B| <= d < 1. Then its equations have one solution,
+within |R r| / (1 - d) of a point with residual r (maximum norm). A sign wrong beyond this excludes the piece.
 
 References
 ----------
@@ -55,7 +55,7 @@ def all_faces(n: int) -> NDArray[np.bool_]:
 
 
 def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Faces that no row excludes by signs alone: without rounding, also on singular faces."""
+    """Faces that no row excludes by signs alone (no rounding, singular faces too)."""
     support = inside.astype(float)
     rises, falls = support @ (A > 0.0).T > 0.0, support @ (A < 0.0).T > 0.0
     forbidden = (~rises & (q < 0.0)) | (inside & ~falls & (q > 0.0))
@@ -65,8 +65,7 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
     """Which pieces, of one problem or one each, may hold a solution, shape (number,).
 
-    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, shape (n,) each; None for an
-    LCP.
+    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, or None.
     """
     n = states.shape[1]
     sizes, one, ones = np.abs(A), identity(n), np.ones(n)
@@ -105,7 +104,6 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
 
 
 def _times(A: Array, v: Array) -> Array:
-    """One matrix, or each, times each vector."""
     product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
     return product
 

@@ -1,6 +1,6 @@
 """Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b.
 
-Floats are dyadic rationals: a row times a power of two is a row of integers. Every result is checked in integers.
+Floats times powers of two are integers; every result is checked in them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
 
 @frozen
 class IntegerRow:
-    """A row of [matrix, vector] times 2^shift: nonzero columns, their integers, the vector's integer."""
+    """A row of [matrix, vector] times 2^shift: nonzero columns, integers, constant."""
 
     columns: NDArray[Any]
     values: list[int]
@@ -34,7 +34,7 @@ class IntegerRow:
     shift: int
 
     def times(self, numerators: list[int], denominator: int) -> int:
-        """(row . numerators / denominator + constant) times the denominator."""
+        """The row's value at numerators / denominator, times the denominator."""
         total = self.constant * denominator
         for column, value in zip(self.columns, self.values):
             total += value * numerators[column]
@@ -42,7 +42,7 @@ class IntegerRow:
 
 
 def integers(values: Array) -> tuple[list[int], int]:
-    """Integers m and k >= 0 with values = m / 2^k exactly."""
+    """Integers m and k >= 0 with values = m / 2^k."""
     mantissas, exponents = np.frexp(values)
     whole = np.ldexp(mantissas, 53).astype(np.int64).tolist()
     powers = np.where(mantissas == 0.0, 0, exponents - 53)
@@ -51,7 +51,7 @@ def integers(values: Array) -> tuple[list[int], int]:
 
 
 def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
-    """Rows of [matrix, vector] as integers, each with its own scale."""
+    """Rows of [matrix, vector] as integers."""
     rows = []
     stored = sp.csr_array(matrix) if sp.issparse(matrix) else None
     for i, constant in enumerate(vector):
@@ -67,7 +67,7 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
-    """Selected columns (of n) of rows, shape (number of rows, number of columns)."""
+    """Selected columns of rows, shape (number of rows, number of columns)."""
     place = np.full(n, -1)
     place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)
@@ -79,10 +79,10 @@ def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> I
 
 
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
-    """A rational solution of an integer system of any shape and rank.
+    """A rational solution of an integer system of any shape and rank, or None if inconsistent.
 
-    `matrix`, of shape (m, k). `guess`, of shape (k,): Floats; large entries get pivots first, columns without a pivot
-    keep them. Returns (numerators, denominator), checked on every row; None if inconsistent.
+    `matrix`, of shape (m, k). `guess`, of shape (k,): Large entries get pivots first, columns without a pivot keep its
+    values. Returns (numerators, denominator), checked on every row.
 
     References
     ----------
@@ -113,7 +113,7 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
 
 
 def full_row_rank(matrix: Integers) -> bool:
-    """Whether the rows are independent modulo a prime, hence independent; False proves nothing."""
+    """Whether rows are independent modulo a prime; False proves nothing."""
     order = np.arange(matrix.shape[1])
     return any(_invert(matrix, order, prime)[0].size == matrix.shape[0] for prime in PRIMES)
 
@@ -124,7 +124,7 @@ def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
 
 
 def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rows and columns of a largest nonsingular block modulo the prime, and its inverse."""
+    """Rows, columns and inverse of a largest nonsingular block modulo the prime."""
     m = matrix.shape[0]
     work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
     unused = np.ones(m, dtype=bool)
@@ -148,10 +148,10 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
 
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
-    """Solve block z = right, lifting until a rational vector passes the exact check."""
+    """Solve block z = right, lifting until the exact check succeeds."""
     residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    # Hadamard's and Cramer's bounds: beyond, no other rational vector.
+    # Hadamard's and Cramer's bounds.
     bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
     enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:
@@ -170,7 +170,7 @@ def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) 
 
 
 def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
-    """Numerators and common denominator, below sqrt(modulus / 2), congruent to the expansion; else None."""
+    """Numerators and denominator below sqrt(modulus / 2), congruent to the expansion, or None."""
     bound = isqrt(modulus // 2)
     denominator = 1
     for value in expansion:

@@ -1,4 +1,4 @@
-"""Judges points of many small dense LCPs together, as `certify` and `confirmed` do one by one."""
+"""Judges points of many small dense LCPs together."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ POINT_CORRECTIONS = 2
 class Judged:
     """Points of a stack of LCPs, and which are solutions.
 
-    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified; False decides nothing. `residual`,
-    `relative_residual`, of shape (k,): As in `Certificate`.
+    `x` of shape (k, n). `solves`, of shape (k,): False decides nothing. `residual`, `relative_residual`, of shape (k,):
+    As in `Certificate`.
     """
 
     x: Array
@@ -65,10 +65,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
 
 
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
-    """Faces that may hold a solution, shape (k, 2^n).
-
-    `A` of shape (k, n, n). `q` of shape (k, n).
-    """
+    """Faces that may hold a solution, shape (k, 2^n); `q` of shape (k, n)."""
     k, n = q.shape
     states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
     return in_doubt(np.repeat(A, 2**n, axis=0), np.repeat(q, 2**n, axis=0), states).reshape(k, 2**n)

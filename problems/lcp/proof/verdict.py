@@ -1,4 +1,4 @@
-"""Decides whether a point is a solution, and whether it is stationary."""
+"""Decides whether points are solutions, or stationary."""
 
 from __future__ import annotations
 
@@ -20,24 +20,22 @@ UNDERFLOW = float(np.finfo(float).tiny) / EPS
 """Smaller products may have lost digits."""
 
 LARGEST_DECIDED = 12
-"""Up to this order all faces are tried exactly (about 1 s) before a restart, and inaccurate solutions need exact
-confirmation."""
+"""Largest order for exact trial of all faces (about 1 s) and for exact confirmation of inaccurate solutions."""
 
 ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
 """Smaller residuals are rounding: half an eps each for x, row unit, column unit, products."""
 
 STATIONARY = 1e-6
-"""Relative tolerance of optimality conditions: a degenerate end is a series in the root of lambda and has half the
+"""Relative tolerance of optimality conditions: degenerate ends are series in the root of lambda, with half the
 digits.
 """
 
 NEARLY = 1e-5
-"""Ends with smaller residuals are inaccurate solutions, not stationary points."""
+"""Ends with smaller residuals are inaccurate solutions."""
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point is a solution: `Certificate.solves`, and for small problems exact arithmetic unless defects are
-    rounding.
+    """Whether the point is a solution; for small problems exact arithmetic must agree unless defects are rounding.
 
     `tolerance`: Of the relative residual.
     """
@@ -51,10 +49,7 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
     """Whether x solves a program's conditions up to round-off of its largest data.
 
-    No x passes `confirmed` where files give sides of rows as 1e-16 instead of zero. `drowned` excludes runs to
-    infinity.
-
-    `problem`: In balanced units.
+    `confirmed` rejects every x where a file has 1e-16 instead of zero. `problem`: In balanced units.
     """
     if problem.primal == 0 or certificate.drowned > 0.0:
         return False
@@ -62,7 +57,7 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
 
 
 def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether the problem has an exact solution on the face of x or an adjacent one.
+    """Whether an exact solution exists on the face of x or an adjacent one.
 
     Floats prove it where rounding cannot matter, else rationals.
 
@@ -72,7 +67,6 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
         Small: dense matrices are made.
     x : ndarray, shape (n,)
     w : ndarray, shape (n,), optional
-        The certificate's w.
 
     References
     ----------
@@ -93,7 +87,7 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
         return False
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     size = np.abs(A).dot(x) + np.abs(problem.q)
-    # Elsewhere rows are scaled, and the error of w is unknown here.
+    # Elsewhere the error of w is unknown.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
         return False
     w = accurate_w(problem, x)[0] if w is None else w
@@ -102,14 +96,13 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 @frozen(eq=False)
 class Faced:
-    """Face equations of points of a stack of LCPs, in units of x, with approximate inverses.
+    """Face equations of points of a stack of LCPs, in units of x, with approximate inverses R.
 
-    The face's block B has rows of the identity off the face. If |I - R B| <= d < 1, B is nonsingular and B u = r has
-    |u| <= |R| |r| / (1 - d) (maximum norm).
+    If |I - R B| <= d < 1, B is nonsingular and B u = r has |u| <= |R| |r| / (1 - d) (maximum norm); off the face B has
+    rows of the identity.
 
-    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of the terms of rows of A x
-    (maximum 1 off the face). `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or infinite where
-    nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of a row's terms. `size`,
+    of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or infinite without proof.
     """
 
     on: NDArray[np.bool_]
@@ -143,10 +136,7 @@ class Faced:
         return cls(on, total, top, size, np.where(fine, defect, np.inf))
 
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
-        """Whether the equations have a solution near x with w > 0 elsewhere.
-
-        `w`, `bound`, of shape (..., n): w, its error bound.
-        """
+        """Whether the equations have a solution near x with w > 0 elsewhere; w and its bound of shape (..., n)."""
         right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
         moved = moved * (1.0 + ROUND_OFF) / (1.0 - self.defect)
@@ -158,8 +148,8 @@ class Faced:
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
-    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0, relative to the sizes of x, w, z1,
-    z2. With bounds, the conditions of `KKTHomotopy`.
+    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0, relative to their sizes. Bounds:
+    see `KKTHomotopy`.
     """
     rows = Rows(problem)
     if y.size != rows.size:
