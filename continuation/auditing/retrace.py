@@ -69,7 +69,7 @@ class Halved:
 
     def update(self, state: tuple[float, ...], attempt: StepMeasures) -> Decision:
         """Half the other trace's step after success, half the attempt's after failure."""
-        # Such a correction leads elsewhere.
+        # A correction as long as the step leads to another path.
         if not attempt.converged or attempt.angle > self.max_angle or attempt.distance > 0.3 * attempt.h:
             return Decision(False, 0.5 * attempt.h, state)
         s = state[0] + attempt.h
@@ -88,8 +88,8 @@ def audit(
 ) -> Audit:
     """Check that the tracer stayed on one path: a retrace with half the steps must pass the same points.
 
-    After a jump to another path, or over a loop, the retrace misses the next point. It takes twice the time of the
-    trace, and four times its factorisations.
+    After a jump to another path, or over a loop, the retrace misses the next point. It takes about twice the time of
+    the trace, and four times its factorisations.
 
     Parameters
     ----------
@@ -153,7 +153,6 @@ def audit(
 
 
 def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
-    """The points to meet, with accumulated chords as arclengths."""
     onward = {event.step: event.rays[1] for event in kinks if event.rays is not None and len(event.rays) > 1}
 
     def tangent(step: Step) -> Array:

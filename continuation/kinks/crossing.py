@@ -17,7 +17,7 @@ PIECES_AGREE = 1e-6
 """Largest correction, in the metric, of a kink on the next piece."""
 
 STILL = 1e-12
-"""Smaller parameter shares of a tangent are round-off."""
+"""Smaller parameter shares of a tangent are round-off: no turning kink."""
 
 
 @frozen(eq=False)
@@ -84,7 +84,6 @@ def cross(
 
 
 def _linearized(corner: Corner, ray: Ray) -> Linearization:
-    """The kink linearized on a ray's piece."""
     point, evaluator = corner.point, corner.on(ray.signs)
     there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
     off = norm(point.weights, there.solve(-evaluator.residual(point.u)))

@@ -17,10 +17,11 @@ SEEN = 4.0
 """Two round-off samples show the largest of many values within this factor."""
 
 DIP = 0.25
-"""A switch that falls below this part of its neighbouring values may have two zeros; the path is checked."""
+"""A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
 
 TIED = 16.0
-"""Two round-off samples agree within this factor: zeros persist to the next arc, and such switches vanish together."""
+"""Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
+switches this near to zero vanish together."""
 
 NEAR_ZERO = 1e-6
 """Ends nearer to zero, relative to a switch's largest value, are corrected first."""
@@ -29,7 +30,7 @@ TOUCHING = 1e-9
 """Allowed wrong sign, relative to the largest value, at a path's limit: that is known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
-"""Most zeros located on one arc."""
+"""Most zeros located on one arc: neighbouring path points have no more between them."""
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
@@ -145,7 +146,7 @@ def _zero(
 
     begin, ga = arc.a, float(values[0])
     if ga <= 0.0:
-        # The switch vanishes at the beginning.
+        # The switch vanishes at the beginning: search behind it.
         first = int(np.flatnonzero(values[1:])[0]) + 1
         if first == 1 and values[1] < 0.0:
             raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")

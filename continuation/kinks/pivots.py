@@ -1,6 +1,7 @@
 """Passes corners where many switches vanish, by pivots in the small LCP of their rays.
 
-``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u vanish, v are their complements, e drives.
+``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the vanishing distances, v their complements, e the driving
+variable.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from attrs import frozen
 from continuation.arrays import Array
 
 ZERO_COMPONENT = 1e-9
-"""Smaller relative components and singular values are zero."""
+"""Smaller components and singular values, relative to the largest, are zero."""
 
 IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
 """Its multiples modulo one are generic; they perturb the switches."""

@@ -29,11 +29,11 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
-"""For more switches (over 2^10 pieces) pivots find one ray instead."""
+"""Most switches of which all 2^10 pieces are tried; for more, pivots find one ray."""
 
 RANK_ONE = 1e-5
-"""Largest relative defect of rank-one differences of pieces: derivatives by differences have eight digits, disagreement
-gives one."""
+"""Largest relative defect of rank-one differences of pieces: derivatives by differences have eight digits, pieces that
+disagree differ by one."""
 
 TILT = 1e-7
 """Smaller relative derivatives of a switch along a ray do not show its sign: differences have eight digits."""
@@ -142,7 +142,6 @@ class _Family:
 
     @classmethod
     def of(cls, corner: Corner) -> _Family:
-        """Uses one factorisation if derivatives apply to vectors."""
         point, b = corner.point, len(corner.beta)
         R = np.random.default_rng(4).standard_normal((b, point.u.size)) / np.sqrt(point.weights)
         GR = np.array([corner.tilts(r) for r in R]).T
@@ -164,7 +163,6 @@ class _Family:
         return cls(corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T)
 
     def applied(self, signs: Signs, r: Array) -> Array | None:
-        """The derivative of a piece along r, or None."""
         apply = self.corner.on(signs).differential(self.corner.point.u)
         return None if apply is None else apply(r)
 
@@ -179,7 +177,6 @@ class _Family:
         return c
 
     def kernel(self, signs: Signs, taus: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
-        """Both kernel directions, with the switches' derivatives."""
         flipped = np.array(taus) != np.array(self.corner.signs)[list(self.corner.beta)]
         if self.columns is None or self.Z is None or self.GZ is None or not self._adds_up(signs, flipped):
             v = self._factored(signs)
@@ -198,7 +195,6 @@ class _Family:
         yield -v, -w
 
     def by_pivots(self) -> tuple[int, ...]:
-        """Signs of the ray found by pivots."""
         corner = self.corner
         many = f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through"
         if self.GZ is None:
@@ -253,7 +249,8 @@ RAY_LENGTHS = 1e-3, 1e-4, 1e-5
 """Lengths, in the metric, at which rays are checked if first order is unclear."""
 
 LAST_CORRECTION, OFF = 1e-3, 1e-9
-"""Limits of the last correction relative to length^2, and of a switch's round-off relative to its first order."""
+"""Largest last correction, relative to length^2, by which a curved branch leaves a border; and round-off of a switch,
+relative to its first order."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:

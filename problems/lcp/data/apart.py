@@ -52,7 +52,6 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
 
 
 def _answer(read: Callable[[str], Mapping[str, Any]], file: str, out: BinaryIO) -> NoReturn:
-    """The child: read, write the result, exit."""
     status = 1
     try:
         # Keep the child's crash messages off the terminal.

@@ -135,7 +135,6 @@ def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
 
 
 def _from_hdf5(group: Any, name: str, allowance: Allowance) -> Matrix:
-    """A dataset, or a compressed sparse matrix from its parts."""
     node = member(group, name)
     if isinstance(node, h5py.Dataset):
         return dataset(group, name, None, None, allowance)[()]

@@ -23,7 +23,7 @@ from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, sound_sparse
 
 ROWS = 1 << 22
-"""Most rows of a sparse matrix, or the file's bytes: empty rows take memory."""
+"""Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
 
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
 """Names of container files."""

@@ -46,7 +46,6 @@ class MatrixFacts:
 
     @cached_property
     def _off_diagonal(self) -> tuple[float, float]:
-        """Extreme off-diagonal entries, or zeros."""
         problem = self.structure.problem
         if problem.sparse:
             entries = problem.A.tocoo()

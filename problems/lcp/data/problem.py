@@ -241,7 +241,6 @@ class MixedLCP:
 
     @cached_property
     def _norm(self) -> float:
-        """|A|_inf."""
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
     def relative_residual(self, x: Array) -> float:
@@ -307,6 +306,8 @@ class LCP(MixedLCP):
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q, with the cached units of A.
+
+        Fresh units may differ by a factor per connected part of A.
 
         Parameters
         ----------

@@ -35,9 +35,9 @@ class Program:
     problem : MixedLCP
         The optimality conditions.
     equations : tuple of int
-        Range of their multipliers.
+        Begin and end of their multipliers.
     equal, above, below, both : ndarray of int
-        Rows of G that are equations, or have an upper side, a lower side, or both.
+        Rows of G that are equations, or have an upper side, a lower side, or both, in the order of multipliers.
     rows : int
         The number of rows of G.
     """

@@ -22,7 +22,7 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each halves the logarithms."""
+"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
 
 GRADIENT_STEPS = 30
 """Conjugate gradient steps: full matrices need one, sparse random ones about ten; on long chains the remaining smooth
@@ -49,7 +49,7 @@ LEVEL = 0.02
 class Scaled:
     """LCP(R q, R A C), R = diag(2^rows), C = diag(2^columns); its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded.
+    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded (entries below 1e-290 of others may be).
     """
 
     problem: MixedLCP
@@ -94,6 +94,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
             return None  # it would change the problem
         scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
+    # A balanced problem needs no other units.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
 
@@ -138,13 +139,13 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     difference = _rounded(about_r - about_c)
     rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
-    # Undo the mean of rounding in each connected part.
+    # Undo the mean rounding of each connected part.
     in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # A free factor per part makes its largest q_i about 1.
+    # A free factor in each part makes its largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
@@ -198,7 +199,7 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration: largest entries approach 1."""
+    """Ruiz's iteration."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -221,7 +222,6 @@ def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
 
 
 def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """The connected part of each row and column."""
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
@@ -240,7 +240,7 @@ def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
     """The mean fraction of each part, about which equal values round equally."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
-    # A mean of cancelling fractions is noise: use the first.
+    # Where fractions cancel, their mean is noise: use the first.
     present, first = np.unique(parts, return_index=True)
     cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
     sums[present[cancelled]] = turns[first[cancelled]]
@@ -263,7 +263,6 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
 
 
 def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
-    """Base-2 logarithm of the smallest nonzero scaled entry."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]

@@ -70,7 +70,7 @@ def extreme(problem: MixedLCP) -> bool:
 
 
 def _range(problem: MixedLCP) -> tuple[float, float]:
-    """The least nonzero and the largest |entry|; 1 if there is none."""
+    """The least nonzero and the largest |entry|, or 1."""
     size = np.abs(np.concatenate([problem.A.data if problem.sparse else problem.A.ravel(), problem.q]))
     size = size if np.count_nonzero(size) == size.size else size[size > 0.0]
     return (least(size), largest(size)) if size.size else (1.0, 1.0)

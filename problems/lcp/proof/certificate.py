@@ -25,7 +25,7 @@ LARGEST_ACTIVE_SET = 400
 """An exact solve of this order takes tens of seconds; cost grows like n^4."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""Smaller relative residuals are round-off."""
+"""Relative residuals below this are round-off; refinement in twice the precision reaches it."""
 
 BOTH_ZERO = 1e-6
 """Smaller x_i and w_i, relative to the terms, may both be zero."""
@@ -170,7 +170,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """A faster `certified` without upper bounds and scaled rows."""
+    """A faster `certified` for unscaled LCPs."""
     w, low = terms.w, least(x)
     relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     complementarity = largest(x * w)
@@ -257,7 +257,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """The state of x, then two variants with doubtful indices at bounds and between."""
+    """The state of x, then doubtful indices at bounds, then between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -297,7 +297,6 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    """The first violated condition, or an empty string."""
     for i, value in enumerate(x):
         low, high = problem.lower[i], problem.upper[i]
         if low > -math.inf and value < Fraction(low):

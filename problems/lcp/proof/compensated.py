@@ -138,7 +138,7 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 
 
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
-    """`summed` for a dense matrix by exact BLAS products of slices, two of A, three (all) of x.
+    """`summed` for a dense matrix by exact BLAS products of slices: two of A, three (all) of x.
 
     The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
 
@@ -191,7 +191,7 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
 
 
 def _lost(a: Array, b: Array, total: Array) -> Array:
-    """The rounding error of a + b (Knuth)."""
+    """Rounding error of a + b (Knuth)."""
     virtual = total - a
     return (a - (total - virtual)) + (b - virtual)
 

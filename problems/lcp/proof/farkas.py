@@ -233,7 +233,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
 
 @frozen(eq=False)
 class _Scaled:
-    """The inequalities, and A and q scaled by powers of two."""
+    """A problem's inequalities, and their scaled data."""
 
     problem: MixedLCP
     system: Inequalities
@@ -269,7 +269,7 @@ class _Scaled:
                 yield found
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact y on the guess's support that solves the equations."""
+        """The exact solution of the equations on the guess's support."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None

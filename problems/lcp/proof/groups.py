@@ -92,7 +92,7 @@ def _whole(y: Array | Sequence[int]) -> list[int]:
 
 
 def _all_of_them(groups: NDArray[np.bool_]) -> bool:
-    """Whether groups, of shape (number, 2, n), cover all faces; recursion on a pair that each fixes."""
+    """Whether groups, of shape (number, 2, n), cover all faces; recursion over a pair that each fixes."""
     if not groups.size:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
@@ -155,7 +155,7 @@ class Excluding:
         return group if group is not None and self.exactly(group) else None
 
     def _clearly(self, fixed: Fixed, y: Array) -> bool:
-        """Whether floats prove it despite rounding."""
+        """Whether floats prove it."""
         n, q = y.size, self.problem.q
         unit, size = (n + 4) * SUM_OF_TERMS_ROUNDING, np.abs(y)
         terms = self._sizes[:n] @ size

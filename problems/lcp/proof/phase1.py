@@ -20,7 +20,7 @@ class NoStrictlyFeasiblePoint(ValueError):
     Attributes
     ----------
     certificate : Farkas or None
-        The exact proof; None if only floating point says so.
+        The exact proof, if any.
     margin : float
         Largest scaled margin found; at most about 0.
     """

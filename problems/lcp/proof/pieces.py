@@ -34,7 +34,7 @@ States = NDArray[np.int8]
 def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     """Which pieces may hold a solution, shape (number,).
 
-    `states`, of shape (number, n): -1, 0, 1 for x at its lower bound, between, at its upper.
+    `states`, of shape (number, n): -1 at the lower bound, 0 between, 1 at the upper.
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
@@ -119,7 +119,7 @@ def identity(n: int) -> Array:
 def inverses(B: Array) -> Array:
     """Approximate inverses, NaN for singular matrices.
 
-    `B` of shape (number, n, n), or (n, n): direct LAPACK is three times as fast.
+    `B` of shape (number, n, n) or (n, n) (direct LAPACK: three times as fast).
     """
     if B.ndim == 2:
         found, singular = dgesv(B, identity(len(B)))[2:]

@@ -40,7 +40,6 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     q : ndarray, shape (k, n)
     active : ndarray of bool, shape (k, n)
     tolerance : float
-        Of the relative residual.
     """
     n = q.shape[1]
     inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
