@@ -1,4 +1,4 @@
-"""A traced path examined afterwards with its homotopy: a retrace, points between its own, its length."""
+"""Checks of a traced path with its homotopy: retrace, refined points, length."""
 
 from continuation.auditing.length import arclength
 from continuation.auditing.retrace import Audit, audit, refine

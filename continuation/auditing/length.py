@@ -1,4 +1,4 @@
-"""The length of a traced path, by quadrature on points of the path itself."""
+"""The length of a traced path, by quadrature on its points."""
 
 from __future__ import annotations
 
@@ -24,36 +24,34 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
-"""The interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where the speed is known anyway."""
+"""Weights of the interpolatory rule, of degree 5, on the inner Gauss nodes and the ends."""
 
 _AGREEMENT = 1e-8
-"""Relative difference of the two rules; Gauss's, of degree 9, is then far more accurate."""
+"""Relative difference of the two rules; Gauss's (degree 9) is then far more accurate."""
 
 _DIVISIONS = 20
 
 
 def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
-    """The length of a traced path, by Gauss's quadrature on points of the path itself.
+    """The length of a traced path, by Gauss quadrature on its points.
 
-    Each step is cut by planes orthogonal to its chord (in the homotopy's metric); where the path meets a plane its
-    speed is |v| / (border . v), v the tangent there. Five nodes a step, more where they do not suffice, so that the
-    error is one of quadrature (about 1e-9) and not of an interpolant.
+    Planes orthogonal to a step's chord cut the path; there its speed is |v| / (border . v), v the tangent. Five nodes a
+    step, more on demand; the error is about 1e-9.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The one that was traced.
+        As traced.
     path : Path
-        Of at least one step.
     metric : Metric, optional
-        Euclidean in (y, lam) unless given; need not be that of the trace.
+        Default Euclidean in (y, lam).
 
     Raises
     ------
     ValueError
         If the path has no step.
     ArithmeticError
-        If the path cannot be followed between two of its points, as in a branch point.
+        If the path cannot be followed, as at a branch point.
     """
     require_path(path)
     check_metric(metric)
@@ -77,7 +75,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
 
 
 def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
-    """The length from a to b in the metric of `measure`; the planes are orthogonal in the metric of a."""
+    """The length from a to b in the metric `measure`; planes use that of a."""
     chord = norm(a.weights, b.u - a.u)
     if chord <= 1e-14 * norm(a.weights, a.u):
         return norm(measure, b.u - a.u)
@@ -100,7 +98,7 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
 
 
 def metric_of(homotopy: Any, path: Path) -> Metric:
-    """The homotopy's own metric, else the one in which the path ended."""
+    """The homotopy's own metric, else that at the path's end."""
     own: Metric | None = getattr(homotopy, "metric", None)
     if own is not None:
         return own
@@ -112,6 +110,6 @@ def metric_of(homotopy: Any, path: Path) -> Metric:
 
 
 def check_metric(metric: Any) -> None:
-    """Raise TypeError unless the argument `metric` is a metric or None."""
+    """Raise TypeError unless `metric` is a metric or None."""
     if metric is not None:
         instance_with("metric", metric, *PARTS["metric"])

@@ -1,4 +1,4 @@
-"""A traced path examined afterwards: whether a retrace finds the same path, and points between its own."""
+"""Retraces, and points between those of a path."""
 
 from __future__ import annotations
 
@@ -30,17 +30,15 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
 BEFORE = 0.1
-"""So much of the last step before a branch point on which a path ends, a retrace begins: near enough to see it all, and
-far enough for a matrix of about the size that it has elsewhere."""
+"""The retrace begins this part of the last step before a branch point: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
 class Audit:
-    """What a retrace says of a path.
+    """The result of a retrace.
 
-    `same`: Whether the retrace passes through every point of the path, in order and direction, with as many turning
-    points and branch points. `sentence`: The finding in words. `first`: Index of the first step that the retrace does
-    not pass through; None if it passes through all. `retraced`: The retrace, for a closer look.
+    `same`: Whether it passes every point in order and direction, with equal numbers of turning points and branch
+    points. `sentence`: The finding. `first`: First step missed, or None. `retraced`: The retrace.
     """
 
     same: bool
@@ -54,10 +52,7 @@ class Audit:
 
 @frozen(eq=False)
 class Halved:
-    """A controller that takes, at each arclength, at most half the step that another trace took there.
-
-    State: the arclength accumulated so far.
-    """
+    """A controller that takes at most half of another trace's steps; its state is the arclength."""
 
     knots: Array
     max_angle: float = 0.3
@@ -69,12 +64,12 @@ class Halved:
         return Bounds(minimum=1e-6 * min(first, float(np.diff(self.knots).min())), initial=first)
 
     def init(self) -> tuple[float, ...]:
-        """At the start."""
+        """The initial state."""
         return (0.0,)
 
     def update(self, state: tuple[float, ...], attempt: StepMeasures) -> Decision:
         """Half the other trace's step after success, half the attempt's after failure."""
-        # A correction as long as the step leads to another part of the path, or to another path, even if parallel.
+        # A correction as long as the step leads to another path.
         if not attempt.converged or attempt.angle > self.max_angle or attempt.distance > 0.3 * attempt.h:
             return Decision(False, 0.5 * attempt.h, state)
         s = state[0] + attempt.h
@@ -91,23 +86,22 @@ def audit(
     tolerance: float | Tolerance = 1e-8,
     backwards: bool = False,
 ) -> Audit:
-    """Whether the tracer stayed on one path: a retrace with half the steps must pass through the same points.
+    """Check that the tracer stayed on one path: a retrace with half the steps must pass the same points.
 
-    A tracer that jumped to another path, or over a loop of its own, did so with a long step; the retrace then misses
-    the first point behind the jump. It costs about twice the trace and four times its factorisations.
+    After a jump to another path, or over a loop, the retrace misses the next point. It takes about twice the time of
+    the trace, and four times its factorisations.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The one that was traced.
+        As traced.
     path : Path
-        Of at least one step.
     metric : Metric, optional
-        As given to the trace.
+        As in the trace.
     tolerance : float or Tolerance
-        As given to the trace; points may differ by a thousand times as much.
+        As in the trace; points may differ by a thousand times as much.
     backwards : bool
-        Retrace from the end to the start: a jump is rarely made in both directions.
+        Retrace from end to start: jumps rarely occur both ways.
 
     Returns
     -------
@@ -128,7 +122,7 @@ def audit(
         indices, sign = indices[::-1], -1.0
     steps, crossings = [path.steps[k] for k in indices], path.branch_points
     if backwards and crossings and crossings[-1].ends_step and crossings[-1].step == steps[0].index:
-        # From a branch point no path begins regularly.
+        # Paths do not begin regularly at branch points.
         s = steps[0].arclength + BEFORE * (steps[1].arclength - steps[0].arclength)
         crossings = crossings[:-1]
         steps[0] = evolve(steps[0], u=refine(homotopy, path, s, tolerance), tangent=steps[1].tangent)
@@ -159,11 +153,10 @@ def audit(
 
 
 def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
-    """The points to be met, with accumulated chords for arclengths."""
     onward = {event.step: event.rays[1] for event in kinks if event.rays is not None and len(event.rays) > 1}
 
     def tangent(step: Step) -> Array:
-        # A path has two tangents in a kink: a retrace meets it with the one that it comes with.
+        # A kink has two tangents: use the incoming one.
         return -onward[step.index] if sign < 0.0 and step.index in onward else sign * step.tangent
 
     knots = [Knot(0.0, steps[0].u, tangent(steps[0]))]
@@ -175,7 +168,7 @@ def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Me
 
 
 def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
-    """How many of the knots the trace meets, in order, before it ends or has clearly missed one."""
+    """The number of knots met in order before the trace ends or misses one."""
     solver = PathSolver(Evaluator(tracer.homotopy, Counts()), tolerance)
     met, met_at = 1, 0.0
     before: Linearization | None = None
@@ -183,7 +176,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
         assert tracer.state is not None
         weights = tracer.state.weights
         here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
-        # At a branch point no plane is met regularly: it is met where the retrace locates the same one.
+        # Branch points are met where the retrace locates them.
         located = [event for event in tracer.path.branch_points if event.step == step.index]
         while (
             before is not None
@@ -194,7 +187,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
             )
         ):
             met, met_at = met + 1, step.arclength
-        # Between two points of one path lies little more than their chord; a loop that was left out is longer.
+        # A missed loop is longer than the chord.
         if met == len(knots) or step.arclength - met_at > 2.0 * (knots[met].arclength - knots[met - 1].arclength):
             break
         before = here
@@ -214,7 +207,7 @@ def _same(weights: Array, point: Linearization | LocatedEvent, knot: Knot, toler
 
 
 def _passed(tracer: Tracer, events: list[LocatedEvent], end: Knot, tolerance: Tolerance) -> int:
-    """Events up to the end; the last step may lie beyond it."""
+    """The number of events up to the end."""
     assert tracer.state is not None
     last, weights = len(tracer.path) - 1, tracer.state.weights
     return sum(
@@ -233,12 +226,12 @@ def _missed(path: Path, k: int, retraced: Path) -> str:
 
 
 def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1e-8) -> Array:
-    """The path at arclength s, corrected onto it: dense output to round-off, whatever the segments are worth.
+    """The point of the path at arclength s, corrected to round-off.
 
     Parameters
     ----------
     homotopy : Homotopy
-        The one that was traced.
+        As traced.
     path : Path
     s : float
         Between 0 and the last arclength.
@@ -252,7 +245,7 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     Raises
     ------
     ArithmeticError
-        If the corrector fails there.
+        If the corrector fails.
     """
     require_path(path)
     if not is_number(s) or not math.isfinite(s):

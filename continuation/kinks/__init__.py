@@ -1,1 +1,1 @@
-"""Kinks: where a path of a piecewise smooth map goes from one of its pieces to another."""
+"""Kinks: points where a path of a piecewise smooth map changes pieces."""

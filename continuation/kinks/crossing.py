@@ -1,4 +1,4 @@
-"""How a path goes on behind a kink: its rays, and the one of them that continues it."""
+"""Continues a path through a kink."""
 
 from __future__ import annotations
 
@@ -14,20 +14,19 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
 PIECES_AGREE = 1e-6
-"""How far, in the metric, the next piece may have its path beside the kink: pieces agree there to round-off."""
+"""Largest correction, in the metric, of a kink on the next piece."""
 
 STILL = 1e-12
-"""The parameter's share of a tangent that is round-off: it stands still there, and turns neither way."""
+"""Smaller parameter shares of a tangent are round-off: no turning kink."""
 
 
 @frozen(eq=False)
 class Crossing:
-    """A kink, resolved as far as it can be.
+    """A kink, resolved as far as possible.
 
-    `at`: On the piece on which the path came, with the tangent that it came with. `switches`: Those that vanish there.
-    `rays`, of shape (k, N + 1): All that leave: first the one back, then the one on which the path goes on. `onward`:
-    The point on the next piece, None where the path ends. `signs`: Of that piece. `reason`: Why the path ends, if it is
-    not for want of a ray.
+    `at`: The kink with the incoming tangent. `switches`: Those that vanish. `rays`, of shape (k, N + 1): First back,
+    then onward, then others. `onward`: The kink on the next piece, or None. `signs`: Of that piece. `reason`: Why the
+    path ends, if rays may be missing.
     """
 
     at: Linearization
@@ -39,7 +38,7 @@ class Crossing:
 
     @property
     def name(self) -> str:
-        """What kind of a kink it is."""
+        """The kind of the kink."""
         if self.onward is None:
             return "unresolved kink" if self.reason else "dead end"
         if len(self.rays) > 2:
@@ -55,11 +54,11 @@ def cross(
 ) -> Crossing:
     """Resolve a kink.
 
-    Where several branches leave, the path goes on along one with the determinant's sign of the path, as it would if
-    the map were moved a little (Allgower and Georg, Section 2.1): the straightest of them.
+    The path continues on the straightest branch with its determinant's sign, as if the map were perturbed (Allgower and
+    Georg, Section 2.1).
 
-    `solver`: Of the piece on which the path came. `signs`: Of that piece. `point`: The kink, with the tangent of the
-    path that comes. `orientation`: The determinant's sign along the path. `beta`: The switches that vanish there.
+    `solver`, `signs`: Of the incoming piece. `point`: The kink. `orientation`: The determinant's sign. `beta`:
+    Vanishing switches.
     """
     back = -point.tangent[None]
     try:
@@ -85,7 +84,6 @@ def cross(
 
 
 def _linearized(corner: Corner, ray: Ray) -> Linearization:
-    """The kink on the piece of a ray: its tangent is the ray, to more digits."""
     point, evaluator = corner.point, corner.on(ray.signs)
     there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
     off = norm(point.weights, there.solve(-evaluator.residual(point.u)))

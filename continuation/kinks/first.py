@@ -1,4 +1,4 @@
-"""The first zero of any switch on an arc: all of them are watched together, and located one by one."""
+"""The first zero of any switch on an arc."""
 
 from __future__ import annotations
 
@@ -14,32 +14,27 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
 SEEN = 4.0
-"""Two looks at round-off see the largest of many values within this factor."""
+"""Two round-off samples show the largest of many values within this factor."""
 
 DIP = 0.25
-"""A switch that comes down to less than this part of what it is on both sides may have two zeros there: the segment
-says so to a few thousandths of its length, and the path is asked."""
+"""A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
 
 TIED = 16.0
-"""Two looks at round-off from two places differ by less than this: what is zero at the beginning of an arc was so
-at the end of the one before, and switches so near to zero in one place vanish together."""
+"""Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
+switches this near to zero vanish together."""
 
 NEAR_ZERO = 1e-6
-"""Of a switch's largest value on an arc: an end nearer to zero is looked at more closely."""
+"""Ends nearer to zero, relative to a switch's largest value, are corrected first."""
 
 TOUCHING = 1e-9
-"""Of a switch's largest value on the way to a limit of the path: so far beyond zero it may be at that limit, which is
-known to a root of round-off."""
+"""Allowed wrong sign, relative to the largest value, at a path's limit: that is known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
-"""Zeros located on one arc, each before the one found last; more than that are not between two points of a path."""
+"""Most zeros located on one arc: neighbouring path points have no more between them."""
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
-    """What round-off in a point of the path makes of the switches there, shape (m,).
-
-    The terms of each equation are known to their last places; what the path makes of that is seen with general signs.
-    """
+    """The effect of round-off at a path point on the switches, shape (m,)."""
     evaluator, generic = solver.evaluator, generic_vector(point.u.size)
     terms = evaluator.round_off(point.u, evaluator.residual(point.u))
     signs = np.sign(generic)
@@ -53,12 +48,10 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
 def first_zero(
     solver: PathSolver, pieces: Pieces, signs: Signs, arc: Arc
 ) -> tuple[Linearization, tuple[int, ...]] | None:
-    """The first point of an arc at which a switch vanishes, and all switches that do there; None where none does.
+    """The first point of an arc where a switch vanishes, with all that vanish there, or None.
 
-    A switch that vanishes at the beginning was found there, and is asked again once it has left zero.
-
-    `signs`: Of the piece on which the arc lies. Raises `EvaluationError` where the path cannot be evaluated, or is not
-    settled by so many zeros.
+    A switch that vanishes at the beginning counts once it has left zero. `signs`: Of the arc's piece. Raises
+    `EvaluationError` if the path cannot be evaluated, or has too many zeros.
     """
     s = np.array(signs)
     try:
@@ -68,13 +61,12 @@ def first_zero(
         near = np.abs(grid[[0, -1]]) <= NEAR_ZERO * np.abs(grid).max(axis=0)
         if not (_suspects(grid) | near[1]).any():
             return None
-        # Points of a path are as good as the tolerance. On which side of a switch they are that vanishes next to them
-        # is a matter of round-off.
+        # Signs of nearly vanishing switches need points accurate to round-off.
         a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
         if a is not arc.a or b is not arc.b:
             arc = part_between(arc, a, b)
             grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
-        # Round-off about zero is no crossing: such a switch has not left it.
+        # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
         noise = TIED * fine
         fresh = grid[0] > fine
@@ -92,7 +84,7 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the way from a point of the path straight to another place stays on the point's piece."""
+    """Whether the straight way from a path point to u stays on its piece."""
     try:
         way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
@@ -102,7 +94,7 @@ def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> 
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:
-    """Switches that may vanish behind the beginning: a sign on the grid, or a dip between its places."""
+    """Switches with a wrong sign after the beginning, or a dip between grid points."""
     wrong = (grid[1:] < 0.0).any(axis=0) | (grid[-1] <= 0.0)
     left, middle, right = grid[:-2], grid[1:-1], grid[2:]
     bend = left - 2.0 * middle + right
@@ -116,10 +108,7 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
-    """The first zero of the suspects, then of any switch that has changed its sign before that.
-
-    What is found cuts the arc: others are asked for on the part before it.
-    """
+    """The first zero of the suspects and of switches that changed sign before it."""
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
@@ -149,7 +138,7 @@ def _first(
 def _zero(
     solver: PathSolver, switch: Function, noise: float, arc: Arc, end: Linearization, values: Array
 ) -> Linearization | None:
-    """The first zero of one switch on an arc up to a point; `values` are those of the grid on the whole of it."""
+    """The first zero of one switch up to `end`; `values` are on the grid."""
 
     def seen(point: Linearization) -> float:
         g = switch(point.u, point.tangent)
@@ -157,8 +146,7 @@ def _zero(
 
     begin, ga = arc.a, float(values[0])
     if ga <= 0.0:
-        # It has vanished since the beginning: asked again once it has left zero, and at its last zero if it leaves to
-        # the wrong side.
+        # The switch vanishes at the beginning: search behind it.
         first = int(np.flatnonzero(values[1:])[0]) + 1
         if first == 1 and values[1] < 0.0:
             raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")
@@ -178,5 +166,5 @@ def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
 
 
 def part_between(arc: Arc, a: Linearization, b: Linearization) -> Arc:
-    """The part of an arc between two points of it."""
+    """The part of an arc between two of its points."""
     return cubic_between(a, b, arc.border)

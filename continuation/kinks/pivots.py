@@ -1,7 +1,7 @@
-"""The way through a corner where many switches vanish at once, by pivots in the small LCP whose solutions are its rays.
+"""Passes corners where many switches vanish, by pivots in the small LCP of their rays.
 
-``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the distances that have fallen to zero, v those of their
-complements, which may grow from there, and e the variable that drives the path.
+``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the vanishing distances, v their complements, e the driving
+variable.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from attrs import frozen
 from continuation.arrays import Array
 
 ZERO_COMPONENT = 1e-9
-"""Relative to the largest: what of a ray's components, and of the pieces' singular values, counts as zero."""
+"""Smaller components and singular values, relative to the largest, are zero."""
 
 IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
-"""Multiples of it, modulo one, are in no position that is special: by these the corner's switches are set apart."""
+"""Its multiples modulo one are generic; they perturb the switches."""
 
 PIVOTS_PER_SWITCH = 50
-"""Pivots at most, times the number of switches."""
+"""Most pivots per switch."""
 
 
 @frozen(eq=False)
 class Ray:
     """A ray of the small LCP.
 
-    `grown`, of shape (m,): v', not negative. `driven`: e', of any sign.
+    `grown`, of shape (m,): v' >= 0. `driven`: e', of any sign.
     """
 
     grown: Array
@@ -33,7 +33,7 @@ class Ray:
 
     @property
     def back(self) -> bool:
-        """Whether the path has come along it."""
+        """Whether the path came along it."""
         return self.driven < 0.0 and not self.grown.any()
 
 
@@ -41,8 +41,7 @@ class Ray:
 class Way:
     """The basis behind a corner.
 
-    `switched`: Of the m switches, those whose piece is another one. `driver`: The switch whose pair drives from here
-    on. `ray`: Where it leads.
+    `switched`: Switches that change pieces. `driver`: The next driving pair. `ray`: Its ray.
     """
 
     switched: tuple[int, ...]
@@ -51,9 +50,7 @@ class Way:
 
 
 def way(S: Array, r: Array) -> Way | None:
-    """The way on, by pivots from where the path has come, with the switches set apart: then no two vanish at once.
-
-    None where rounding leads nowhere.
+    """The basis behind the corner, by pivots with perturbed switches, or None.
 
     References
     ----------

@@ -1,15 +1,14 @@
-"""All branches that meet in a kink: rays in the kernels of the pieces that meet there.
+"""All branches that meet in a kink: rays in the kernels of its pieces.
 
-Near a kink at which the switches of `beta` vanish, a piecewise smooth map is to first order piecewise linear, one piece
-for each of the 2^|beta| choices of their signs (Scholtes, Introduction to Piecewise Differentiable Equations, 2012,
-Chapter 4). A branch that leaves is a ray v in the kernel of a piece, on which every switch of beta takes its sign.
-Where one switch vanishes two pieces agree, so that their derivatives differ by rank one: H'_tau = H'_sigma + C_tau G,
-G the gradients of beta. With M = [H'_sigma; border] factored once, M v = e_{N+1} and Z = M^{-1} [C; 0], the kernel is
+Near a kink a piecewise smooth map is to first order piecewise linear, with a piece for each choice of signs of the
+vanishing switches beta (Scholtes, Introduction to Piecewise Differentiable Equations, 2012, Chapter 4). A branch is a
+ray v in a piece's kernel with that piece's signs. Neighbours agree where their switch vanishes: H'_tau = H'_sigma +
+C_tau G, G the gradients of beta. With M = [H'_sigma; border], M v = e_{N+1} and Z = M^{-1} [C; 0],
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-a system of order |beta|. Of many switches only the ray to which pivots lead is found: with w = D (p - n), D the signs
-on which the path came, p and n not negative and complementary, p = (I + D G Z D) n + alpha D G v.
+of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n complementary, p =
+(I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -30,30 +29,29 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
-"""Switches whose 2^10 pieces are gone through; twice as many for each one more, so that beyond pivots find one ray."""
+"""Most switches of which all 2^10 pieces are tried; for more, pivots find one ray."""
 
 RANK_ONE = 1e-5
-"""How well the derivatives of two pieces with one common border differ by rank one. Derivatives by differences have
-eight digits; pieces that do not agree on their border differ by one."""
+"""Largest relative defect of rank-one differences of pieces: derivatives by differences have eight digits, pieces that
+disagree differ by one."""
 
 TILT = 1e-7
-"""The derivative of a switch along a ray, relative to what it is in a general direction, below which first order does
-not tell its sign: derivatives by differences have eight digits."""
+"""Smaller relative derivatives of a switch along a ray do not show its sign: differences have eight digits."""
 
 KERNEL = 1e-9
-"""The least singular value, relative to the largest, of a piece whose kernel is a line."""
+"""Least relative singular value of a piece whose kernel is a line."""
 
 SAME_RAY = 1e-6
-"""Rays whose unit vectors differ by less are one."""
+"""Unit vectors that differ by less are one ray."""
 
 
 class UnresolvedError(ArithmeticError):
-    """The branches that meet in a kink cannot be told; the sentence says why."""
+    """The branches at a kink cannot be determined."""
 
 
 @frozen(eq=False)
 class Ray:
-    """A branch that leaves a kink: its unit direction and the signs of its piece."""
+    """A branch: unit direction and signs of its piece."""
 
     v: Array
     signs: Signs
@@ -61,7 +59,7 @@ class Ray:
 
 @frozen(eq=False)
 class Corner:
-    """A kink from the side of one piece: the point linearized there, the piece's signs, the switches that vanish."""
+    """A kink seen from one piece, and the vanishing switches."""
 
     pieces: Pieces
     evaluator: Evaluator
@@ -70,28 +68,28 @@ class Corner:
     beta: tuple[int, ...]
 
     def signs_with(self, of_beta: Sequence[int]) -> Signs:
-        """The signs with others for the switches that vanish."""
+        """The signs with others for the vanishing switches."""
         changed = list(self.signs)
         for j, sign in zip(self.beta, of_beta):
             changed[j] = sign
         return tuple(changed)
 
     def on(self, signs: Signs) -> Evaluator:
-        """Counted access to one piece."""
+        """An evaluator of one piece, with shared counts."""
         return Evaluator(self.pieces.piece(signs), self.evaluator.counts)
 
     def tilts(self, v: Array) -> Array:
-        """Derivatives of the switches that vanish, along v."""
+        """Derivatives along v of the vanishing switches."""
         return self.pieces.along(self.point.u, v)[list(self.beta)]
 
 
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
-    """All branches that leave the corner, in no particular order, each once.
+    """All branches that leave the corner, each once.
 
-    Of too many switches it is the one to which pivots lead, if a path has `come` there along the corner's tangent.
+    For too many switches, pivots give one ray if a path has `come` there.
 
-    Raises `UnresolvedError` if too many switches vanish, the pieces do not agree on their borders, or one has a kernel
-    of more dimensions. Raises `EvaluationError` if a derivative cannot be evaluated.
+    Raises `UnresolvedError` if there are too many switches, pieces disagree on borders, or a kernel has more
+    dimensions; `EvaluationError` if a derivative fails.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(
@@ -127,11 +125,10 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 
 @frozen(eq=False)
 class _Family:
-    """The derivatives of the pieces that meet, as changes of low rank of the one of the corner's own piece.
+    """Derivatives of the corner's pieces, as low-rank changes of one.
 
-    `sizes` are the switches' derivatives in a general direction, `R` general directions, `GR` the switches' derivatives
-    along them, `columns` the c_j of H'_{j changed} - H'_sigma = c_j grad s_j, `Z` what M^{-1} makes of them and `GZ`
-    the switches' derivatives of that. Without `columns` each piece is factored by itself.
+    `sizes`: Switches' derivatives in general directions `R`; `GR`: along each. `columns`: The c_j of H'_{j changed} -
+    H'_sigma = c_j grad s_j. `Z`: M^{-1} of these. `GZ`: The switches' derivatives along `Z`.
     """
 
     corner: Corner
@@ -145,7 +142,6 @@ class _Family:
 
     @classmethod
     def of(cls, corner: Corner) -> _Family:
-        """With one factorisation where pieces can be applied to a direction."""
         point, b = corner.point, len(corner.beta)
         R = np.random.default_rng(4).standard_normal((b, point.u.size)) / np.sqrt(point.weights)
         GR = np.array([corner.tilts(r) for r in R]).T
@@ -167,12 +163,11 @@ class _Family:
         return cls(corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T)
 
     def applied(self, signs: Signs, r: Array) -> Array | None:
-        """The derivative of a piece along r; None where it has no matrix to be applied."""
         apply = self.corner.on(signs).differential(self.corner.point.u)
         return None if apply is None else apply(r)
 
     def column(self, k: int, signs: Signs, own: Array) -> Array:
-        """The c of the piece that differs in the k-th switch alone: the derivatives differ by c grad s_k."""
+        """The c of c grad s_k, the derivative's change with switch k."""
         corner = self.corner
         change = np.array([self.applied(signs, r) for r in self.R]) - own
         c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
@@ -182,13 +177,12 @@ class _Family:
         return c
 
     def kernel(self, signs: Signs, taus: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
-        """Both directions of the kernel of a piece, and the switches' derivatives along them."""
         flipped = np.array(taus) != np.array(self.corner.signs)[list(self.corner.beta)]
         if self.columns is None or self.Z is None or self.GZ is None or not self._adds_up(signs, flipped):
             v = self._factored(signs)
             w = self.corner.tilts(v)
         else:
-            # In units of the switches, so that the singular values can be compared.
+            # In units of the switches, so that singular values are comparable.
             small = np.eye(len(taus)) + self.GZ * (flipped * self.sizes)[None, :] / self.sizes[:, None]
             small = np.column_stack([small, -self.tilts / self.sizes])
             _, values, rows = np.linalg.svd(small)
@@ -201,7 +195,6 @@ class _Family:
         yield -v, -w
 
     def by_pivots(self) -> tuple[int, ...]:
-        """The signs on the ray to which pivots lead from the one come on."""
         corner = self.corner
         many = f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through"
         if self.GZ is None:
@@ -221,7 +214,7 @@ class _Family:
         return taus
 
     def _adds_up(self, signs: Signs, flipped: NDArray[np.bool_]) -> bool:
-        """Whether the change of several switches is the sum of the changes of each, as in complementarity problems."""
+        """Whether changes of switches add up, as in complementarity problems."""
         if int(flipped.sum()) < 2 or self.columns is None:
             return True
         own, there = (self.applied(s, self.R[0]) for s in (self.corner.signs, signs))
@@ -231,7 +224,7 @@ class _Family:
         return float(np.abs(left).max()) <= RANK_ONE * float(np.abs(there).max() + np.abs(own).max())
 
     def _factored(self, signs: Signs) -> Array:
-        """The kernel of one piece from factors of its own, with two borders: one that depends on them is no line."""
+        """A kernel by its own factorisation; two borders must agree."""
         corner, found = self.corner, []
         for seed in (5, 6):
             border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
@@ -242,10 +235,10 @@ class _Family:
         return found[0]
 
     def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
-        """A piece whose kernel is a plane is of no account only if no direction in that plane stays in the piece."""
+        """Raise unless the kernel is a plane without directions inside the piece."""
         a, b = np.array(taus), kernel[:, :-1]
         if len(kernel) == 2:
-            # The cone of a plane that some half-planes leave has edges on theirs, or is all of it.
+            # A cone in the plane has edges on these lines.
             edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
             if b.any() and not any((a * (x @ b) >= -KERNEL * norm(np.ones(2), x)).all() for x in edges if x.any()):
                 return
@@ -253,15 +246,15 @@ class _Family:
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5
-"""How far ahead, in the metric, a ray is followed where first order does not tell whether it stays in its piece."""
+"""Lengths, in the metric, at which rays are checked if first order is unclear."""
 
 LAST_CORRECTION, OFF = 1e-3, 1e-9
-"""The last correction there, relative to the square of the length, by which a curved branch leaves a border; and the
-part of a switch's first order over that length which is round-off, far below that square."""
+"""Largest last correction, relative to length^2, by which a curved branch leaves a border; and round-off of a switch,
+relative to its first order."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
-    """Whether the branch along v stays in the piece: its point a little ahead, corrected, has the piece's signs."""
+    """Whether the corrected point ahead along v has the piece's signs."""
     point, evaluator = corner.point, corner.on(signs)
     which = [corner.beta[k] for k in unsure]
     try:

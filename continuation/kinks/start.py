@@ -1,4 +1,4 @@
-"""Which piece a path begins on, also where it begins in a kink."""
+"""The piece on which a path begins."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from continuation.step.start import SingularStartError, StartError, first_point,
 from continuation.tolerance import Tolerance
 
 PIECES = 10
-"""Corrections of a start, each of which may lead it to another piece."""
+"""Corrections of a start, each of which may change its piece."""
 
 
 def begin(
@@ -34,10 +34,10 @@ def begin(
     direction: int,
     target: float | None,
 ) -> tuple[Linearization, float, Signs]:
-    """The first point on its piece, a first step length, and the signs of the piece; the solver's evaluator is on it.
+    """The first point, a first step length and the piece's signs; binds the evaluator.
 
-    `u`, of shape (N + 1,): The homotopy's start. `start`: That of the call, with its direction. `metric`, `direction`,
-    `target`: Of the trace. Raises `StartError` if there is no point of a path, or no branch in the direction asked for.
+    `u`, of shape (N + 1,): The homotopy's start. `start`: A start with direction. Raises `StartError` without a path
+    point or branch in that direction.
     """
     try:
         if start is not None and start[0].size == u.size:
@@ -55,7 +55,7 @@ def begin(
             zero = np.abs(s) <= switch_noise(solver, pieces, point)
             if (zero | (s * signs > 0.0)).all():
                 break
-            # Correcting it has led it across a border.
+            # The correction has crossed a border.
             signs = pieces.signs(point.u)
         else:
             raise StartError("It is on one piece before it is corrected, and on another one afterwards.")
@@ -71,7 +71,7 @@ def begin(
 def _out_of_kink(
     solver: PathSolver, pieces: Pieces, point: Linearization, signs: Signs, beta: tuple[int, ...], wanted: int
 ) -> tuple[Linearization, Signs]:
-    """The branch that leaves a kink in the direction wanted; of several, that in which the parameter moves fastest."""
+    """The branch that leaves a kink in the wanted direction with the fastest parameter."""
     evaluator = solver.evaluator
     try:
         here = linearize(evaluator, point.u, point.weights, point.border)
@@ -88,7 +88,7 @@ def _out_of_kink(
 
 
 def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
-    """A kink is known to a thousandth of BORDER_DISTANCE: so far ahead, a direction tells the side of a switch."""
+    """The signs a little ahead, a thousand times the accuracy of a kink."""
     return pieces.signs(u + v * (BORDER_DISTANCE * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
 
 
@@ -99,7 +99,7 @@ def kink_rays(homotopy: Any, u: Array) -> Array:
     ----------
     homotopy : SupportsPieces
     u : ndarray, shape (N + 1,)
-        A point (y, lam) of the path: two rays leave from inside of an arc, as from an ordinary kink.
+        A point (y, lam) of the path.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def kink_rays(homotopy: Any, u: Array) -> Array:
     Raises
     ------
     ArithmeticError
-        If the branches cannot be told there.
+        If the branches cannot be determined.
     """
     if not isinstance(homotopy, SupportsPieces) or isinstance(homotopy, type):
         raise complain(TypeError, "homotopy", "one with `switches` and `piece`", homotopy)

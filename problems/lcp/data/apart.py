@@ -1,7 +1,7 @@
-"""Foreign formats, read by scipy in a child process with limits: what a damaged file does there ends the child alone.
+"""Foreign file formats, read by scipy in a child process with limits.
 
-scipy's readers are compiled, and believe what a file says of its sizes and types. In this process they have been seen
-to end it by SIGSEGV and SIGFPE, to loop without end, and to take all memory.
+scipy trusts a file's sizes and types: damaged files have crashed it (SIGSEGV, SIGFPE), made it loop, or taken all
+memory.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from typing import Any, BinaryIO, NoReturn
 from continuation.archive.hdf5 import Allowance
 
 BYTES_A_SECOND = 1 << 22
-"""Of a file that a child reads in a second of the processor, after the first two: scipy reads 20 times as many."""
+"""Bytes a child may read per CPU second after the first two; scipy is 20 times as fast."""
 
 
 def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[str, Any]:
-    """What `read` makes of a file, read by a child of this process.
+    """Call `read` on the file in a child process.
 
-    Raises `ValueError` with what the child says, or how it ended.
+    Raises `ValueError` with the child's message, or how it ended.
     """
     with TemporaryFile() as out:
-        # Python warns of other threads, whose locks stay taken in the child: it takes none of theirs, and has an end.
+        # The child takes no locks of other threads.
         with warnings.catch_warnings(action="ignore", category=DeprecationWarning):
             child = os.fork()
         if not child:
@@ -46,29 +46,28 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
         if code < 0:
             limited = -code in (signal.SIGXCPU, signal.SIGALRM)
             raise ValueError("it takes too long to read" if limited else f"its reader ended by signal {-code}")
-        # Written by this program's own child: what could be harmful in it the child could have done itself.
+        # Safe: this program's child wrote it.
         found: Mapping[str, Any] = pickle.load(out)
         return found
 
 
 def _answer(read: Callable[[str], Mapping[str, Any]], file: str, out: BinaryIO) -> NoReturn:
-    """Read, write what was found, end: the child's whole life."""
     status = 1
     try:
-        # What the child dies of is nothing for the parent's terminal.
+        # Keep the child's crash messages off the terminal.
         faulthandler.disable()
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         size = Path(file).stat().st_size
         room, seconds = Allowance(size).limit, 2 + size // BYTES_A_SECOND
         pages = Path("/proc/self/statm")
         if pages.exists():
-            # Twice the room, for what a file holds and the arrays made of it, beyond what the process has.
+            # The file's contents and the arrays made of it.
             here = int(pages.read_text().split()[0]) * resource.getpagesize()
             _lower(resource.RLIMIT_AS, here + 2 * room)
         _lower(resource.RLIMIT_FSIZE, room)
         _lower(resource.RLIMIT_CPU, seconds)
         _lower(resource.RLIMIT_CORE, 0)
-        # A lock that another thread held at the fork is never given back, and waiting for it takes no processor.
+        # Waiting for a lost lock uses no CPU time.
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(60 * seconds)
         pickle.dump(read(file), out)

@@ -1,4 +1,4 @@
-"""Checks of bounds at the door: each a sentence that names the index."""
+"""Checks of bounds, with messages that name the index."""
 
 from __future__ import annotations
 
@@ -12,12 +12,10 @@ from problems.options import real_array
 
 
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
-    """Bounds as a vector of floats, of which one of the two infinities, `default`, is allowed.
+    """Bounds as a vector of floats; the only infinity allowed is `default`.
 
-    `name`: The argument, for the message. `value`, of shape (size,): One number is that of all indices; None is
-    `default` for all. `default`: -inf for lower bounds, inf for upper ones. Raises `ValueError` if it is sparse (is
-    what is not stored zero, or no bound?), not real, of another length, NaN, or the wrong infinity; the message names
-    the index.
+    `value`, of shape (size,): Or one number; None means `default`. Raises `ValueError` if it is sparse (unstored
+    entries are ambiguous), not real, of another length, NaN, or the wrong infinity.
     """
     if value is None:
         return np.full(size, default)
@@ -36,7 +34,7 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
 
 
 def ordered_bounds(lower: Array, upper: Array) -> None:
-    """Raise ValueError, naming the first index, where a lower bound is above the upper one."""
+    """Raise ValueError, naming the first index, where lower > upper."""
     if (lower > upper).any():
         i = int(np.argmax(lower > upper))
         raise ValueError(f"lower: expected at most upper, found lower[{i}] = {lower[i]} > upper[{i}] = {upper[i]}")

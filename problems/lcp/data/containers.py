@@ -1,4 +1,4 @@
-"""The formats of files that hold arrays: each is read into named arrays, whatever they may be called."""
+"""Readers of files that hold arrays: each returns arrays by name."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from continuation.arrays import Matrix
 from problems.lcp.data.apart import read_apart
 
 ALONE = ""
-"""The name of the array in a file that holds one array without a name."""
+"""Name of an unnamed array."""
 
 BOUNDS = ("lower", "upper")
 
 PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *BOUNDS, "rows_lower")
-"""The arguments of `from_qp`; a container with c in place of q is one of a program."""
+"""The arguments of `from_qp`."""
 
 WANTED = ("A", "q", "x0", *PROGRAM)
-"""What is looked for in an HDF5 file, which may hold much else."""
+"""Names read from an HDF5 file."""
 
 
 def _npz(file: str) -> Mapping[str, Any]:
@@ -50,7 +50,7 @@ def _npz(file: str) -> Mapping[str, Any]:
 def _npy(file: str) -> Mapping[str, Any]:
     if zipfile.is_zipfile(file):
         raise ValueError("it holds named arrays, not one")
-    # A map of the file is no larger than the file, whatever its head claims.
+    # A map is no larger than the file, whatever its header claims.
     return {ALONE: np.array(np.load(file, mmap_mode="r", allow_pickle=False))}
 
 
@@ -80,20 +80,20 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
     rows, columns, entries, form, field, symmetry = scipy.io.mminfo(file)
     cells = rows * columns
     if symmetry != "general":
-        # Of a triangle the numbers are there; that of a skew-symmetric one has no diagonal.
+        # The file holds one triangle; a skew-symmetric one has no diagonal.
         cells = (cells + (-rows if symmetry == "skew-symmetric" else rows)) // 2
         if rows != columns:
             raise ValueError(f"it claims to be {symmetry}, and has {rows} rows and {columns} columns")
     width = {"complex": 2, "pattern": 0}.get(field, 1)
     claimed = (cells, width) if form == "array" else (entries, 2 + width)
     with Path(file).open("rb") as lines:
-        # Comments and empty lines, then the one with the sizes.
+        # Skip to the line with the sizes.
         next((line for line in lines if line.strip() and not line.lstrip().startswith(b"%")), None)
-        # scipy reads an entry a line and leaves alone what it does not understand in it: numpy understands all of it.
+        # scipy ignores what it does not understand in a line.
         found = np.loadtxt(lines, comments=None, ndmin=2)
     if min(rows, columns) < 1 or (found.shape != claimed and (found.size or entries)):
         raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found.shape}")
-    # One thread: a child has room for no other's stack.
+    # The child has no memory for threads.
     getattr(sys.modules.get("scipy.io._fast_matrix_market"), "__dict__", {})["PARALLELISM"] = 1
     return {ALONE: scipy.io.mmread(file, spmatrix=False)}
 
@@ -112,7 +112,7 @@ def _text(file: str) -> Mapping[str, Any]:
 
 
 def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
-    """The arrays wanted in a group of an HDF5 file: its root, or `problem` in it, where none is named."""
+    """The `WANTED` arrays in a group of an HDF5 file, by default its root or `problem`."""
     image = Image(Path(file))
     allowance = Allowance(image.length - image.missing)
     try:
@@ -135,7 +135,6 @@ def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
 
 
 def _from_hdf5(group: Any, name: str, allowance: Allowance) -> Matrix:
-    """A dataset, or the parts of a compressed sparse matrix in a group."""
     node = member(group, name)
     if isinstance(node, h5py.Dataset):
         return dataset(group, name, None, None, allowance)[()]

@@ -1,6 +1,6 @@
-"""LCPs and vectors read from files: whatever is wrong with one is said in one line.
+"""Reads LCPs and vectors from files, with one-line errors.
 
-A container (.npz, .json, .mat, .h5) holds named arrays, ``A`` and ``q``; the other formats hold one array a file.
+Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, sound_sparse
 
 ROWS = 1 << 22
-"""Rows of a sparse matrix, or as many as its file has bytes: each takes memory, also where it has no entry."""
+"""Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
 
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
-"""In the name of a file that holds named arrays."""
+"""Names of container files."""
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
-"""What null in a list of JSON is among bounds of that name."""
+"""Bounds that JSON's null stands for."""
 
 _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
@@ -37,8 +37,7 @@ _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECA
 class InputError(ValueError):
     """A file that cannot be used.
 
-    `argument`: The argument at fault: ``path``, or the name of a vector. `complaint`: What was expected and what was
-    found, one line.
+    `argument`: ``path``, or a vector's name. `complaint`: One line.
     """
 
     def __init__(self, argument: str, complaint: str) -> None:
@@ -50,12 +49,10 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q, and lower and upper bounds if there are
-    any, in which JSON's null, as an infinity, is none (in HDF5 at the root, in a group ``problem`` or in the group
-    named as ``file.h5:/group``); or, with `q` given, A alone as ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or the ``.npz``
-    of `scipy.sparse.save_npz`. A sparse A stays sparse. `q`: A file with q, in any of these formats. It takes
-    precedence over a q beside A. Raises `InputError` a ValueError: if a file is missing, of another format, or holds no
-    real finite data of matching shapes.
+    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A, q, and optionally lower, upper (JSON's null is
+    infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as ``.mtx``,
+    ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q`: A file, preferred to a q beside A. Raises `InputError`
+    if a file is missing, of another format, or without real finite data of matching shapes.
     """
     contents = _contents("path", path)
     A = _named(contents, "A", "path", path)
@@ -80,11 +77,10 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 
 
 def read_program(path: str | PathLike[str]) -> Program | None:
-    """Read a quadratic or linear program from a file; None where it holds none.
+    """Read a program; None if the file holds none.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and, where there are any, P, G, h, A_eq, b_eq, lower, upper
-    and rows_lower, as for `from_qp`; or ``.qps``, ``.mps`` or ``.lp``, which need highspy. Raises `InputError` as for
-    `read_problem`.
+    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``, ``.mps``,
+    ``.lp`` (need highspy). Raises `InputError`.
     """
     if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
         try:
@@ -108,18 +104,12 @@ def read_program(path: str | PathLike[str]) -> Program | None:
 
 
 def read_matrix(path: str | PathLike[str]) -> Matrix:
-    """Read A alone, not checked; any of the formats of `read_problem`.
-
-    Raises `InputError` if the file is missing, of another format, or holds no A.
-    """
+    """Read A alone, unchecked; raises `InputError`."""
     return _named(_contents("path", path), "A", "path", path)
 
 
 def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
-    """Read `size` finite numbers, called `name` in messages and in a container, from a file.
-
-    Raises `InputError` as for `read_problem`.
-    """
+    """Read `size` finite numbers; raises `InputError`."""
     value = _flat(_named(_contents(name, path), name, name, path))
     try:
         return finite_vector(name, value, size)
@@ -128,7 +118,6 @@ def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
 
 
 def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
-    """The named arrays of a file."""
     file, group = _parted(path)
     suffix = Path(file).suffix.lower()
     if not Path(file).exists():
@@ -139,24 +128,23 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
         known = ", ".join(READERS)
         raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
     try:
-        # Sizes that a head claims overflow when they are multiplied.
+        # Claimed sizes may overflow when multiplied.
         with np.errstate(over="ignore"):
             return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
-    except Exception as error:  # Whatever the format's own reader raises.
+    except Exception as error:  # Whatever the format's reader raises.
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
         raise InputError(argument, complaint) from None
 
 
 def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
-    """The file, and the group in it."""
     text = fspath(path)
     grouped = _HDF5_GROUP.fullmatch(text)
     return (grouped["file"], grouped["group"]) if grouped else (text, None)
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
-    """The array of that name, or the only one of a file without names; sparse, or an array of anything but objects."""
+    """The array `name`, or the only unnamed one."""
     if name not in contents and ALONE not in contents:
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
@@ -182,6 +170,6 @@ def _shown(path: str | PathLike[str] | None) -> str:
 
 
 def _flat(value: Matrix) -> Matrix:
-    """A row or a column as a vector, anything else as it is: which of them a format has is its own affair."""
+    """A row or column as a vector, as formats differ."""
     array = value.toarray() if sp.issparse(value) else value
     return array.ravel() if array.ndim == 2 and 1 in array.shape else array

@@ -1,4 +1,4 @@
-"""Unknowns whose bounds are equal are known: what remains is a smaller problem of the same kind."""
+"""Removes unknowns with equal bounds: a smaller problem of the same kind remains."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from problems.lcp.data.problem import MixedLCP
 class WithoutFixed:
     """A problem without its fixed unknowns.
 
-    `problem`: What is left of it, with q rounded; None where nothing is. `kept`: The indices that are left.
+    `problem`: The rest, with q rounded, or None. `kept`: Its indices.
     """
 
     whole: MixedLCP
@@ -22,10 +22,7 @@ class WithoutFixed:
     kept: NDArray[np.intp]
 
     def x(self, rest: Array | None) -> Array:
-        """The unknowns of the whole problem.
-
-        `rest`: Those of what is left.
-        """
+        """All unknowns, from those of the rest."""
         x = self.whole.lower.copy()
         if rest is not None:
             x[self.kept] = rest

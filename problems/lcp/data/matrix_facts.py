@@ -1,4 +1,4 @@
-"""What is quickly found out about the matrix; `search.table` decides by it what is tried."""
+"""Cheap facts about the matrix; `search.table` chooses methods by them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from problems.lcp.data.matrix_structure import Structure
 
 @frozen(eq=False, slots=False)
 class MatrixFacts:
-    """What is known of A, found out where it is asked for; False where it is not so or was not proved."""
+    """Facts about A, computed on demand; False where untrue or unproved."""
 
     structure: Structure
 
@@ -23,43 +23,41 @@ class MatrixFacts:
 
     @cached_property
     def semidefinite(self) -> bool:
-        """Whether x'Ax >= 0 for all x, to working precision: one factorisation. What is feasible is solvable then."""
+        """Whether A is positive semidefinite to working precision: then a feasible LCP is solvable."""
         return self.structure.semidefinite
 
     @cached_property
     def negative_diagonal(self) -> bool:
-        """Some a_ii < 0: not copositive, so that Wang's path mostly diverges."""
+        """Whether some a_ii < 0: not copositive, Wang's path mostly diverges."""
         return bool(self.structure.problem.A.diagonal().min() < 0.0)
 
     @property
     def z_matrix(self) -> bool:
-        """No positive entry off the diagonal.
+        """Whether off-diagonal entries are <= 0.
 
-        The active-set method from x = 0 ends within n steps at the least element of the feasible set, or nowhere.
+        Then active sets from x = 0 reach the least feasible element within n steps, or fail.
         """
         return self._off_diagonal[1] <= 0.0
 
     @property
     def nonnegative(self) -> bool:
-        """No negative entry: copositive, as the block matrix of a bimatrix game."""
+        """Whether all entries are >= 0: copositive, as for bimatrix games."""
         return self._off_diagonal[0] >= 0.0 and not self.negative_diagonal
 
     @cached_property
     def _off_diagonal(self) -> tuple[float, float]:
-        """The least and the largest entry off the diagonal; zeros where there is none."""
         problem = self.structure.problem
         if problem.sparse:
             entries = problem.A.tocoo()
             values = entries.data[entries.row != entries.col]
         else:
             n = problem.n
-            # Every entry but the diagonal: drop the first one, then each (n + 1)-th.
+            # Drops the diagonal.
             values = problem.A.ravel()[1:].reshape(n - 1, n + 1)[:, :-1] if n > 1 else np.zeros(0)
         return float(values.min(initial=0.0)), float(values.max(initial=0.0))
 
     def __str__(self) -> str:
         parts = ["symmetric" if self.symmetric else "not symmetric"]
-        # What was never asked of the matrix was not needed.
         if "semidefinite" in vars(self):
             parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
         said = {

@@ -1,7 +1,4 @@
-"""What the matrix of an LCP offers: products, how it is stored, what a cheap look proves, and the matrices made of it.
-
-Three storages have one face: dense, sparse, and banded (a sparse matrix with few diagonals near the main one).
-"""
+"""An LCP's matrix (dense, sparse or banded), its properties and derived matrices."""
 
 from __future__ import annotations
 
@@ -18,35 +15,34 @@ from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.ranges import Ranges, ranges
 
 WIDEST_BAND = 16
-"""A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
+"""Most diagonals, gaps included, of a banded matrix."""
 
 FILL = 8.0
-"""A'DA is formed for a sparse A while its terms are at most so many times the entries of A and of the identity.
+"""Most terms of a sparse A'DA per entry of A and I.
 
-Beyond that (a full row makes A'DA full) the system of order 2n, which is as sparse as A, takes its place.
+Beyond, a system of order 2n, as sparse as A, replaces it.
 """
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Shift per unknown of the diagonal, scaled to ones, with which a semidefinite matrix passes for definite.
+"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky.
 
-The rounding of a Cholesky factorisation of order n is at most about n eps of the diagonal (Higham, Theorem 10.3); the
-data themselves, as M M' formed in floating point, are off by as much again.
+Its rounding is about n eps of the diagonal (Higham, Theorem 10.3), that of data like M M' as much again.
 """
 
 
 LARGEST_SYMMETRIC_PART = 1000
-"""Of a sparse matrix with bounds A + A' is factored as a dense one where so few of its rows have entries."""
+"""Most nonempty rows of a sparse A with bounds for a dense factorisation of A + A'."""
 
 
 def semidefinite(symmetric: Array) -> bool:
-    """Whether a symmetric matrix is positive semidefinite, to working precision: one Cholesky factorisation."""
+    """Whether a symmetric matrix is positive semidefinite to working precision (Cholesky)."""
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    # Scaling by D adds to its diagonal what is added here to that of the matrix: a factorisation does not feel D.
+    # Shifts follow the diagonal, as factorisations ignore its scaling.
     shifted, sizes = symmetric.copy(), diagonal
     if (diagonal == 0.0).any():
-        # The row's largest entry serves; of an empty row any number does.
+        # A zero diagonal entry takes its row's largest entry.
         rows = np.abs(symmetric).max(axis=1)
         sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
     shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * sizes
@@ -63,7 +59,7 @@ class Band:
     upper: int
 
     def scaled(self, factor: float | Array, columns: Array, diagonal: Array) -> Banded:
-        """``factor A diag(columns) + diag(diagonal)``, with a factor for all rows or one for each."""
+        """``factor A diag(columns) + diag(diagonal)``; one factor, or one a row."""
         n = self.rows.shape[1]
         rows = factor * self.rows
         ab = np.zeros((self.lower + self.upper + 1, n))
@@ -74,7 +70,7 @@ class Band:
         return Banded(ab, self.lower, self.upper)
 
     def normal(self, factor: float, weights: Array, diagonal: Array) -> Banded:
-        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, of half bandwidth lower + upper."""
+        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, half bandwidth lower + upper."""
         n, width = self.rows.shape[1], self.lower + self.upper
         ab = np.zeros((2 * width + 1, n))
         offsets = range(-self.lower, self.upper + 1)
@@ -95,7 +91,7 @@ class Band:
 
 @frozen(eq=False, slots=False)
 class Structure:
-    """The matrix A of a problem, as the homotopies use it; made once and shared by every start of the problem.
+    """The matrix A of a problem, shared by the homotopies of all starts.
 
     Parameters
     ----------
@@ -111,7 +107,7 @@ class Structure:
 
     @cached_property
     def transpose(self) -> Matrix:
-        """A', a view of the dense matrix or the transposed sparse one."""
+        """A', a view if dense."""
         return self.problem.A.T.tocsr() if self.problem.sparse else self.problem.A.T
 
     @cached_property
@@ -121,7 +117,7 @@ class Structure:
 
     @cached_property
     def band(self) -> Band | None:
-        """The diagonals of a sparse matrix with few of them near the main one, else None."""
+        """The diagonals of a sparse matrix with few near the main one, else None."""
         if not self.problem.sparse:
             return None
         entries = self.problem.A.tocoo()
@@ -135,12 +131,12 @@ class Structure:
 
     @cached_property
     def ranges(self) -> Ranges | None:
-        """The rows with two sides, if there are any."""
+        """The two-sided rows, if any."""
         return ranges(self.problem)
 
     @cached_property
     def squarable(self) -> bool:
-        """Whether A'DA may be formed: always if A is dense or banded, else where it fills little."""
+        """Whether A'DA may be formed (A dense or banded, or little fill)."""
         if not self.problem.sparse or self.band is not None:
             return True
         terms = float((np.diff(self.problem.A.indptr).astype(float) ** 2).sum())
@@ -153,7 +149,7 @@ class Structure:
             return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
-        # A row and a column tell most matrices apart, at a thousandth of the cost of all of them.
+        # One row and column show most asymmetries cheaply.
         A = self.problem.A
         return not np.count_nonzero(A[0] != A[:, 0]) and not np.count_nonzero(A != A.T)
 
@@ -161,8 +157,7 @@ class Structure:
     def semidefinite(self) -> bool:
         """Whether A + A' is proved positive semidefinite, to working precision.
 
-        Dense: by one Cholesky factorisation. Sparse: by diagonal dominance (Gershgorin), where that holds. What is not
-        proved counts as indefinite; a wrong answer costs time only, as it decides which factorisation is tried first.
+        Dense: by Cholesky. Sparse: by diagonal dominance (Gershgorin). Wrong answers cost only time.
         """
         diagonal = self.symmetrized.diagonal()
         if (diagonal < 0.0).any():
@@ -175,17 +170,14 @@ class Structure:
         return semidefinite(self.symmetrized)
 
     def definite_where_it_has_entries(self) -> bool:
-        """Whether the symmetric part of a sparse A is semidefinite, by a dense factorisation of its rows with entries.
-
-        Of the optimality conditions of a program that is P.
-        """
+        """Whether a sparse A + A' is semidefinite, by its nonempty rows (a program's P)."""
         S = self.symmetrized
         S.eliminate_zeros()
         rows = np.flatnonzero(np.diff(S.indptr) > 0)
         return not rows.size or semidefinite(S[rows][:, rows].toarray())
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
-        """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A is.
+        """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A.
 
         Parameters
         ----------
@@ -205,7 +197,7 @@ class Structure:
         return dense
 
     def normal(self, factor: float, weights: Array, diagonal: Array) -> Matrix:
-        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, symmetric of shape (n, n), stored as A is.
+        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, shape (n, n), stored as A.
 
         Parameters
         ----------
@@ -223,7 +215,7 @@ class Structure:
             square = self.transpose @ (sp.diags_array(weights) @ A)
             return sp.csc_array(factor * (self.symmetrized + square) + sp.diags_array(diagonal))
         if (weights >= 0.0).all():
-            # One matrix times its own transpose: numpy hands that to dsyrk, half the work.
+            # numpy gives a matrix times its transpose to dsyrk: half the work.
             half = np.sqrt(weights)[:, None] * A
             square = half.T @ half
         else:
@@ -236,16 +228,16 @@ class Structure:
     def augmented(
         self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array, turn: Array | None
     ) -> Matrix:
-        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` times ``diag(columns)`` plus a diagonal.
+        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]``, the first n columns scaled.
 
-        Of order 2n, for a column scaling and a diagonal of length n on the first half; dense, or sparse as A is.
+        ``diagonal`` is added to the first block.
 
         Parameters
         ----------
         factor, shift : float
         columns, diagonal, z2, w : ndarray, shape (n,)
         turn : ndarray, shape (n,), or None
-            A scaling of the columns of ``-factor A'``.
+            Column scaling of ``-factor A'``.
 
         Returns
         -------

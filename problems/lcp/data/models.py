@@ -1,4 +1,4 @@
-"""Programs from QPS, MPS and LP files, which HiGHS reads where its Python package is installed."""
+"""Programs from QPS, MPS and LP files, read by HiGHS."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import scipy.sparse as sp
 from problems.lcp.data.program import Program, from_qp
 
 MODEL_FORMATS = (".qps", ".mps", ".lp")
-"""What `read_model` reads."""
+"""Formats of `read_model`."""
 
 
 def read_model(file: str) -> Program:
-    """Read a quadratic or linear program; it is minimised, whatever sense the file has, with signs changed.
+    """Read a program; maximisation changes signs.
 
-    Raises `ImportError` without highspy. Raises `ValueError` if HiGHS cannot read it, or it has integer variables.
+    Raises `ImportError` without highspy, `ValueError` if unreadable or with integer variables.
     """
     try:
         import highspy
@@ -28,7 +28,7 @@ def read_model(file: str) -> Program:
     solver = highspy.Highs()
     solver.setOptionValue("output_flag", False)
     with TemporaryDirectory() as folder:
-        # HiGHS goes by the end of the name, and knows the quadratic part of MPS files but not their other name.
+        # HiGHS does not know the extension .qps.
         known = file
         if file.lower().endswith(".qps"):
             known = str(shutil.copy(file, Path(folder) / "model.mps"))

@@ -1,7 +1,4 @@
-"""The linear complementarity problem, with bounds of any kind: its data, validated, and the error measure.
-
-`MixedLCP` is what is solved; `LCP` is that with the bounds 0 and infinity.
-"""
+"""Linear complementarity problems: validated data, and residuals."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import check_finite, finite_vector, real_array, sound_sparse
 
 State = NDArray[np.int8]
-"""Of each index: `LOWER`, `BETWEEN` or `UPPER`. Between the bounds w_i = 0 is asked for."""
+"""`LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER` for each index."""
 
 LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
@@ -44,25 +41,23 @@ def square_matrix(value: Any) -> Matrix:
 class MixedLCP:
     """Find x in [lower, upper] with w = A x + q >= 0 where x = lower, w <= 0 where x = upper, and w = 0 between.
 
-    An unknown without bounds asks for the equation w_i = 0; one with lower_i = upper_i is fixed, and w_i may be
-    anything. It is the affine variational inequality over a box.
+    An unknown with lower_i = upper_i has any w_i. This is the affine variational inequality over a box.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
+        Converted to float64; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
     lower, upper : array_like, shape (n,), or one number for all, optional
-        -inf and inf, the defaults, are none.
+        Default -inf and inf.
     primal : int, optional
-        So many unknowns, the first, are the variables of a quadratic program, the others its multipliers, and the
-        values of its rows; 0, the default, where that is not known. See `from_qp`.
+        The first unknowns are so many variables of a quadratic program, the others multipliers and row values; default
+        0: unknown. See `from_qp`.
 
     Raises
     ------
     ValueError
-        If an argument is not numeric, not finite, not square, of a shape that disagrees, or a lower bound is above its
-        upper one.
+        If an argument is not numeric, finite, or of the right shape, or lower > upper.
 
     References
     ----------
@@ -76,7 +71,7 @@ class MixedLCP:
     upper: Array = field(default=None)
     primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
-    """What was found out and is asked for again, by name (`data.scaling.units`, `proof.verdict.exact_nearby`)."""
+    """Cached results by name, as of `data.scaling.units`."""
 
     @q.validator
     def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
@@ -95,12 +90,12 @@ class MixedLCP:
 
     @property
     def sparse(self) -> bool:
-        """Whether A is stored as a sparse array."""
+        """Whether A is sparse."""
         return not isinstance(self.A, np.ndarray)
 
     @cached_property
     def standard(self) -> bool:
-        """Whether all bounds are 0 and infinity, as those of an `LCP`."""
+        """Whether all bounds are 0 and infinity."""
         return not self.lower.any() and bool(np.isposinf(self.upper).all())
 
     @cached_property
@@ -111,13 +106,13 @@ class MixedLCP:
 
     @cached_property
     def pieces(self) -> int:
-        """How many complementary pieces there are: 3 to the number of boxes, times 2 to that of single bounds."""
+        """The number of complementary pieces: 3^boxes 2^(single bounds)."""
         ends = np.isfinite(self.lower).astype(int) + np.isfinite(self.upper) - 2 * self.fixed
         return math.prod((ends + 1).tolist())
 
     @property
     def near_zero(self) -> Array:
-        """The point nearest to zero between the bounds, shape (n,)."""
+        """The point between the bounds nearest to zero, shape (n,)."""
         return self.clipped(np.zeros(self.n))
 
     def clipped(self, x: Array) -> Array:
@@ -131,7 +126,7 @@ class MixedLCP:
         return above if self.standard else np.minimum(above, self.upper)
 
     def w(self, x: Array) -> Array:
-        """A x + q, shape (n,).
+        """A x + q.
 
         Parameters
         ----------
@@ -145,7 +140,7 @@ class MixedLCP:
         return product
 
     def natural_map(self, x: Array, w: Array) -> Array:
-        """X - mid(lower, x - w, upper): zero at a solution, and for an LCP min(x, w).
+        """The residual x - mid(lower, x - w, upper), for an LCP min(x, w).
 
         Parameters
         ----------
@@ -158,7 +153,7 @@ class MixedLCP:
         return np.maximum(np.minimum(x - self.lower, w), x - self.upper)
 
     def states(self, x: Array, w: Array) -> State:
-        """On which piece of the natural map a point is: at the lower bound where x - w is not above it, and so on.
+        """The piece of the natural map that holds a point.
 
         Parameters
         ----------
@@ -170,23 +165,24 @@ class MixedLCP:
         return _stated(moved <= self.lower, moved >= self.upper)
 
     def corrected(self, state: State, x: Array, w: Array) -> State:
-        """The piece that the signs of a point of another one ask for: Newton's method for the natural map.
+        """The piece that signs ask for: Newton's method for the natural map.
 
         Parameters
         ----------
         state : State
+            The current piece.
         x, w : ndarray, shape (n,)
-            On that piece.
+            A point on it.
         """
         if self.standard:
             return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
-        # Where lower = upper it stays, whatever w is.
+        # Fixed unknowns stay at the bound.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 
     def at(self, state: State) -> Array:
-        """The bounds at which a state puts x, zero between them; shape (n,).
+        """The bounds that a state imposes on x, zero between; shape (n,).
 
         Parameters
         ----------
@@ -195,7 +191,7 @@ class MixedLCP:
         return np.where(state == LOWER, self.lower, np.where(state == UPPER, self.upper, 0.0))
 
     def settled(self, x: Array, w: Array) -> Array:
-        """The point with x at its bounds where the piece of the natural map on which it is puts it there.
+        """The point x, moved to the bounds that its piece imposes.
 
         Parameters
         ----------
@@ -222,7 +218,7 @@ class MixedLCP:
         return float(np.abs(self.natural_map(x, self.w(x))).max(initial=0.0))
 
     def scale(self, x: Array) -> float:
-        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
+        """The divisor of `relative_residual`: 1 + max(|q|_inf, |A|_inf |x|_inf).
 
         Parameters
         ----------
@@ -235,7 +231,7 @@ class MixedLCP:
         return 1.0 + self.size_of_terms(x)
 
     def size_of_terms(self, x: Array) -> float:
-        """max(|q|_inf, |A|_inf |x|_inf): what rows are made of at most.
+        """The bound max(|q|_inf, |A|_inf |x|_inf) of the rows' terms.
 
         Parameters
         ----------
@@ -245,7 +241,6 @@ class MixedLCP:
 
     @cached_property
     def _norm(self) -> float:
-        """|A|_inf: asked for with every point that is judged."""
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
     def relative_residual(self, x: Array) -> float:
@@ -263,7 +258,7 @@ class MixedLCP:
 
 
 def active_state(active: NDArray[np.bool_]) -> State:
-    """The state of an LCP in which w_i = 0 is asked for on an active set."""
+    """The state of an LCP with w_i = 0 on an active set."""
     return np.where(active, BETWEEN, LOWER)
 
 
@@ -278,26 +273,26 @@ def _all(value: float, n: int) -> Array:
 
 @frozen(eq=False)
 class LCP(MixedLCP):
-    """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i; a `MixedLCP` without upper bounds.
+    """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
+        Converted to float64; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
-        n may be 0, as where nothing touches in a time step: such a problem is solved.
+        n may be 0.
 
     Raises
     ------
     ValueError
-        If an argument is not numeric, not finite, not square, or of a shape that disagrees.
+        If an argument is not numeric, finite, or of the right shape.
 
     References
     ----------
     Cottle, Pang and Stone, The Linear Complementarity Problem, 1992.
     """
 
-    # Views of one number each: an LCP carries no bounds.
+    # Views of one number: an LCP stores no bounds.
     lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(0.0, self.n), takes_self=True))
     upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.n), takes_self=True))
 
@@ -305,9 +300,9 @@ class LCP(MixedLCP):
         """Nothing to check."""
 
     def with_q(self, q: Any) -> LCP:
-        """LCP(q, A) for another q; what is known of A is not found out again.
+        """LCP(q, A) for another q, with the cached units of A.
 
-        Its rows keep their units, which another q may move by a factor for each part of A that hangs together.
+        Fresh units may differ by a factor per connected part of A.
 
         Parameters
         ----------
@@ -320,12 +315,12 @@ class LCP(MixedLCP):
 
 
 def require_lcp(problem: Any) -> None:
-    """Raise TypeError unless the argument `problem` is an LCP."""
+    """Raise TypeError unless `problem` is an LCP."""
     if not isinstance(problem, LCP):
         raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
 
 
 def require_problem(problem: Any) -> None:
-    """Raise TypeError unless the argument `problem` is an LCP, with bounds or without."""
+    """Raise TypeError unless `problem` is a MixedLCP."""
     if not isinstance(problem, MixedLCP):
         raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")

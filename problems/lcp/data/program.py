@@ -1,4 +1,4 @@
-"""Quadratic and linear programs: their optimality conditions as a problem with bounds, and its unknowns by name."""
+"""Quadratic and linear programs as problems with bounds."""
 
 from __future__ import annotations
 
@@ -22,9 +22,8 @@ from problems.options import check_finite, finite_vector, real_array, sound_spar
 class Program:
     """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
 
-    Made by `from_qp` and `from_lp`; `solve` takes it. The unknowns of `problem` are x, a multiplier without a sign of
-    each equation, a nonnegative one of each row with one side, one without a sign of each row with two, and the values
-    G x of these, which are in no matrix that is factored; so that::
+    Made by `from_qp` or `from_lp`. The unknowns of `problem` are x, free multipliers of equations, nonnegative ones of
+    one-sided rows, free ones of two-sided rows, and these rows' values G x::
 
         P x + c = A_eq' equations + G' rows + bounds
 
@@ -36,10 +35,9 @@ class Program:
     problem : MixedLCP
         The optimality conditions.
     equations : tuple of int
-        Where their multipliers begin and end.
+        Begin and end of their multipliers.
     equal, above, below, both : ndarray of int
-        The rows of G that are equations, those with an upper side alone, with a lower one alone, and with two, in the
-        order of their multipliers.
+        Rows of G that are equations, or have an upper side, a lower side, or both, in the order of multipliers.
     rows : int
         The number of rows of G.
     """
@@ -61,7 +59,7 @@ class Program:
 
     @cached_property
     def convex(self) -> bool:
-        """Whether P is positive semidefinite to working precision, so that every KKT point is a minimum."""
+        """Whether P is positive semidefinite to working precision."""
         return semidefinite(self.P.toarray() if sp.issparse(self.P) else self.P)
 
     def objective(self, x: Array) -> float:
@@ -74,9 +72,9 @@ class Program:
         return float(0.5 * (x @ (self.P @ x)) + self.c @ x)
 
     def named(self, unknowns: Array, w: Array) -> Mapping[str, Array]:
-        """The solution of `problem` by name: x, and the multipliers `equations`, `rows` and `bounds`.
+        """A solution of `problem` by name: x, `equations`, `rows` and `bounds`.
 
-        A multiplier is positive where a lower side holds x back, negative where an upper one does.
+        Multipliers are positive at lower sides, negative at upper.
 
         Parameters
         ----------
@@ -92,7 +90,7 @@ class Program:
         return {"x": unknowns[: self.n], "equations": unknowns[begin:end], "rows": rows, "bounds": w[: self.n]}
 
     def reading(self, multiplier: Array) -> str:
-        """What a proof that the conditions have no solution says of the program.
+        """The meaning of a proof that the conditions have no solution.
 
         Parameters
         ----------
@@ -118,8 +116,7 @@ def from_qp(
 ) -> Program:
     """Min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
-    Nothing is split: a variable without bounds stays one unknown, and a box asks for no multiplier. Of a P that is not
-    positive semidefinite `solve` finds a KKT point, which need not be a minimum, and says so.
+    If P is not positive semidefinite, `solve` finds a KKT point, possibly no minimum, and says so.
 
     Parameters
     ----------
@@ -128,13 +125,13 @@ def from_qp(
     c : array_like, shape (n,)
     G : array_like or scipy sparse, shape (m, n), optional
     h : array_like, shape (m,), or one number, optional
-        inf where a row has no upper side.
+        Upper sides of rows, inf for none.
     A_eq : array_like or scipy sparse, shape (k, n), optional
     b_eq : array_like, shape (k,), optional
     lower, upper : array_like, shape (n,), or one number, optional
-        Of x: -inf and inf, the defaults, are none. Where they are equal x is fixed.
+        Default -inf and inf; x is fixed where they are equal.
     rows_lower : array_like, shape (m,), or one number, optional
-        The other side of the rows, rows_lower <= G x; where it equals h the row is an equation.
+        Lower sides of rows; equations where it equals h.
 
     Returns
     -------
@@ -143,7 +140,7 @@ def from_qp(
     Raises
     ------
     ValueError
-        For what does not fit together, naming the argument and the index.
+        For inconsistent arguments.
 
     References
     ----------
@@ -156,7 +153,7 @@ def from_qp(
         raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
     _check_symmetric(P)
     if not sp.issparse(P):
-        P.flags.writeable = False  # so that the problem need not copy it again
+        P.flags.writeable = False  # so that the problem does not copy it
     if (G is None) != (h is None and rows_lower is None):
         raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
     if (A_eq is None) != (b_eq is None):
@@ -202,12 +199,12 @@ def from_lp(
     *,
     rows_lower: Any = None,
 ) -> Program:
-    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper: `from_qp` with P = 0.
+    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
     Parameters
     ----------
     c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
-        As for `from_qp`; x has no bounds but those that are given.
+        As for `from_qp`.
 
     Returns
     -------
@@ -216,7 +213,7 @@ def from_lp(
     Raises
     ------
     ValueError
-        For what does not fit together, naming the argument and the index.
+        For inconsistent arguments.
     """
     c = finite_vector("c", c)
     P = sp.csr_array((c.size, c.size))
@@ -226,7 +223,6 @@ def from_lp(
 
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
-    """A finite matrix of so many columns, dense or CSR."""
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
@@ -245,10 +241,7 @@ def _check_symmetric(P: Matrix) -> None:
 
 
 def _optimality(P: Matrix, rows: list[Matrix], both: int) -> Matrix:
-    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for the rows R, one under another, of which the last, E, have two sides.
-
-    Sparse where one of them is.
-    """
+    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for stacked rows R; E marks two-sided rows."""
     if not rows:
         return P
     if sp.issparse(P) or any(sp.issparse(part) for part in rows):

@@ -1,7 +1,6 @@
-"""Rows with two sides, low <= G x <= high: an activity r = G x in [low, high] and a multiplier mu without a sign.
+"""Two-sided rows, low <= G x <= high: an activity r = G x in [low, high] and a free multiplier mu.
 
-As unknowns of a problem with bounds they are two, but one of them is in no matrix that is factored: the row of r holds
-mu alone, and the column of r is in the row of mu alone.
+The row of r holds only mu, and its column meets only mu's row, so r is in no factored matrix.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ Mask = NDArray[np.bool_]
 
 @frozen(eq=False)
 class Ranges:
-    """Pairs of indices with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, where mu has no bounds.
+    """Pairs with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, mu without bounds.
 
-    `activity`, `multiplier`: The indices r and mu of each pair. `up`, `down`: A[r, mu] and A[mu, r]. `rest`: All
-    indices but the r. `place`: Where among them the mu are.
+    `activity`, `multiplier`: The r and mu. `up`, `down`: A[r, mu], A[mu, r]. `rest`: Indices without r. `place`:
+    Positions of mu in `rest`.
     """
 
     A: Matrix
@@ -37,13 +36,13 @@ class Ranges:
     place: Indices
 
     def shifts(self, shift: float) -> Array:
-        """The shift of the diagonal in a proximal problem: none for r, which mu and its row say."""
+        """The diagonal shift of a proximal problem: zero for r."""
         each = np.full(self.A.shape[0], shift)
         each[self.activity] = 0.0
         return each
 
     def inside(self, active: Mask) -> Indices:
-        """The active indices of which the equations are solved together: without the pairs whose r is active."""
+        """Active indices to solve together: pairs with active r are left out."""
         kept = active.copy()
         loose = active[self.activity]
         kept[self.activity] = False
@@ -53,10 +52,7 @@ class Ranges:
     def completed(
         self, active: Mask, inside: Indices, solve: Callable[[Array], Array], shift: float
     ) -> Callable[[Array], Array]:
-        """Solve on the active set from a solve on `inside`: mu is what the row of r says, r what is left in that of mu.
-
-        `shift`: Of the diagonal.
-        """
+        """Extend a solve on `inside` to the active set: r's row gives mu, mu's row gives r."""
         loose = active[self.activity]
         r, mu = self.activity[loose], self.multiplier[loose]
 
@@ -74,7 +70,7 @@ class Ranges:
 
 
 def ranges(problem: MixedLCP) -> Ranges | None:
-    """The pairs of a problem, found by its zeros; None where there is none."""
+    """A problem's pairs, or None."""
     if problem.standard:
         return None
     free = np.isinf(problem.lower) & np.isinf(problem.upper)
@@ -86,7 +82,7 @@ def ranges(problem: MixedLCP) -> Ranges | None:
     other, down = _only(A[:, boxed].T)
     found = (mu == other) & (mu >= 0)
     found[found] = free[mu[found]]
-    # Of two activities with one multiplier neither is one.
+    # Two activities may not share a multiplier.
     found[found] = np.bincount(mu[found], minlength=problem.n)[mu[found]] == 1
     if not found.any():
         return None
@@ -96,7 +92,7 @@ def ranges(problem: MixedLCP) -> Ranges | None:
 
 
 def _only(rows: Matrix) -> tuple[Indices, Array]:
-    """The column of the one entry of each row that is not zero, and that; -1 where there is not exactly one."""
+    """Column and value of each row's only nonzero; -1 for others."""
     entries = sp.csr_array(rows)
     entries.eliminate_zeros()
     one = np.diff(entries.indptr) == 1

@@ -1,9 +1,8 @@
-"""Rows and columns brought to comparable size by powers of two, which is exact, and undone in the answer.
+"""Exact scaling of rows and columns by powers of two.
 
-LCP(q, A) and LCP(R q, R A C) have the same solutions up to their units, for all positive diagonal R and C. The units
-taken here make the largest entry of each row and column of A about 1. Such units are not unique; those are taken to
-which Ruiz's iteration leads from the units in which the logarithms of the entries have the least sum of squares. So
-they lead to the same problem, up to the rounding to powers of two, whatever the units of the problem as given.
+LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. The largest entries of
+scaled rows and columns are about 1. Least squares of logarithms, then Ruiz's iteration, give the same problem for all
+given units, up to rounding.
 """
 
 from __future__ import annotations
@@ -23,35 +22,34 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each takes the root of what the largest entries of rows and columns are off."""
+"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
 
 GRADIENT_STEPS = 30
-"""Of conjugate gradients. A full matrix needs one, sparse random ones about ten; on long chains what is then still
-missing is smooth, a common unit of neighbours, and changes no entry of the scaled matrix."""
+"""Conjugate gradient steps: full matrices need one, sparse random ones about ten; on long chains the remaining smooth
+error changes no scaled entry."""
 
 LOGARITHM_TOLERANCE = 1e-6
-"""Of the logarithms: far below the 1/2 at which rounding decides."""
+"""Tolerance of the logarithms: far below the 1/2 where rounding decides."""
 
 LEAST_EXPONENT = -1021
-"""Base-2 logarithm below which a float has fewer digits, so that scaling may round it."""
+"""Base-2 exponent of the smallest normal floats: below, scaling may round."""
 
 HALVES = 1e-3
-"""Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
+"""Fractions this near to 1/2 round up: above the noise, below differences that matter."""
 
 NEGLIGIBLE = -27.0
-"""An a_ij with |a_ij a_ji| below 2^-27 (1e-8) of |a_ii a_jj|, which knows no units, says nothing about units: such are
-the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
+"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| (any units) are ignored: kernel matrices exp(-d^2) have entries down to
+1e-300."""
 
 LEVEL = 0.02
-"""Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
+"""Sweeps end at smaller logarithms: rounding changes them more."""
 
 
 @frozen(eq=False)
 class Scaled:
-    """LCP(R q, R A C): its solution u gives x = C u, and its w is R w.
+    """LCP(R q, R A C), R = diag(2^rows), C = diag(2^columns); its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,): R = diag(2^rows) and C = diag(2^columns). `exact`: Whether no entry was rounded:
-    one below 1e-290 of the others may be, or vanish.
+    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded (entries below 1e-290 of others may be).
     """
 
     problem: MixedLCP
@@ -60,21 +58,21 @@ class Scaled:
     exact: bool
 
     def x(self, u: Array) -> Array:
-        """The point of the problem as given; infinite or zero where it is beyond the range of floats."""
+        """The original x, perhaps beyond the float range."""
         return _times(u, self.columns)
 
     def u(self, x: Array) -> Array:
-        """The point of the scaled problem."""
+        """The scaled point."""
         return _times(x, -self.columns)
 
     @property
     def common(self) -> bool:
-        """Whether all rows have one factor, and the columns none."""
+        """Whether R is a multiple of I, and C = I."""
         return not self.columns.any() and not np.ptp(self.rows).any()
 
 
 def balanced(problem: MixedLCP) -> Scaled | None:
-    """The problem in units of its own, or None where these are the units in which it is given.
+    """The problem in balanced units, or None if unchanged.
 
     References
     ----------
@@ -94,19 +92,17 @@ def balanced(problem: MixedLCP) -> Scaled | None:
         bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
         ends = zip(bounds, (problem.lower, problem.upper))
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
-            return None  # a bound that vanishes or overflows would make another problem
+            return None  # it would change the problem
         scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
-    # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
+    # A balanced problem needs no other units.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
 
 
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
-    """LCP(s q, s A) with s = 1, or a power of two where entries are extreme; and whether active sets can begin with it.
+    """LCP(s q, s A), s a power of two for extreme entries (None for s = 1), and whether active sets can use it.
 
-    They can where the largest entries of rows and columns are alike, but for that factor, and it rounds nothing. Within
-    the range of products a factor that is a power of two changes nothing of what active sets and pivots do.
-    The problem has no bounds; None stands for s = 1.
+    They can if entries are `alike` and s rounds nothing. The problem has no bounds.
     """
     if not alike(problem):
         return None, False
@@ -122,10 +118,9 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for the rows of [A, q] and the columns of A; found once for a problem.
+    """The exponents of two for rows of [A, q] and columns of A; computed once.
 
-    Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
-    they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
+    Powers of two in the given units come out exactly; matrices symmetric up to units become symmetric.
     """
     if "units" not in problem.known:
         problem.known["units"] = _units(problem)
@@ -136,7 +131,7 @@ def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     logs, counts = _logarithms(problem.A)
     r, c = _equilibrated(logs, *_least_squares(logs, counts))
-    # Negligible or not, an entry ties its row to its column: what is free is free of all of them.
+    # Negligible entries also connect rows and columns.
     pattern = counts if sp.issparse(logs) else (logs > -np.inf).astype(float)
     part_of_row, part_of_column = _parts(pattern)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
@@ -144,13 +139,13 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     difference = _rounded(about_r - about_c)
     rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
-    # What rounding has added to all entries of a connected part of A is taken off again.
+    # Undo the mean rounding of each connected part.
     in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # Each part leaves a factor between its rows and columns free: the largest entry of q there becomes about 1.
+    # A free factor in each part makes its largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
@@ -159,10 +154,7 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 
 
 def _logarithms(A: Matrix) -> tuple[Any, Any]:
-    """The base-2 logarithms of the entries of A, -inf for zeros of a dense A, and ones where an entry counts.
-
-    Of a sparse matrix all entries count: it has zeros in place of negligible ones.
-    """
+    """Base-2 logarithms of |A|, and 1 where an entry counts (sparse: everywhere)."""
     if sp.issparse(A):
         stored = sp.csr_array((A.data, A.indices, A.indptr), shape=A.shape, copy=True)
         stored.eliminate_zeros()
@@ -172,17 +164,14 @@ def _logarithms(A: Matrix) -> tuple[Any, Any]:
         logs = np.log2(np.abs(A))
         diagonal = logs.diagonal()
         counts = logs > -np.inf
-        # Where a_ji, a_ii or a_jj is zero there is nothing to compare with: inf or NaN, and the entry counts.
+        # inf or NaN: the entry counts.
         excess = logs + logs.T
         excess -= diagonal[:, None] + diagonal
     return logs, (counts & ~((excess < NEGLIGIBLE) & (excess > -np.inf))).astype(float)
 
 
 def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
-    """The r and c of least sum of (log |a_ij| + r_i + c_j)^2 over what counts; zero for empty rows and columns.
-
-    Conjugate gradients for c, after elimination of r.
-    """
+    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2: conjugate gradients for c, r eliminated."""
     if sp.issparse(logs):
         row_sums, column_sums = np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
     else:
@@ -210,7 +199,7 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration from r and c towards largest entries 1 in all rows and columns."""
+    """Ruiz's iteration."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -233,7 +222,6 @@ def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
 
 
 def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Which connected part each row and each column is of."""
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
@@ -244,15 +232,15 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _rounded(values: Array) -> Array:
-    """To the nearest integers; halves, which small integers in A make common, always upwards whatever their noise."""
+    """Round to integers, noisy halves (common in integer matrices) upwards."""
     return np.floor(values + (0.5 + HALVES))
 
 
 def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
-    """For each value the mean of the fractions in its part, about which it is rounded: what is alike stays so."""
+    """The mean fraction of each part, about which equal values round equally."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
-    # Where fractions cancel around the circle, only noise has a mean: the fraction of the first takes its place.
+    # Where fractions cancel, their mean is noise: use the first.
     present, first = np.unique(parts, return_index=True)
     cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
     sums[present[cancelled]] = turns[first[cancelled]]
@@ -275,7 +263,6 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
 
 
 def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
-    """The base-2 logarithm of the smallest entry that is not zero, once scaled; at most zero."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]

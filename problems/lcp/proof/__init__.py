@@ -1,1 +1,1 @@
-"""Proofs: residuals in twice the working precision, exact solutions, Farkas vectors, strictly feasible points."""
+"""Residuals, exact solutions and proofs."""

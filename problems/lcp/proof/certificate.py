@@ -1,4 +1,4 @@
-"""What may be claimed of a point: its residual in compensated arithmetic, and on demand an exact rational solution."""
+"""Certificates of points: accurate residuals, exact solutions."""
 
 from __future__ import annotations
 
@@ -22,46 +22,41 @@ from problems.options import finite_vector
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
 
 LARGEST_ACTIVE_SET = 400
-"""An exact solve of this order takes tens of seconds; its cost grows like n^3 times the digits, which grow like n."""
+"""An exact solve of this order takes tens of seconds; cost grows like n^4."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""A relative residual below this is what rounding x leaves; refining x in twice the precision reaches it."""
+"""Relative residuals below this are round-off; refinement in twice the precision reaches it."""
 
 BOTH_ZERO = 1e-6
-"""Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
+"""Smaller x_i and w_i, relative to the terms, may both be zero."""
 
 MOST_MADE_UP = 2.0**-50
-"""2^-1074 times the largest float: more of one x_j no row can have."""
+"""2^-1074 times the largest float bounds the effect of a subnormal x_j on a row."""
 
 
 @frozen(eq=False)
 class Certificate:
-    """How well x solves the problem, evaluated in twice the working precision.
+    """How well x solves the problem, in twice the working precision.
 
-    For bounds l, u other than 0 and infinity read |x - mid(l, x - w, u)|_i for |min(x_i, w_i)|, and the distances of
-    x_i from its bounds for x_i.
+    With bounds, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|.
 
     Attributes
     ----------
     x, w : Array of shape (n,)
-        w is A x + q, correctly rounded unless it cancels beyond 32 digits.
+        w = A x + q, correctly rounded unless 32 digits cancel.
     residual : float
-        The natural residual max_i |min(x_i, w_i)|, absolute: it has the units of the problem.
+        max_i |min(x_i, w_i)|, in the problem's units.
     relative_residual : float
-        max_i |min(x_i, w_i)|, each w_i relative to the terms of its row, (|A| |x| + |q|)_i, and each x_i to its largest
-        share in the terms of a row. It does not depend on the units of x, of w, or of any row or column. For x >= 0
-        whose zeros are exact it is the componentwise backward error: x solves exactly some LCP(q + dq, A + dA) with
-        |dq| <= eps |q|, |dA| <= eps |A| for eps = relative_residual, and for no smaller one.
+        The residual relative to the terms (|A| |x| + |q|)_i of each row, independent of units. For x >= 0 with exact
+        zeros it is the componentwise backward error: the least eps such that x solves an LCP(q + dq, A + dA) with |dq|
+        <= eps |q|, |dA| <= eps |A|.
     negative_x, negative_w : float
-        max_i max(-x_i, 0) and max_i max(-w_i, 0): zero at a feasible point. With bounds: how far x is beyond them, and
-        how large a w_i is whose sign they do not allow.
+        Largest violation of bounds by x, and of signs by w.
     complementarity : float
-        max_i |x_i w_i|; with bounds the distance from the lower one times a positive w_i, from the upper one times a
-        negative one.
+        max_i |x_i w_i|; with bounds, the distance from the bound replaces x_i.
     drowned : float
-        By how much a row is off relative to the largest |q_i|, in balanced units (`problems.lcp.data.scaling`). It is
-        large at a point that runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
-        Zero up to 1e-10, and where every |min(x_i, w_i)| is so far below |q_i| that there is no need to ask.
+        Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`), zero up to 1e-10.
+        It is large if x runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
 
     References
     ----------
@@ -79,10 +74,7 @@ class Certificate:
     drowned: float
 
     def solves(self, tolerance: float = 1e-10) -> bool:
-        """Whether x may be called a solution: its relative residual is small, and q has not drowned in rounding.
-
-        Relative to its terms alone a row would pass at a point that runs off to infinity on a problem without
-        solution; so what it is off may not exceed `DROWNED` times q either. The answer is the same in all units.
+        """Whether the relative residual and `drowned` are small.
 
         Parameters
         ----------
@@ -97,22 +89,20 @@ class Certificate:
 
 
 def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
-    """Evaluate the natural residual and its parts at x with compensated arithmetic.
+    """Evaluate the residuals at x in compensated arithmetic.
 
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse.
     x : Array of shape (n,)
     zero : float
-        Entries of x up to this, in natural units (|q|_inf over the largest row norm of A), are taken for zeros (so
-        near to a bound, for the bound), and the certificate is that of the point with zeros there: the end of a path is
-        near a solution whose zeros are exact, and a small x_i may be a large part of row i.
+        Entries this near to zero or a bound, in natural units (|q|_inf over the largest row norm of A), are moved there
+        first.
 
     Raises
     ------
     TypeError
-        If the problem is none.
+        If `problem` is no problem.
     ValueError
         If x is not a finite vector of n numbers.
     """
@@ -132,7 +122,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @without_warnings(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite vector of n > 0 numbers, which nobody else changes.
+    """The certificate of a finite, immutable x.
 
     Parameters
     ----------
@@ -150,7 +140,6 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
     shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
-        # A mid of three, in which what was not asked for is infinite.
         relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
     return Certificate(
@@ -166,17 +155,12 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
-    """How far each row is off, but for those that entries of x that no float holds can make up for.
-
-    So it is at the far end of a solution that falls off by powers: a row with a term of a normal float is off by that.
-    An x_j at its bound counts only where w_j is not pressed against it: another one is exactly there.
-    """
+    """Defects, zero in rows where rounding of subnormal x_j explains them."""
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    # Below this an x_j is a multiple of 2^-1074, and may be off by half of that.
     sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
     asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
     reach = sizes @ (subnormal & away).astype(float)
@@ -186,7 +170,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """The same where there are no upper bounds, and no row is over a power of two: in a third of the time."""
+    """A faster `certified` for unscaled LCPs."""
     w, low = terms.w, least(x)
     relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     complementarity = largest(x * w)
@@ -211,16 +195,16 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
 
 @frozen(eq=False)
 class ExactCertificate:
-    """An exact rational point on an active set, the data taken as the exact dyadic rationals that floats are.
+    """An exact rational point on an active set.
 
     Attributes
     ----------
     solves : bool
-        Whether x >= 0, A x + q >= 0 and x_i w_i = 0 hold exactly, or what the bounds ask in place of that: a proof.
+        Whether the point solves the problem exactly: a proof.
     x, w : tuple of n Fraction, or None
-        None if the active set's equations have no solution.
+        None if the equations are inconsistent.
     active : tuple of int
-        The indices with w_i = 0 imposed; x_i is zero, or at a bound, elsewhere.
+        Indices with w_i = 0 imposed; other x_i are at a bound.
     message : str
     """
 
@@ -232,32 +216,29 @@ class ExactCertificate:
 
     @property
     def x_rounded(self) -> Array:
-        """The exact x, each entry rounded to the nearest double, shape (n,)."""
+        """The exact x, rounded to doubles, shape (n,)."""
         if self.x is None:
             raise ValueError("x: there is no exact point on this active set")
         return np.array([float(value) for value in self.x])
 
 
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
-    """Solve on the active set of x in rational arithmetic and decide exactly whether that solves the problem.
+    """Solve exactly on the active set of x, and decide whether the result solves the problem.
 
-    The active set is {x_i > w_i}, each relative to the terms of the rows, or with bounds the piece of the natural map
-    on which x is; if its point is not a solution, two more are tried, in which the indices that are zero in both x and
-    w (at a bound, and zero in w), to `BOTH_ZERO`, are left out or taken in. On a singular
-    active set the dependent entries of x keep their float values, so degenerate and rank-deficient problems have
-    certificates too.
+    The active set is {x_i > w_i}, relative to the terms, or with bounds the piece of the natural map. If it fails,
+    indices with both nearly zero (`BOTH_ZERO`) are left out, then taken in. On singular sets dependent x_i keep their
+    values.
 
     Parameters
     ----------
     problem : MixedLCP
-        Of any size; its active set is at most `LARGEST_ACTIVE_SET`.
     x : Array of shape (n,)
         An approximate solution.
 
     Raises
     ------
     ValueError
-        If x is not a finite vector of n numbers, or its active set is too large.
+        If x is not a finite vector of n numbers, or its active set exceeds `LARGEST_ACTIVE_SET`.
     """
     require_problem(problem)
     x = finite_vector("x", x, problem.n)
@@ -276,7 +257,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """That of x and w relative to the terms of the rows, then without and with what is about zero in both."""
+    """The state of x, then doubtful indices at bounds, then between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -295,10 +276,9 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
 
 
 def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Array) -> ExactCertificate:
-    """The exact solution on one active set, and its signs."""
     active = np.flatnonzero(state == BETWEEN)
     chosen = tuple(int(i) for i in active)
-    # The equations times 2^shift, by which bounds other than zero become integers.
+    # The shift makes nonzero bounds integers.
     at_bounds, shift = integers(problem.at(state))
     right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
     solution = solve_exactly(block_of([rows[i] for i in chosen], active, problem.n) << shift, right, x[active])
@@ -308,7 +288,6 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
     for i, value in zip(chosen, solution[0]):
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
-    # An integer row is a power of two times the float row, and that power is divided out.
     exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
     wrong = _wrong_sign(problem, state, exact_x, exact_w)
     if wrong:
@@ -318,7 +297,6 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    """What forbids the point of a state: the first x_i beyond a bound, or w_i of the wrong sign there; else empty."""
     for i, value in enumerate(x):
         low, high = problem.lower[i], problem.upper[i]
         if low > -math.inf and value < Fraction(low):

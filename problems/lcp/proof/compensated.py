@@ -1,4 +1,4 @@
-"""A x + q as if computed in twice the working precision, with a bound on what is left of the error."""
+"""A x + q in twice the working precision, with an error bound."""
 
 from __future__ import annotations
 
@@ -17,26 +17,24 @@ from problems.lcp.proof.inequalities import Inequalities
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.array(~0x7FFFFFF)
-"""Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
+"""Keeps 26 leading bits of a double: products are exact."""
 
 _BLOCK = 2**15
-"""Entries of a dense A in a block of rows: 256 KiB, of which two at a time stay in the cache. Of a quarter of them all
-products are taken at once; of more slices are quicker."""
+"""Entries per block of rows: two blocks of 256 KiB fit the cache. Up to a quarter, slices are slower."""
 
 DOUBLE_BITS = 53
-"""Of a double."""
+"""Bits of a double's mantissa."""
 
 LARGEST_TERMS = 1e240
-"""Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
-of products below 1e-260 are no longer exact."""
+"""Rows whose terms sum to more than this, or less than its inverse, are scaled: low halves of products below 1e-260 are
+inexact."""
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """W = A x + q by compensated summation of error-free products, and a bound on the error of each entry.
+    """A x + q by compensated summation, with an error bound for each entry; both infinite where a product overflows.
 
-    `problem`: Dense or sparse; no copy of A is made. `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i|
-    <= bound_i; both infinite where a product overflows.
+    `x`, of shape (n,): Finite.
 
     References
     ----------
@@ -49,7 +47,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
 
 def error_bound(w: Array, size: Array, terms: int) -> Array:
-    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off."""
+    """Error bound of a compensated sum w; the terms' magnitudes sum to `size`."""
     gamma = 4.0 * (terms + 2) * _UNIT
     bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     return bound
@@ -57,11 +55,10 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 
 @frozen(eq=False)
 class Terms:
-    """The rows of A x + q for a matrix A and vectors x, q, each row over a power of two of its own.
+    """The rows of A x + q, each divided by 2^exponents[i].
 
-    `A` of shape (n, n). `x`, of shape (n,): With `A`: the products A_ij x_j over 2^exponents[i]. `w`, `size`, of shape
-    (n,): (A x + q)_i in twice the working precision, and (|A| |x| + |q|)_i, both over 2^exponents[i]. `exponents`, of
-    shape (n,): Zero but for data or x near the ends of the range of floats.
+    `A` of shape (n, n), `x` of shape (n,): Give the divided products. `w`, `size`, of shape (n,): (A x + q)_i and (|A|
+    |x| + |q|)_i, divided. `exponents`, of shape (n,): Usually zero.
     """
 
     A: Matrix
@@ -73,10 +70,7 @@ class Terms:
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
-    """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
-
-    `x`, of shape (n,): Finite.
-    """
+    """The rows of A x + q without overflow or underflow; x is finite, of shape (n,)."""
     w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
     if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
@@ -101,7 +95,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
         row_of = np.arange(problem.n)[:, None]
         exponents = np.maximum(exponents, products.max(axis=1))
     exponents = np.where(exponents == lowest, 0, exponents)
-    # Products that are smaller than their row's largest by 2^-1000 may vanish: they are below its last digits.
+    # Products below 2^-1000 of the row's largest may vanish.
     moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
     q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
     A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
@@ -110,7 +104,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
 
 
 def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int]:
-    """(w, the sum of the magnitudes of its terms, their number) of each row."""
+    """Returns w, magnitude sums, terms per row."""
     A, q, count = problem.A, problem.q, x.size
     if problem.sparse:
         A = sp.csr_array(A)
@@ -130,7 +124,6 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int
 
 
 def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
-    """Where a row has a term that is not zero."""
     support = x != 0.0
     if not support.any():
         return problem.q != 0.0
@@ -138,9 +131,9 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
-    """Sums of products along the first axis, and constants: the rounded sum, what it lost, the sum of magnitudes.
+    """Sums of products along the first axis plus constants: rounded sums, errors, magnitude sums.
 
-    `entries` of shape (m, ...). `factors`: That broadcasts to the same shape. `constants` of shape (...).
+    `entries` of shape (m, ...). `factors`: Broadcasts to it. `constants` of shape (...).
     """
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])
@@ -150,11 +143,9 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 
 
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
-    """The same of a dense matrix, by products of slices of which BLAS loses nothing.
+    """`summed` for a dense matrix by exact BLAS products of slices: two of A, three (all) of x.
 
-    A and x are cut into slices of so few digits that sums of products of two slices are exact: two of A, three of x,
-    which are all of it. What is left of A is 2^-42 or less of the largest product of the row and multiplied as usual,
-    with an error below that of sums of products in twice the working precision.
+    The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
 
     References
     ----------
@@ -162,10 +153,10 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
     multiplication and its applications", Numer. Algorithms 59, 2012.
     """
     mantissas, powers = np.frexp(x)
-    # Integers below 2^(digits - 1): so many products of two of them add up to less than 2^53.
+    # n products of integers below 2^(digits - 1) sum to less than 2^53.
     digits = (DOUBLE_BITS - int(np.ceil(np.log2(x.size)))) // 2 + 1
     factors = np.stack([*_leading(mantissas.copy(), np.ones(1), digits, 3)], axis=1)
-    # Times powers of two, so that the largest entry of a row is about its largest product.
+    # Makes a row's largest entry about its largest product.
     left = A * np.where(x == 0.0, 0.0, np.ldexp(1.0, powers))
     magnitudes = np.abs(left)
     sizes, top = magnitudes @ np.abs(mantissas), np.ldexp(1.0, np.frexp(magnitudes.max(axis=1))[1])[:, None]
@@ -175,7 +166,7 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
 
 
 def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array]:
-    """Slices of so many digits of numbers that are at most top, which they leave what is left."""
+    """Cut slices of `digits` bits off `left` (at most `top`); `left` keeps the rest."""
     for _ in range(count):
         shift = top * (1.5 * 2.0 ** (DOUBLE_BITS - digits))
         part = left + shift
@@ -186,13 +177,13 @@ def _leading(left: Array, top: Array, digits: int, count: int) -> Iterator[Array
 
 
 def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, int]:
-    """The same for a sparse matrix, and the most entries of a row: the k-th stored entries of all rows together."""
+    """`summed` for a sparse matrix, and the longest row's length."""
     total, lost, size = q.copy(), np.zeros(q.size), np.abs(q)
     lengths: NDArray[Any] = np.diff(A.indptr)
     longest_first = np.argsort(-lengths, kind="stable")
     ordered = lengths[longest_first]
     for k in range(int(ordered[0])):
-        # Slices where every row has a k-th entry: gathering rows costs more than the sums do.
+        # Slices avoid gathering rows, which costs more than the sums.
         everywhere = k < ordered[-1]
         rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = A.indptr[:-1][rows] + k
@@ -205,13 +196,13 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
 
 
 def _lost(a: Array, b: Array, total: Array) -> Array:
-    """The rounding error of a sum, exactly (Knuth)."""
+    """Rounding error of a + b (Knuth)."""
     virtual = total - a
     return (a - (total - virtual)) + (b - virtual)
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its rounding error to 2^-106 (Dekker, split by masking so that it cannot overflow)."""
+    """The rounded product and its error (Dekker; masking cannot overflow)."""
     product = a * b
     a_high, b_high = _high(a), _high(b)
     a_low, b_low = a - a_high, b - b_high

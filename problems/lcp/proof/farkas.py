@@ -1,9 +1,7 @@
-"""Proofs that an LCP has no feasible point, or no strictly feasible one: multipliers checked in integers.
+"""Multipliers, checked in integers, prove that an LCP has no (strictly) feasible point.
 
-For y >= 0 with A'y <= 0, every x >= 0 with w = A x + q >= 0 gives 0 <= y'w = (A'y)'x + q'y <= q'y.
-So q'y < 0 proves that no x is feasible, hence that the LCP has no solution (Farkas). If q'y = 0 and y is not zero,
-then y'w = 0, so no x has x >= 0 and w > 0: F = {x > 0, A x + q > 0} is empty (Motzkin). Both conditions are also
-necessary, by the duality theorem.
+For y >= 0 with A'y <= 0, every feasible x gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves that none exists
+(Farkas). If q'y = 0 and y is not zero, F = {x > 0, w > 0} is empty (Motzkin). Duality: both are necessary.
 """
 
 from __future__ import annotations
@@ -25,40 +23,39 @@ from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions
 from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers, solve_exactly
 
 HIGHS_TOLERANCE = 1e-10
-"""The tightest feasibility tolerance that HiGHS accepts."""
+"""The tightest feasibility tolerance of HiGHS."""
 MULTIPLIER_ZERO = 1e-9
-"""What HiGHS leaves of zero, with a digit to spare: a scaled condition so near to it is tried as an equation, and a
-scaled multiplier no larger is zero."""
+"""Ten times HiGHS's tolerance: scaled values below this are zero."""
 
 PRECISION = 100 * float(np.finfo(float).eps)
-"""The relative error of A'y <= 0 that counts as rounding."""
+"""Relative errors of A'y <= 0 up to this are rounding."""
 GAP_IN_DOUBT = 1e-6
-"""A gap -q'y below this part of |q|'y is too near zero to say infeasible without a proof."""
+"""Smaller gaps -q'y, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
-"""A condition this close to zero, relative to its terms, is solved as an equation when y is refined,"""
+"""Conditions below this, relatively, are equations in the refinement."""
 _REFINEMENTS = 4
-"""so many times: the program's 1e-10 is squared each time, and the last ones confirm,"""
+"""Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
-"""for at most so many multipliers: a least squares solution of that order takes seconds."""
+"""Largest refinement: least squares of this order take seconds."""
 LARGEST_VERTEX = 300
-"""The largest order at which a multiplier is made exact by solving its tight equations in rationals."""
+"""Largest order at which tight equations are solved in rationals."""
 AFFORDABLE_VERTEX = 100
-"""The same for a proof that nobody asked for: a tenth of a second, where order 300 takes six."""
+"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s, against 6 s at order 300."""
 
 
 @frozen(eq=False)
 class Farkas:
-    """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, exactly: checked in integers on the float data.
+    """A multiplier y >= 0, y != 0, with A'y <= 0, q'y <= 0, checked in integers.
 
-    With bounds y_i may be negative where x_i has no lower one, and is zero where it has two; see `inequalities`.
+    With bounds, y_i may be negative where x_i has no lower bound, and is zero where x_i has two; see `inequalities`.
 
     Attributes
     ----------
     y : tuple of n int
-        Without a common factor; any positive multiple proves the same.
+        Without a common factor.
     gap : Fraction
-        q'y exactly, with bounds q'y + sup {(A'y)'x : l <= x <= u}: negative if no feasible point exists, zero if only
-        no strictly feasible one.
+        Exactly q'y (with bounds, q'y + sup (A'y)'x): negative if no point is feasible, zero if none is strictly
+        feasible.
     """
 
     y: tuple[int, ...]
@@ -66,11 +63,11 @@ class Farkas:
 
     @property
     def no_feasible_point(self) -> bool:
-        """Whether {x >= 0, A x + q >= 0} is proved empty, so that the LCP has no solution."""
+        """Whether {x >= 0, A x + q >= 0} is proved empty."""
         return self.gap < 0
 
     def in_units(self, problem: MixedLCP, rows: NDArray[np.int64]) -> Farkas | None:
-        """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -82,7 +79,7 @@ class Farkas:
         return multiplier(problem, y)
 
     def holds(self, problem: MixedLCP) -> bool:
-        """Whether it proves, exactly, that `problem` has no feasible point.
+        """Whether it proves `problem` infeasible.
 
         Parameters
         ----------
@@ -93,19 +90,18 @@ class Farkas:
 
 @frozen(eq=False)
 class FloatFarkas:
-    """A multiplier that proves that there is no feasible point but for rounding: y >= 0, A'y <= 0 nearly, q'y < 0.
+    """A multiplier that proves infeasibility up to rounding.
 
-    Some matrix whose entries differ from those of A by at most `error`, relatively, has A'y <= 0 exactly, so that its
-    LCP is infeasible for every q with q'y < 0.
+    A matrix within `error` of A, relatively in each entry, has A'y <= 0 exactly.
 
     Attributes
     ----------
     y : Array of shape (n,)
         Its largest entry is 1.
     error : float
-        max_j (A'y)_j / (|A|'y)_j: of the size of the rounding unit.
+        max_j (A'y)_j / (|A|'y)_j, about the rounding unit.
     gap : float
-        -q'y / |q|'y, at least `GAP_IN_DOUBT`: how clearly q'y is negative.
+        -q'y / |q|'y, at least `GAP_IN_DOUBT`.
     """
 
     y: Array
@@ -113,7 +109,7 @@ class FloatFarkas:
     gap: float
 
     def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
-        """The multiplier for the problem whose rows are 2^-rows times those of this one.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -124,17 +120,16 @@ class FloatFarkas:
 
 
 def farkas(problem: MixedLCP) -> Farkas | None:
-    """An exact proof that {x >= 0, A x + q >= 0}, or what bounds put in its place, is empty, or None.
+    """Prove that {x >= 0, A x + q >= 0}, or its counterpart with bounds, is empty.
 
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse, of any scaling.
 
     Returns
     -------
     Farkas or None
-        None if feasible points exist, and also if no multiplier passed the exact check: never a claim unproved.
+        None if no multiplier passed the exact check.
 
     References
     ----------
@@ -145,15 +140,14 @@ def farkas(problem: MixedLCP) -> Farkas | None:
 
 
 def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
-    """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
+    """A proof of infeasibility, exact or to working precision, or None.
 
     Parameters
     ----------
     problem : MixedLCP
-        Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
-        `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
+        Tight conditions are solved in rationals up to order `AFFORDABLE_VERTEX`.
     guess : Array of shape (n,), optional
-        A multiplier to be tried in place of that program's.
+        A multiplier tried instead of the linear program's.
     """
     scaled = _Scaled.of(problem)
     if (scaled.system.q >= 0.0).all():
@@ -168,9 +162,9 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
-    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up.
+    """Minimise q'y subject to A'y <= 0, sum y = 1, y >= 0; None on failure.
 
-    `matrix`, of shape (m, k): A. `vector`, of shape (m,): Its q.
+    `matrix`, of shape (m, k). `vector`, of shape (m,).
     """
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
@@ -188,17 +182,16 @@ def transposed(matrix: Matrix) -> Matrix:
 
 
 def empty_interior(problem: LCP) -> Farkas | None:
-    """An exact proof that F = {x > 0, A x + q > 0} is empty, or None.
+    """Prove exactly that F = {x > 0, A x + q > 0} is empty.
 
     Parameters
     ----------
     problem : LCP
-        Dense or sparse.
 
     Returns
     -------
     Farkas or None
-        Preferably one that proves that no feasible point exists at all (`no_feasible_point`).
+        Preferably a proof of `no_feasible_point`.
 
     References
     ----------
@@ -209,7 +202,7 @@ def empty_interior(problem: LCP) -> Farkas | None:
 
 
 def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
-    """Powers of two r, c, shape (n,): the rows of [A, q] over r and then the columns of A over c have maximum 1."""
+    """Powers of two: rows of [A, q] over r, then columns of A over c, have maximum about 1."""
     size: Matrix = abs(problem.A)
     largest = np.asarray(size.max(axis=1).toarray()).ravel() if problem.sparse else size.max(axis=1)
     rows = _power_of_two(np.maximum(largest, np.abs(problem.q)))
@@ -219,7 +212,7 @@ def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
 
 
 def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -> tuple[Matrix, Array]:
-    """A and q with rows over `rows` and columns over `columns`; exact, as both are powers of two."""
+    """A over rows and columns, q over rows; exact for powers of two."""
     if problem.sparse:
         return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
     return problem.A / rows[:, None] / columns, problem.q / rows
@@ -240,7 +233,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
 
 @frozen(eq=False)
 class _Scaled:
-    """The inequalities of a problem, and the same with rows over `rows`, columns over others, q over a power of two."""
+    """A problem's inequalities, and their scaled data."""
 
     problem: MixedLCP
     system: Inequalities
@@ -250,15 +243,14 @@ class _Scaled:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> _Scaled:
-        """Of a problem."""
         system = inequalities(problem)
         rows, columns = scales(system)
         matrix, vector = scaled_data(system, rows, columns)
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess that passes the check in integers: its floats, or its vertex."""
-        # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
+        """The first candidate near a scaled guess that passes the integer check."""
+        # The check uses the unscaled data, so scaling errors do not matter.
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):
@@ -267,7 +259,6 @@ class _Scaled:
         return None
 
     def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:
-        # y of the data as given is the scaled one over the row scales.
         weights = integers(self.rows.max() / self.rows)[0]
         yield [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
         slack = np.asarray(self.A.T @ guess).ravel()
@@ -278,7 +269,7 @@ class _Scaled:
                 yield found
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
+        """The exact solution of the equations on the guess's support."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None
@@ -293,7 +284,7 @@ class _Scaled:
         return y
 
     def nearly(self, guess: Array) -> FloatFarkas | None:
-        """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
+        """The guess with tight conditions solved to round-off, if it is a proof."""
         y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
         conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
         for _ in range(_REFINEMENTS):
@@ -313,14 +304,13 @@ class _Scaled:
             block = self.A[support][:, tight].T
             block = block.toarray() if sp.issparse(block) else block
             moved = y.copy()
-            # Relative to y, so that small multipliers move little.
             moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
             y = np.maximum(moved, 0.0)
         return None
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
-    """The multiplier without a common factor, and its exact gap; None where it proves nothing."""
+    """A `Farkas` without common factor, or None."""
     common = gcd(*y) or 1
     y = [value // common for value in y]
     gap = conditions_of(problem).gap(y)

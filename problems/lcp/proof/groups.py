@@ -1,8 +1,8 @@
-"""Complementary faces excluded in groups, each by one multiplier: what proves that a feasible LCP has no solution.
+"""Proofs that a feasible LCP has no solution: multipliers exclude groups of complementary faces.
 
-A group fixes x_i = 0 for some i, w_i = 0 for others, and leaves open what the rest are. For y with y_i >= 0 but where
-w_i is fixed, and (A'y)_j <= 0 but where x_j is, every point of it has 0 <= y'w - (A'y)'x = q'y. So q'y < 0 proves that
-none of its faces holds a solution (Farkas), and groups that are all faces together prove it of the problem.
+A group fixes some x_i = 0 and some w_i = 0. If y_i >= 0 unless w_i is fixed, and (A'y)_j <= 0 unless x_j is fixed, its
+points have 0 <= y'w - (A'y)'x = q'y; so q'y < 0 excludes it (Farkas). Groups that cover all faces exclude all
+solutions.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from problems.lcp.proof.pieces import SMALLEST_NORMAL, SUM_OF_TERMS_ROUNDING
 from problems.lcp.proof.rational import integers
 
 Fixed = NDArray[np.bool_]
-"""Which of x and then w are fixed at zero, shape (2n,)."""
+"""Which of x, then of w, are fixed at zero, shape (2n,)."""
 
 
 @frozen(eq=False)
 class Group:
-    """Faces that share what is fixed, and why none of them holds a solution.
+    """Faces with common fixed variables, and why none holds a solution.
 
-    `fixed`, of shape (2n,): Which of x and then of w. `y`, of length n: The multiplier, in floats, which are taken as
-    the rationals that they are, or in integers; None for a single face, which was decided in rationals.
+    `fixed`, of shape (2n,). `y`, of length n: The multiplier in floats or integers; None for one face decided in
+    rationals.
     """
 
     fixed: Fixed
@@ -40,7 +40,7 @@ class Group:
 
 @frozen(eq=False)
 class Groups:
-    """Groups of faces, none of which holds a solution, and which together are all."""
+    """Groups without solutions that cover all faces."""
 
     groups: tuple[Group, ...]
 
@@ -49,12 +49,12 @@ class Groups:
 
     @property
     def root(self) -> list[int] | None:
-        """The multiplier that excludes all faces alone, if there is one: a Farkas vector."""
+        """The one multiplier that excludes all faces (a Farkas vector), if any."""
         one = self.groups[0] if len(self.groups) == 1 else None
         return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
 
     def in_units(self, rows: NDArray[np.int64]) -> Groups:
-        """The multipliers for a problem, where these are for that whose rows are 2^rows times those of it.
+        """Undo a scaling of rows by 2^rows.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class Groups:
         return Groups(tuple(moved(group) for group in self.groups))
 
     def holds(self, problem: LCP) -> bool:
-        """Whether they prove, in exact arithmetic, that the problem has no solution.
+        """Whether the groups prove that the problem has no solution.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class Groups:
 
     @property
     def complete(self) -> bool:
-        """Whether every face is in one of them."""
+        """Whether the groups cover every face."""
         if not self.groups:
             return False
         fixed = np.array([group.fixed for group in self.groups])
@@ -92,10 +92,7 @@ def _whole(y: Array | Sequence[int]) -> list[int]:
 
 
 def _all_of_them(groups: NDArray[np.bool_]) -> bool:
-    """Whether every face is in one of these groups: a pair that all of them fix divides them, as it divided a tree.
-
-    `groups` of shape (number, 2, n): What they fix, of x and of w.
-    """
+    """Whether groups, of shape (number, 2, n), cover all faces; recursion over a pair that each fixes."""
     if not groups.size:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
@@ -110,16 +107,13 @@ def _all_of_them(groups: NDArray[np.bool_]) -> bool:
 
 @frozen(eq=False, slots=False)
 class Excluding:
-    """Finds and checks the multipliers of groups of one problem.
-
-    `problem`: Dense.
-    """
+    """Finds and checks multipliers for one dense problem."""
 
     problem: LCP
 
     @cached_property
     def slopes(self) -> Array:
-        """The rows by which y gives what multiplies x and w in 0 = q'y - y'w + (A'y)'x, shape (2n, n)."""
+        """Coefficients of x and w in 0 = q'y - y'w + (A'y)'x from y, shape (2n, n)."""
         return np.vstack([-self.problem.A.T, np.eye(self.problem.n)])
 
     @cached_property
@@ -128,16 +122,15 @@ class Excluding:
 
     @cached_property
     def exact(self) -> tuple[list[list[int]], list[int], Conditions]:
-        """A and q in integers over one scale, and the conditions on multipliers."""
+        """A and q in integers, and the conditions on multipliers."""
         return *whole_numbers(self.problem)[:2], conditions_of(self.problem)
 
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
-        """The group, if a dictionary's row excludes it: its basic variable, times the sign, would have to be negative.
+        """The group, if a dictionary's row makes its basic variable times `sign` negative.
 
-        With a little of the other rows what rounding may hide is no longer zero; where that is not enough, as where
-        zeros come from small integers, the multiplier is solved for in integers.
+        Adding a little of the other rows exceeds rounding; otherwise integers are used.
 
-        `fixed`, of shape (2n,). `basic`, of shape (n,): The basic variables. `row`: Of one of them. `sign`: 1 or -1.
+        `fixed`, of shape (2n,). `basic`, of shape (n,). `row`: Index in `basic`.
         """
         right = np.zeros((basic.size, 2))
         right[:, 1] = ~fixed[basic]
@@ -162,7 +155,7 @@ class Excluding:
         return group if group is not None and self.exactly(group) else None
 
     def _clearly(self, fixed: Fixed, y: Array) -> bool:
-        """Whether floats prove it, whatever they round."""
+        """Whether floats prove it."""
         n, q = y.size, self.problem.q
         unit, size = (n + 4) * SUM_OF_TERMS_ROUNDING, np.abs(y)
         terms = self._sizes[:n] @ size
@@ -172,7 +165,6 @@ class Excluding:
         return bool(q @ y + unit * (np.abs(q) @ size) + SMALLEST_NORMAL < 0.0)
 
     def _solved(self, basic: NDArray[np.intp], row: int, sign: int) -> list[int] | None:
-        """The multiplier of the row alone, in integers."""
         entries, q, _ = self.exact
         n = len(q)
         rows: list[IntRow] = [
@@ -182,7 +174,7 @@ class Excluding:
         return None if found is None else [value[0] for value in found[0]]
 
     def exactly(self, group: Group) -> bool:
-        """Whether the group holds no solution, in exact arithmetic."""
+        """Whether the group holds no solution, exactly."""
         entries, q, conditions = self.exact
         n, fixed = len(q), group.fixed.tolist()
         if group.y is None:

@@ -1,11 +1,11 @@
-"""What a solution has to satisfy apart from complementarity, as inequalities, and the conditions on their multipliers.
+"""Inequalities that solutions satisfy without complementarity, and conditions on their multipliers.
 
-At a solution w_i >= 0 where x_i has no upper bound, w_i <= 0 where it has no lower one, w_i = 0 where it has neither,
-and l <= x <= u. Multipliers y of these rows, of the sign that makes y'w >= 0, give 0 <= y'(A x + q) for all of them:
+A solution has l <= x <= u, w_i >= 0 without an upper bound, w_i <= 0 without a lower one, w_i = 0 without both.
+Multipliers y with y'w >= 0 give 0 <= y'(A x + q), so
 
     q'y + sum_j sup {(A'y)_j x_j : l_j <= x_j <= u_j} < 0
 
-proves that there is no such x. For l = 0 and u = inf that is A'y <= 0 and q'y < 0.
+proves that no such x exists.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from problems.lcp.proof.rational import IntegerRow, integer_rows
 
 @frozen(eq=False)
 class Inequalities:
-    """The points z >= 0 with A z + q >= 0, A of any shape.
+    """The points z >= 0 with A z + q >= 0.
 
-    `A` of shape (m, k). `q` of shape (m,). `rows`, of shape (m,): The row of the problem that each is; -1 for those of
-    bounds. None where the problem's own are meant. `signs`, of shape (m,): With which sign.
+    `A` of shape (m, k). `q` of shape (m,). `rows`, `signs`, of shape (m,): Rows of the problem (-1 for bounds) and
+    signs; None if unchanged.
     """
 
     A: Matrix
@@ -48,7 +48,7 @@ class Inequalities:
         return bool(sp.issparse(self.A))
 
     def on_rows(self, y: Any, n: int) -> Any:
-        """Multipliers of these rows, floats or integers, as an array of those of the n rows of the problem."""
+        """Multipliers in terms of the problem's n rows."""
         y = np.asarray(y)
         if self.rows is None or self.signs is None:
             return y
@@ -58,12 +58,11 @@ class Inequalities:
 
 
 def inequalities(problem: MixedLCP) -> Inequalities:
-    """What x has to satisfy apart from complementarity; no entry is rounded."""
+    """A problem's inequalities, without rounding."""
     if problem.standard:
         return Inequalities(problem.A, problem.q)
     n, low, high = problem.n, problem.lower, problem.upper
     finite_low, finite_high = low > -np.inf, high < np.inf
-    # An x_j with a bound at zero is z_j or -z_j, any other one a difference of two.
     up = low == 0.0
     down = (high == 0.0) & ~up
     both = np.flatnonzero(~up & ~down)
@@ -71,7 +70,6 @@ def inequalities(problem: MixedLCP) -> Inequalities:
     columns = sp.csr_array(sp.diags_array(np.where(down, -1.0, 1.0)))
     columns = sp.hstack([columns, -sp.eye_array(n, format="csr")[:, both]], format="csr")
     A, identity = sp.csr_array(problem.A), sp.eye_array(n, format="csr")
-    # Rows of w, and those of x, with a sign, and what is added.
     parts = [
         (A, ~finite_high, 1.0, problem.q, every),
         (A, ~finite_low, -1.0, -problem.q, every),
@@ -87,10 +85,9 @@ def inequalities(problem: MixedLCP) -> Inequalities:
 
 @frozen
 class Conditions:
-    """The conditions on a multiplier in integers: the rows (A'y)_j and the row q'y.
+    """The conditions on a multiplier in integers: rows (A'y)_j and q'y.
 
-    `lower`, `upper`: Bounds of what the columns multiply. `signs`: Whether each y_i may be positive, and whether
-    negative.
+    `lower`, `upper`: Bounds of x. `signs`: Whether y_i may be positive, negative.
     """
 
     columns: list[IntegerRow]
@@ -100,7 +97,7 @@ class Conditions:
     signs: list[tuple[bool, bool]]
 
     def gap(self, y: list[int]) -> Fraction | None:
-        """Q'y + sup (A'y)'x, exactly; None where a sign is wrong, or that is infinite, or y is zero."""
+        """Exactly q'y + sup (A'y)'x; None if infinite or y is not allowed."""
         if not any(y):
             return None
         for value, (positive, negative) in zip(y, self.signs):
@@ -118,13 +115,13 @@ class Conditions:
         return total
 
     def hold(self, y: list[int], strict: bool) -> bool:
-        """Whether the signs of y are right, it is not zero, and q'y + sup (A'y)'x <= 0, or < 0 if strict, exactly."""
+        """Whether `gap` is <= 0, or < 0 if strict."""
         gap = self.gap(y)
         return gap is not None and (gap < 0 or (gap == 0 and not strict))
 
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
-    """The conditions on a multiplier, on the data as given."""
+    """The conditions on a multiplier."""
     A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
     columns = integer_rows(A, np.zeros(A.shape[0]))
     constant = integer_rows(problem.q[None, :], np.zeros(1))[0]

@@ -1,4 +1,4 @@
-"""How far a point is off in each row: shares of x in the terms of the rows, and q that drowns in their rounding."""
+"""Defects of rows: shares of x in their terms, and q drowned in rounding."""
 
 from __future__ import annotations
 
@@ -13,24 +13,20 @@ from problems.lcp.data.spread import alike
 from problems.lcp.proof.compensated import Terms
 
 DROWNED = 1e-6
-"""The most that a row may be off, relative to the largest |q_i| in balanced units, however large its terms are."""
+"""Largest allowed defect relative to max |q_i| in balanced units."""
 
 FAR_BELOW_Q = 1e-10
-"""What is no more than this counts as zero: any point that runs off to infinity is far above it; the ends of the
-Maros-Meszaros programs that are solved to precision are below 1e-12."""
+"""Smaller values count as zero: runs to infinity are far above, Maros-Meszaros solutions below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
-"""The same relative to the least |q_i| that is not zero, in the units given, where these are `alike`: then no units are
-to be found, which takes longer than all else (arches of five stones: 0.45 of 1.2 ms)."""
+"""Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would cost 0.45 of 1.2
+ms (five-stone arches)."""
 
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
+    """Signed distances from a bound as largest shares in a row's terms; infinite where not asked.
 
-    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
-    not zero: any other is off by all of itself.
-
-    `terms`: Of the rows at x. `x`, `distance` of shape (n,). `asked` of shape (n,).
+    An x_i in no row has share 1. `x`, `distance`, `asked` of shape (n,).
     """
     shares = np.where(distance == 0.0, 0.0, np.inf)
     indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
@@ -39,7 +35,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
         sizes = np.abs(terms.x[indices])
         moved = distance[indices] != x[indices]
         if moved.any():
-            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
+            # Scaled rows hold shares of x_i.
             with np.errstate(all="ignore"):
                 scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
             known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
@@ -58,13 +54,13 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 
 
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i.
+    """See `Certificate.drowned`; units are computed only if needed.
 
-    `terms`: Of the rows at x. `off`, of shape (n,): How far each row is off, relative to its terms.
+    `off`, of shape (n,): Defects relative to the terms.
     """
     moved = np.count_nonzero(terms.exponents)
     q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q
-    asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
+    asked = off * terms.size > DROWNED * np.abs(q)
     if not np.count_nonzero(asked):
         return 0.0
     if not moved:

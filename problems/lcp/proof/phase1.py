@@ -1,4 +1,4 @@
-"""Phase I: a strictly feasible start x0 > 0, A x0 + q > 0 by a linear program, or a proof that there is none."""
+"""Phase I: strictly feasible starts by linear programs."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class NoStrictlyFeasiblePoint(ValueError):
     Attributes
     ----------
     certificate : Farkas or None
-        The exact proof that none exists; None if the linear program says so only in floating point.
+        The exact proof, if any.
     margin : float
-        The largest scaled margin t that the linear program found; at most about 0.
+        Largest scaled margin found; at most about 0.
     """
 
     def __init__(self, message: str, certificate: Farkas | None, margin: float) -> None:
@@ -32,16 +32,14 @@ class NoStrictlyFeasiblePoint(ValueError):
 
 
 def strictly_feasible_start(problem: LCP) -> Array:
-    """A point of F = {x > 0, A x + q > 0}, of the largest scaled margin up to 1.
+    """Find a point of F = {x > 0, A x + q > 0} of the largest scaled margin up to 1.
 
-    Rows of [A, q] and columns of A are scaled by powers of two. HiGHS first looks for the least x of margin 1, and
-    if there is none maximises t <= 1 subject to x >= t and A x + q >= t in scaled units; that program has a dense
-    column and is much slower on large sparse A. Positivity is verified with a rigorous error bound.
+    HiGHS seeks the least x of margin 1, else maximises t <= 1 with x >= t, A x + q >= t (slow for large sparse A: a
+    dense column). A rigorous error bound verifies positivity.
 
     Parameters
     ----------
     problem : LCP
-        Dense or sparse.
 
     Returns
     -------
@@ -50,11 +48,11 @@ def strictly_feasible_start(problem: LCP) -> Array:
     Raises
     ------
     NoStrictlyFeasiblePoint
-        If F is empty, with the exact certificate, or if no point could be verified; the message says which.
+        If F is empty, or no point could be verified.
 
     References
     ----------
-    Dutta, Das and Jana, "Bounded Homotopy Path Approach", which needs such a start and does not say how to find it.
+    Dutta, Das and Jana, "Bounded Homotopy Path Approach" (needs such a start).
     """
     require_lcp(problem)
     largest = float("nan")
@@ -75,7 +73,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
 
 
 def is_strictly_feasible(problem: LCP, x: Array) -> bool:
-    """Whether x > 0 and A x + q > 0 beyond doubt: each w_i exceeds a bound on its own rounding error."""
+    """Whether x > 0 and each w_i exceeds its error bound."""
     if not (np.isfinite(x).all() and (x > 0).all()):
         return False
     w, bound = accurate_w(problem, x)
@@ -83,15 +81,12 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
 
 
 def _programs(problem: LCP) -> Iterator[tuple[Array | None, float]]:
-    """The x of least scaled sum with scaled margin 1; then that of the largest margin t <= 1, and t.
-
-    (None, nan) where HiGHS finds none, or gave up.
-    """
+    """The least x of margin 1; then the x of largest margin t <= 1, and t; (None, nan) on failure."""
     rows, columns = scales(problem)
     (matrix, vector), n, none = scaled_data(problem, rows, columns), problem.n, (None, float("nan"))
     result = linprog(np.ones(n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
     yield (result.x / columns, 1.0) if result.status == 0 else none
-    # Unknowns (u, t) with x = u / columns: -u + t <= 0 and -(A x + q) + t <= 0.
+    # Unknowns (u, t), x = u / columns.
     block, eye = (sp.block_array, sp.eye_array(n)) if problem.sparse else (np.block, np.eye(n))
     left = block([[-eye, np.ones((n, 1))], [-matrix, np.ones((n, 1))]])
     bounds = [(None, None)] * n + [(None, 1.0)]

@@ -1,8 +1,7 @@
-"""Which complementary pieces hold a solution perhaps: most are excluded in floats, with a bound on what rounding does.
+"""Complementary pieces that may hold a solution; floats with rounding bounds exclude most others.
 
-Where x_i = l_i, w_i >= 0 is asked for, and so on: the equations of a piece have one solution if its block B is not
-singular. With an approximate inverse R and |I - R B| <= d < 1 that solution is within |R r| / (1 - d) of a point whose
-residual is r, in the largest norm; so a sign that is clearly wrong is wrong. What is in doubt is decided exactly.
+Let R be an approximate inverse of a piece's block B with |I - R B| <= d < 1. Then its equations have one solution,
+within |R r| / (1 - d) of a point with residual r (maximum norm). A sign wrong beyond this excludes the piece.
 
 References
 ----------
@@ -22,10 +21,10 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
 
 TOGETHER = 1024
-"""Pieces in one array: a few megabytes at the orders for which all are tried."""
+"""Pieces in one array: a few megabytes."""
 
 SUM_OF_TERMS_ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Over twice what k + 4 terms, times k + 4, can be off (Higham, section 3.5)."""
+"""Over twice the error of a sum of k + 4 terms, per k + 4 (Higham, section 3.5)."""
 
 SMALLEST_NORMAL = float(np.finfo(float).tiny)
 
@@ -33,9 +32,9 @@ States = NDArray[np.int8]
 
 
 def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
-    """Which of these pieces are not proved to hold no solution, shape (number,).
+    """Which pieces may hold a solution, shape (number,).
 
-    `states`, of shape (number, n): -1 where x is at its lower bound, 1 where at its upper one, 0 between.
+    `states`, of shape (number, n): -1 at the lower bound, 0 between, 1 at the upper.
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
@@ -49,17 +48,14 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=16)
 def all_faces(n: int) -> NDArray[np.bool_]:
-    """All active sets, shape (2^n, n), read-only; the first index changes most often."""
+    """All active sets, shape (2^n, n), read-only."""
     faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
     faces.flags.writeable = False
     return faces
 
 
 def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which faces no row forbids by its signs alone, which know no rounding: w_i < 0, or w_i > 0 where x_i may be too.
-
-    That is all where the face is singular, and it forbids most of those of small integers.
-    """
+    """Faces that no row excludes by signs alone (no rounding, singular faces too)."""
     support = inside.astype(float)
     rises, falls = support @ (A > 0.0).T > 0.0, support @ (A < 0.0).T > 0.0
     forbidden = (~rises & (q < 0.0)) | (inside & ~falls & (q > 0.0))
@@ -67,10 +63,9 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 
 
 def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
-    """Which pieces are not proved to hold no solution, of one problem or each of its own; shape (number,).
+    """Which pieces, of one problem or one each, may hold a solution, shape (number,).
 
-    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, shape (n,) each; None for
-    those of an LCP.
+    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, or None.
     """
     n = states.shape[1]
     sizes, one, ones = np.abs(A), identity(n), np.ones(n)
@@ -89,7 +84,7 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
     d = np.maximum.reduce(defect @ ones, axis=1) * (1.0 + unit)
     lost = np.where(between, unit * known, 0.0) + unit * (np.abs(right) + _times(block, np.abs(x))) + SMALLEST_NORMAL
     off = _times(size, np.abs(right - _times(B, x)) + lost)
-    # What is added is more than what underflow may cost, here as above.
+    # SMALLEST_NORMAL exceeds underflow losses.
     off = np.maximum.reduce(off, axis=1)[:, None] * (1.0 + unit) / (1.0 - d[:, None]) + SMALLEST_NORMAL
     whole = x if bounds is None else np.where(between, x, ends)
     w = q + _times(A, whole)
@@ -102,30 +97,29 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
         wrong = between & ((x + off < low) | (x - off > high))
         wrong_w = ((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0))
         wrong |= (low < high) & wrong_w
-    # A comparison with NaN is false: what overflows is in doubt.
+    # Comparisons with NaN are false.
     excluded = (d < 0.5) & (off[:, 0] < np.inf) & np.logical_or.reduce(wrong, axis=1)
     asked: NDArray[np.bool_] = ~excluded
     return asked
 
 
 def _times(A: Array, v: Array) -> Array:
-    """The matrix, or each, times each vector."""
     product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
     return product
 
 
 @lru_cache(maxsize=32)
 def identity(n: int) -> Array:
-    """The matrix, read-only."""
+    """The read-only identity."""
     one = np.eye(n)
     one.flags.writeable = False
     return one
 
 
 def inverses(B: Array) -> Array:
-    """Approximate inverses, NaN where there is none.
+    """Approximate inverses, NaN for singular matrices.
 
-    `B` of shape (number, n, n), or (n, n), of which LAPACK takes a third of the time if asked directly.
+    `B` of shape (number, n, n) or (n, n) (direct LAPACK: three times as fast).
     """
     if B.ndim == 2:
         found, singular = dgesv(B, identity(len(B)))[2:]

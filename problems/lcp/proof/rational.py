@@ -1,7 +1,6 @@
-"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b in rationals.
+"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b.
 
-A float is a dyadic rational, so a row of floats times a power of two is a row of integers; signs and solutions
-stay what they were. Nothing found here is trusted before M z = b has been checked in integers.
+Floats times powers of two are integers; every result is checked in them.
 """
 
 from __future__ import annotations
@@ -22,12 +21,12 @@ Integers = NDArray[Any]
 """An object array of Python integers."""
 
 PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
-"""Below 2^31, so that a product of residues fits an int64; more than one, should one divide a determinant."""
+"""Residue products fit an int64; several, in case one divides a determinant."""
 
 
 @frozen
 class IntegerRow:
-    """One row of [matrix, vector] times 2^shift: the nonzero columns, their integers, the vector's integer."""
+    """A row of [matrix, vector] times 2^shift: nonzero columns, integers, constant."""
 
     columns: NDArray[Any]
     values: list[int]
@@ -35,7 +34,7 @@ class IntegerRow:
     shift: int
 
     def times(self, numerators: list[int], denominator: int) -> int:
-        """The sign-true value of (row . z + constant) for z = numerators / denominator, times that denominator."""
+        """The row's value at numerators / denominator, times the denominator."""
         total = self.constant * denominator
         for column, value in zip(self.columns, self.values):
             total += value * numerators[column]
@@ -43,7 +42,7 @@ class IntegerRow:
 
 
 def integers(values: Array) -> tuple[list[int], int]:
-    """The integers m and the shift k with values = m / 2^k, k >= 0, exactly."""
+    """Integers m and k >= 0 with values = m / 2^k."""
     mantissas, exponents = np.frexp(values)
     whole = np.ldexp(mantissas, 53).astype(np.int64).tolist()
     powers = np.where(mantissas == 0.0, 0, exponents - 53)
@@ -52,7 +51,7 @@ def integers(values: Array) -> tuple[list[int], int]:
 
 
 def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
-    """The rows of [matrix, vector] as integers, each scaled by its own power of two."""
+    """Rows of [matrix, vector] as integers."""
     rows = []
     stored = sp.csr_array(matrix) if sp.issparse(matrix) else None
     for i, constant in enumerate(vector):
@@ -68,7 +67,7 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
-    """Some columns, of n, of rows, as Python integers, shape (number of rows, number of columns)."""
+    """Selected columns of rows, shape (number of rows, number of columns)."""
     place = np.full(n, -1)
     place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)
@@ -80,11 +79,10 @@ def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> I
 
 
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
-    """A rational solution of an integer system of any shape and rank, columns without a pivot staying at the guess.
+    """A rational solution of an integer system of any shape and rank, or None if inconsistent.
 
-    `matrix`, of shape (m, k): Python integers. `guess`, of shape (k,): Floats: large entries get pivots first, and the
-    dependent columns keep these values exactly. Returns (numerators, denominator) or None: Checked in integers on every
-    row; None if the system is inconsistent at the guess.
+    `matrix`, of shape (m, k). `guess`, of shape (k,): Large entries get pivots first, columns without a pivot keep its
+    values. Returns (numerators, denominator), checked on every row.
 
     References
     ----------
@@ -115,21 +113,18 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
 
 
 def full_row_rank(matrix: Integers) -> bool:
-    """Whether the rows are independent, which they are if they are modulo a prime; False where none of a few tells.
-
-    `matrix`, of shape (m, k): Python integers.
-    """
+    """Whether rows are independent modulo a prime; False proves nothing."""
     order = np.arange(matrix.shape[1])
     return any(_invert(matrix, order, prime)[0].size == matrix.shape[0] for prime in PRIMES)
 
 
 def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
-    """Numerators over a common denominator, as reduced fractions."""
+    """Reduced fractions."""
     return tuple(Fraction(value, denominator) for value in numerators)
 
 
 def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rows and columns of a largest block that is nonsingular modulo the prime, and that block's inverse there."""
+    """Rows, columns and inverse of a largest nonsingular block modulo the prime."""
     m = matrix.shape[0]
     work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
     unused = np.ones(m, dtype=bool)
@@ -148,15 +143,15 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
         columns.append(int(column))
     k = matrix.shape[1]
     chosen = np.array(rows, dtype=np.intp)
-    # Pivot rows are combinations of pivot rows alone, so this block of the accumulated operations is the inverse.
+    # Pivot rows combine only pivot rows.
     return chosen, np.array(columns, dtype=np.intp), work[np.ix_(chosen, k + chosen)]
 
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
-    """Solve block z = right, lifting modulo powers of the prime until a rational vector passes the exact check."""
+    """Solve block z = right, lifting until the exact check succeeds."""
     residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    # From there on Hadamard's and Cramer's bounds leave no other rational vector.
+    # Hadamard's and Cramer's bounds.
     bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
     enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:
@@ -175,11 +170,11 @@ def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) 
 
 
 def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
-    """Numerators and one common denominator, all below sqrt(modulus / 2), congruent to the expansion; else None."""
+    """Numerators and denominator below sqrt(modulus / 2), congruent to the expansion, or None."""
     bound = isqrt(modulus // 2)
     denominator = 1
     for value in expansion:
-        # The denominator of the fraction congruent to it with numerator at most bound (Euclid's algorithm, halfway).
+        # Euclid's algorithm, stopped halfway.
         before, now = modulus, int(value) * denominator % modulus
         factor_before, factor = 0, 1
         while min(now, modulus - now) > bound:

@@ -1,4 +1,4 @@
-"""Points of many small dense LCPs judged together: what this accepts `certify` and `confirmed` accept one by one."""
+"""Judges points of many small dense LCPs together."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
 POINT_CORRECTIONS = 2
-"""Of a point with w in twice the working precision, as in `active_set.finish`."""
+"""Corrections with w in twice the working precision, as in `active_set.finish`."""
 
 
 @frozen(eq=False)
 class Judged:
-    """Points of a stack of LCPs, and which of them are solutions.
+    """Points of a stack of LCPs, and which are solutions.
 
-    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified: round-off in each row relative to its own
-    terms, no row off by what q is, and up to order 12 an exact solution nearby. Where not, nothing is said. `residual`,
-    `relative_residual`, of shape (k,): As in `Certificate`.
+    `x` of shape (k, n). `solves`, of shape (k,): False decides nothing. `residual`, `relative_residual`, of shape (k,):
+    As in `Certificate`.
     """
 
     x: Array
@@ -33,16 +32,14 @@ class Judged:
 
 
 def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> Judged:
-    """The points of faces, corrected in twice the working precision.
+    """Points of faces, corrected in twice the working precision.
 
     Parameters
     ----------
     A : ndarray, shape (k, n, n)
     q : ndarray, shape (k, n)
     active : ndarray of bool, shape (k, n)
-        The faces.
     tolerance : float
-        Of the relative residual.
     """
     n = q.shape[1]
     inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
@@ -50,7 +47,6 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     for _ in range(1 + POINT_CORRECTIONS):
         moved = x - np.where(active, (inverse @ np.where(active, w, 0.0)[..., None])[..., 0], 0.0)
         x = np.where(np.isfinite(moved).all(axis=1, keepdims=True), np.maximum(moved, 0.0), x)
-        # In twice the working precision.
         total, lost, size = summed(by_columns, x.T[:, :, None], q)
         w = total + lost
         relative = w / np.where(size > 0.0, size, 1.0)
@@ -59,7 +55,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
         if (worst <= ROUND_OFF).all():
             break
     solves: NDArray[np.bool_] = (worst <= min(ROUND_OFF, tolerance)) & ~(off * size > DROWNED * np.abs(q)).any(axis=1)
-    # Beyond this rows are summed over powers of two, one by one.
+    # Other rows need scaling.
     solves &= (size.max(axis=1) <= LARGEST_TERMS) & ((size >= 1.0 / LARGEST_TERMS).all(axis=1))
     if n <= LARGEST_DECIDED:
         exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
@@ -68,10 +64,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
 
 
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
-    """Which complementary faces are not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
-
-    `A` of shape (k, n, n). `q` of shape (k, n).
-    """
+    """Faces that may hold a solution, shape (k, 2^n); `q` of shape (k, n)."""
     k, n = q.shape
     states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
     return in_doubt(np.repeat(A, 2**n, axis=0), np.repeat(q, 2**n, axis=0), states).reshape(k, 2**n)

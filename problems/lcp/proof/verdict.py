@@ -1,4 +1,4 @@
-"""What may be said of a point: whether it is a solution, and whether it is stationary."""
+"""Decides whether points are solutions, or stationary."""
 
 from __future__ import annotations
 
@@ -17,33 +17,27 @@ from problems.lcp.proof.pieces import identity, inverses
 EPS = float(np.finfo(float).eps)
 
 UNDERFLOW = float(np.finfo(float).tiny) / EPS
-"""Below this products may have lost digits to underflow."""
+"""Smaller products may have lost digits."""
 
 LARGEST_DECIDED = 12
-"""Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
-solves a problem to the tolerance but not to round-off is called a solution only if exact arithmetic agrees."""
+"""Largest order for exact trial of all faces (about 1 s) and for exact confirmation of inaccurate solutions."""
 
 ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
-"""A relative residual below this is within rounding: half an eps for x, and half for each factor that gave the entries
-their units, of a row and of a column; the last half is for their products."""
+"""Smaller residuals are rounding: half an eps each for x, row unit, column unit, products."""
 
 STATIONARY = 1e-6
-"""Relative to their terms: how well the optimality conditions hold at what is called stationary.
-
-A degenerate end is a series in the root of lambda, so that half of the digits of a good end can be asked of it.
+"""Relative tolerance of optimality conditions: degenerate ends are series in the root of lambda, with half the
+digits.
 """
 
 NEARLY = 1e-5
-"""An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
+"""Ends with smaller residuals are inaccurate solutions."""
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point may be called a solution.
+    """Whether the point is a solution; for small problems exact arithmetic must agree unless defects are rounding.
 
-    One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
-    unless its rows are off by no more than the rounding of the entries.
-
-    `certificate`: Of the point. `tolerance`: Of its relative residual.
+    `tolerance`: Of the relative residual.
     """
     if not certificate.solves(tolerance):
         return False
@@ -53,13 +47,9 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
-    """Whether x solves the conditions of a program whose data differ by round-off, relative to the largest of them.
+    """Whether x solves a program's conditions up to round-off of its largest data.
 
-    `confirmed` asks that of each row relative to its own terms, which no x can do where the files of a program have
-    sides of rows of 1e-16 in place of zeros. A point that runs off to infinity, where the objective falls for ever, is
-    told by q, which drowns there.
-
-    `problem`: In balanced units. `certificate`: Of the point.
+    `confirmed` rejects every x where a file has 1e-16 instead of zero. `problem`: In balanced units.
     """
     if problem.primal == 0 or certificate.drowned > 0.0:
         return False
@@ -67,24 +57,21 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
 
 
 def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether the problem has a solution, exactly, on the face of x or on one that x touches.
+    """Whether an exact solution exists on the face of x or an adjacent one.
 
-    Where rounding cannot matter floats prove it; in doubt the equations are solved in rationals.
+    Floats prove it where rounding cannot matter, else rationals.
 
     Parameters
     ----------
     problem : MixedLCP
         Small: dense matrices are made.
     x : ndarray, shape (n,)
-        A point that is `confirmed`.
     w : ndarray, shape (n,), optional
-        That of its certificate.
 
     References
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    # Asked by the finish, by the search and for the outcome, of the same point.
     point, answer = problem.known.get("exact", (None, False))
     if point is None or not (point is x or np.array_equal(point, x)):
         answer = (problem.standard and _clearly_exact(problem, x, w)) or certify_exactly(problem, x).solves
@@ -93,14 +80,14 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether floats prove it, as `Faced` does of many points; w is in twice the working precision."""
+    """Whether floats prove it (`Faced`); w is in twice the working precision."""
     if not x.any():
         return least(problem.q) >= 0.0
     if least(x) < 0.0:
         return False
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     size = np.abs(A).dot(x) + np.abs(problem.q)
-    # Beyond this w is summed over powers of two, and what it lost is not known here.
+    # Elsewhere the error of w is unknown.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
         return False
     w = accurate_w(problem, x)[0] if w is None else w
@@ -109,14 +96,13 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 @frozen(eq=False)
 class Faced:
-    """The equations of the faces of points of a stack of LCPs, in units of x, with approximate inverses.
+    """Face equations of points of a stack of LCPs, in units of x, with approximate inverses R.
 
-    Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
-    |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
+    If |I - R B| <= d < 1, B is nonsingular and B u = r has |u| <= |R| |r| / (1 - d) (maximum norm); off the face B has
+    rows of the identity.
 
-    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and largest of the terms of each
-    row of A x, the largest 1 off the face. `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or
-    infinite where nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of a row's terms. `size`,
+    of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or infinite without proof.
     """
 
     on: NDArray[np.bool_]
@@ -134,7 +120,7 @@ class Faced:
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
         sizes = np.abs(terms)
-        # Reductions of ufuncs: for the small problems that come here methods of arrays take half as long again.
+        # Ufunc reductions: array methods take 1.5 times as long here.
         total = np.add.reduce(sizes, axis=-1)
         top = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
         fine = np.minimum.reduce(top, axis=-1) > UNDERFLOW
@@ -142,8 +128,7 @@ class Faced:
         block = np.where(on[..., None], terms, one)
         block /= top[..., None]
         inverse = inverses(block)
-        # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
-        # more than n.
+        # Twice the rounding of block and product (Higham, section 3.5); rows of |B| sum to at most n.
         size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
         off = np.abs(inverse @ block - one)
         off += n * rounding * size
@@ -151,10 +136,7 @@ class Faced:
         return cls(on, total, top, size, np.where(fine, defect, np.inf))
 
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
-        """Whether the equations have a solution near x with w > 0 elsewhere.
-
-        `w`, `bound`, of shape (..., n): w, and how far it may be off.
-        """
+        """Whether the equations have a solution near x with w > 0 elsewhere; w and its bound of shape (..., n)."""
         right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
         moved = moved * (1.0 + ROUND_OFF) / (1.0 - self.defect)
@@ -166,9 +148,8 @@ class Faced:
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
-    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
-    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference. With bounds those of the
-    gap, as `KKTHomotopy` has them.
+    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0, relative to their sizes. Bounds:
+    see `KKTHomotopy`.
     """
     rows = Rows(problem)
     if y.size != rows.size:
