@@ -13,7 +13,7 @@ from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy, Registered
 from problems.nonlinear import Differentiable, FixedPointHomotopy, brown
 
 
-def brown_fixed_point(n: int = 5) -> Differentiable[FixedPointHomotopy]:
+def brown_fixed_point(n: int = 5) -> Differentiable:
     """Brown's almost linear function by the fixed-point homotopy from the origin.
 
     Parameters

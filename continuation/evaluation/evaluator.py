@@ -206,7 +206,7 @@ class Evaluator:
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
         """Return the estimate from one perturbation; order -1 gives another.
 
-        `least`: Smallest perturbation.
+        `least`: Least resolution of each component.
         """
         change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual

@@ -22,6 +22,10 @@ RANK = 1e-6
 """Smaller singular values, relative to H', count as zero; the root of POLISHED is below."""
 
 
+WEAK = 1e-8
+"""A smaller pivot, relative to the largest, has the rank counted, which takes one factorisation more."""
+
+
 @frozen(eq=False)
 class Bordered:
     """[[H', B], [C, 0]], factored, with k columns B and k + 1 rows C: regular if H' has lost at most k ranks.
@@ -53,6 +57,13 @@ class Bordered:
             return x
         y: Array = lu_solve(self._factor, r, trans=int(transposed), check_finite=False)
         return y
+
+    @property
+    def weak(self) -> bool:
+        """Whether a pivot is so small that the bordered matrix may be singular, as it is if more ranks are lost."""
+        factor = self._factor
+        pivots = np.abs(factor.U.diagonal() if sp.issparse(self.matrix) else factor[0].diagonal())
+        return bool(pivots.min() <= WEAK * pivots.max())
 
     @cached_property
     def left(self) -> tuple[Array, Array]:

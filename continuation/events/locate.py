@@ -187,6 +187,8 @@ def root(
     for _ in range(PASSES):
         if stalled % 2 or not a[0] < t < b[0]:
             t = 0.5 * (a[0] + b[0])
+        if not a[0] < t < b[0]:
+            break  # adjacent floats
         now = t, function(t)
         stalled = stalled + 1 if abs(now[1]) > HALVING * abs(best[1]) else 0
         a, b = (now, b) if a[1] * now[1] > 0.0 else (a, now)

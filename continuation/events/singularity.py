@@ -158,10 +158,12 @@ def branch_point_near(
             if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
             # After an early halt H' is known only to the last increment.
-            if kernels(here.matrix, max(RANK, HALTED[1] * newton.size))[0].shape[1] > 2:
+            halted = newton.size > HALTED[0]
+            accuracy = max(RANK, HALTED[1] * newton.size)
+            if (here.weak or halted) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
-            if newton.size > HALTED[0]:
+            if halted:
                 # At a regular zero one more increment is round-off; at a multiple one branches touch, or more than two
                 # cross.
                 newton.run(increment, measure, lambda size: True)

@@ -116,5 +116,9 @@ def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
     if matrix.preconditioner is None:
         return Krylov(bordered, scale, None)
     first = matrix.preconditioner.matvec
-    inverse = eliminated(first, first(column)[:, None], bordered.row[None])
+    W, border = first(column), bordered.row
+    if border[-1] == border[:-1] @ W:
+        # The preconditioner is no inverse: any other corner will do.
+        border = np.append(border[:-1], border[-1] + np.linalg.norm(border))
+    inverse = eliminated(first, W[:, None], border[None])
     return Krylov(bordered, scale, LinearOperator((n + 1, n + 1), matvec=inverse.solve, dtype=float))

@@ -49,6 +49,9 @@ SINGULAR_STRETCH = 1.19
 traces had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none.
 """
 
+INSIDE = (Rejection.MIDPOINT, Rejection.CROSSINGS, Rejection.OTHER_BRANCH)
+"""Reasons that lie inside a landing's arc, and so inside every longer one."""
+
 NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
 """After so many attempts at one step it is asked whether noise in H has grown, and by what it must have, so that an end
 comes to it: two measurements of one noise differ by less."""
@@ -151,8 +154,9 @@ class Advance:
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
-                # A longer step contains the same obstacle, less visibly.
-                h = min(h, found.factor * landing.h)
+                if found.reason in INSIDE:
+                    # A longer step contains the same obstacle, less visibly.
+                    h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
         while True:

@@ -79,7 +79,6 @@ AT_END = 1e-6
 """A crossing this near to the arc's end, in arc lengths, is at the end: half of its digits are known."""
 
 
-
 @frozen(eq=False)
 class Crossed:
     """A branch point on an arc.
@@ -291,7 +290,7 @@ class _Looks:
     def _lost(self, u: Array, t: float) -> int:
         """Multiplicity of the smallest z near t."""
         apply, told = _differential(self.solver, u), self.look(u, t, Z_ROUND_OFF)
-        if apply is None or not told:
+        if apply is None or not told or told[-1] <= 0.0:
             return 1
         return max(multiplicity(self.arc.a, apply, self._border(t), 1.0 / told[-1]), 1)
 

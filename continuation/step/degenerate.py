@@ -23,6 +23,9 @@ from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
+HIGHEST_ORDER = 20.0
+"""Largest order of a zero of z: beyond, z is flat to round-off."""
+
 SECANTS_OF_Z = 20
 """Limit of secant steps; four or five are usual."""
 
@@ -106,22 +109,22 @@ def degenerate_point(
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        order = max((ahead - t) / (beyond - left), 1.0)
+        order = min(max((ahead - t) / (beyond - left), 1.0), HIGHEST_ORDER)
         # Points on the path may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
         for _ in range(SECANTS_OF_Z):
+            if not 0.0 < t < FARTHEST:
+                return None
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
             u = on_path(t)
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
                 # M_a is nearly singular: the rest of z is round-off.
-                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t else None
+                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= BLURRED else None
             if before:
-                order = max((t - before) / (left - last), 1.0)
+                order = min(max((t - before) / (left - last), 1.0), HIGHEST_ORDER)
             before, last, t = t, left, t - order * left
-            if not 0.0 < t < FARTHEST:
-                return None
     except ArithmeticError:
         # z is NaN, or secant points coincide.
         pass

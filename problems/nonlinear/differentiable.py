@@ -3,13 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar
+from typing import ClassVar, Protocol
 
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from problems.nonlinear.start_checks import EQUATIONS, Jacobian, check_jacobian_shape
 from problems.options import quiet
+
+
+class WithoutJacobian(Protocol):
+    """A homotopy for F(x) = 0 that F' completes."""
+
+    @property
+    def references(self) -> Sequence[str]:
+        """BibTeX entries."""
+        ...
+
+    def start(self) -> tuple[Array, float]:
+        """The start."""
+        ...
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """H."""
+        ...
+
+    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) from F'."""
+        ...
 
 
 @frozen(eq=False)
@@ -32,7 +53,7 @@ class Differentiable:
         If its shape is not (n, n).
     """
 
-    homotopy: Any
+    homotopy: WithoutJacobian
     slope: Jacobian
     target: ClassVar[float | None] = 0.0
     problem_class: ClassVar[str] = EQUATIONS

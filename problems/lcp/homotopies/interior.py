@@ -134,7 +134,8 @@ def jacobian(self: Any, y: Array, lam: float) -> tuple[Matrix, Array]:
 @quiet
 def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
     """H' v, one shorter than v."""
-    return self._recent.at(self, y, lam).apply(v)
+    system: System = self._recent.at(self, y, lam)
+    return system.apply(v)
 
 
 @quiet
