@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 
 from continuation.archive.atomic import ArchiveError
 from continuation.archive.contents import Contents
-from continuation.archive.provenance import history, process
+from continuation.archive.provenance import history
 from continuation.archive.reader import Archive
 from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
 from continuation.archive.schema import ORIGIN_COLUMNS, ORIGINS, SCHEMA, Layout, text
@@ -117,7 +117,7 @@ def write_copy(
             )
     layouts = [share.layout for share in shares]
     width, names = max(layout.controller for layout in layouts), ORIGINS.union(*(layout.more for layout in layouts))
-    about = {**head.attributes, **process(), **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
+    about = {**head.attributes, **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
     store = Store(file, Layout(head.layout.unknowns, width, names), about, head.problem(), compression=compression)
     try:
         for block in _blocks(shares, store):

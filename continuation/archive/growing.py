@@ -16,7 +16,7 @@ from attrs import define, evolve
 
 from continuation.archive.atomic import new_file, own
 from continuation.archive.copies import Share, append, share_of, share_of_path, sourced, write_copy
-from continuation.archive.provenance import root_attributes
+from continuation.archive.provenance import process, root_attributes
 from continuation.archive.reader import StoredSteps, open_archive
 from continuation.archive.resume import check_homotopy
 from continuation.archive.store import Store, put
@@ -98,7 +98,7 @@ class Growing:
             for number, path in enumerate(source):
                 # A view would keep the whole array in memory.
                 yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
-            copy = partial(write_copy, [share_of(source)], what="went on")
+            copy = partial(write_copy, [share_of(source)], what="went on", more=process())
             self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:

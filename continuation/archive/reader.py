@@ -166,9 +166,12 @@ class Archive(Sequence[Path]):
 
         Raises
         ------
+        IndexError
+            If there is no such path.
         ArchiveError
             If the stored number is no status.
         """
+        index = range(len(self))[index]
         return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:

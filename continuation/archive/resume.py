@@ -17,6 +17,7 @@ import numpy as np
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
+from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.store import Store, put
 from continuation.archive.tables import kept_whole
@@ -170,7 +171,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
     """The homotopy that the file describes; `known` is the `registry`."""
-    tree: Any = checkpoint.run.get("homotopy")
+    tree: Any = checkpoint.run["homotopy"]
     if not isinstance(tree, dict) or not tree.get("problem"):
         return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
     text, arrays = source.problem()
@@ -231,5 +232,5 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)
-    copy = partial(write_copy, [share], what=what, more={"parent": parent}, checkpoints=slots)
+    copy = partial(write_copy, [share], what=what, more={**process(), "parent": parent}, checkpoints=slots)
     return put(target, copy, replace=replace, grows=True)

@@ -7,11 +7,20 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import ExitStack, suppress
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
+from threading import Event
 from typing import Any, Unpack
 
 from attrs import define, field, frozen
@@ -25,7 +34,7 @@ from continuation.archive.schema import Layout
 from continuation.archive.store import Store, put
 from continuation.archive.transfer import gather
 from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
@@ -48,6 +57,25 @@ class Task:
     number: int
     archived: bool
     options: Options
+    stop: Event | None = None
+
+
+@frozen(eq=False)
+class Stopping:
+    """An observer that ends a path in a thread, which Ctrl-C does not reach."""
+
+    stop: Event
+
+    def step(self, tracer: Tracer, step: Step) -> None:
+        """Raise KeyboardInterrupt if the sweep was interrupted."""
+        if self.stop.is_set():
+            raise KeyboardInterrupt
+
+    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
+        """Do nothing."""
+
+    def end(self, tracer: Tracer) -> None:
+        """Do nothing."""
 
 
 def trace_many(
@@ -109,7 +137,8 @@ def trace_many(
     target = None if archive is None else new_file("archive", archive)
     if target is not None and not many:
         raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
-    tasks = [Task(homotopy, k, target is not None, options) for k, homotopy in enumerate(many)]
+    stop = Event() if isinstance(executor, ThreadPoolExecutor) else None
+    tasks = [Task(homotopy, k, target is not None, options, stop) for k, homotopy in enumerate(many)]
     paths = _swept(executor, tasks, target, progress or (lambda done, total: None), timeout)
     return paths if target is None else open_archive(target)
 
@@ -132,6 +161,8 @@ def _swept(
                 report(done, len(tasks))
         except KeyboardInterrupt:
             stopped = True
+            for stop in {task.stop for task in tasks if task.stop is not None}:
+                stop.set()
             for future in futures:
                 future.cancel()
             _end_processes(executor)
@@ -231,7 +262,7 @@ def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
 
 
 def _end_processes(executor: Executor | None) -> None:
-    """Kill a pool's processes; threads end by themselves."""
+    """Kill a pool's processes; threads end at their next step."""
     if isinstance(executor, ProcessPoolExecutor):
         for process in list((executor._processes or {}).values()):
             process.kill()
@@ -242,7 +273,8 @@ def traced(task: Task) -> Path | Share:
     """The path of a homotopy, whatever it raises."""
     path, controller = Path(), tuple[float, ...]()
     try:
-        tracer = Tracer(task.homotopy, **task.options)
+        observers = () if task.stop is None else (Stopping(task.stop),)
+        tracer = Tracer(task.homotopy, observers=observers, **task.options)
         path = tracer.path
         try:
             tracer.run()

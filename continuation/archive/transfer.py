@@ -21,6 +21,7 @@ from continuation.archive.atomic import ArchiveError, as_file, beside, check_new
 from continuation.archive.checkpoint import slot_of
 from continuation.archive.contents import TABLES, Contents
 from continuation.archive.copies import Share, filled, leading, share_of, sourced, write_copy
+from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
 from continuation.archive.schema import TEXT, text
@@ -60,7 +61,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
         shares = [share_of(archive) for archive in archives]
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         _refuse_duplicates(archives, shares)
-        put(whole, partial(write_copy, shares, what=f"merged from {len(archives)} files: {names}"))
+        put(whole, partial(write_copy, shares, what=f"merged from {len(archives)} files: {names}", more=process()))
     return whole
 
 
@@ -89,7 +90,7 @@ def gather(files: Sequence[File], target: File) -> None:
             share.paths["source"][:] = b""
             whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
             made.append(_of_size(whole, head.layout.unknowns, target))
-        put(target, partial(write_copy, made, what=f"a sweep of {len(places)} paths"))
+        put(target, partial(write_copy, made, what=f"a sweep of {len(places)} paths", more=process()))
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:

@@ -110,6 +110,8 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple
     engine = engine_of(homotopy)
     if cells is None:
         tubes, gaps = TubeSearch(engine, homotopy, path, look).run()
+    elif not len(cells):
+        tubes, gaps = Tubes(cells, np.zeros(0, bool), np.zeros(0, bool), []), []
     else:
         tubes = check(engine, cells, look)
         gaps = [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~tubes.proved].tolist()]

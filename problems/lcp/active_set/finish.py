@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.sparse as sp
 from attrs import define, field
@@ -75,8 +77,8 @@ class Finish:
                 return solved
         return None
 
-    def augmented(self, below: float) -> Array | None:
-        """A KKT point of a program by `guesses` with this `below`, or None."""
+    def augmented(self, below: float, exhausted: Callable[[], object]) -> Array | None:
+        """A KKT point of a program by `guesses` with this `below`, or None, also once `exhausted` says something."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
@@ -88,7 +90,7 @@ class Finish:
                 return solved
             now = self.problem.relative_residual(point)
             since, best = (0, now) if now < 0.5 * best else (since + 1, best)
-            if since > MORE_MULTIPLIERS:
+            if since > MORE_MULTIPLIERS or exhausted():
                 break
         return None
 

@@ -78,7 +78,7 @@ class ActiveSets:
     def _augmented(self, finish: Finish) -> bool:
         search, n = self.search, self.search.problem.primal
         below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
-        found = search.found(finish.augmented(below))
+        found = search.found(finish.augmented(below, lambda: search.exhausted))
         return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
 
 

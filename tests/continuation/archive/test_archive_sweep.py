@@ -5,6 +5,7 @@ import gzip
 import os
 import signal
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from threading import Event
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import xarray
 
 from continuation import Budget, Status, from_functions, trace
 from continuation.archive import ArchiveError, PathLog, describe, export, merge, open_archive, trace_many
+from continuation.archive.sweep import Task, traced
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth, Pitchfork
 
 HOMOTOPIES = [Pitchfork(epsilon) for epsilon in np.linspace(0.01, 0.4, 11)]
@@ -295,3 +297,22 @@ def test_ctrl_c_within_a_path(tmp_path):
     with open_archive(tmp_path / "run.h5") as archive:
         assert len(archive) == 1
         assert archive[0].status is Status.INTERRUPTED
+
+
+def test_an_export_says_who_traced(tmp_path, monkeypatch):
+    trace(Circle(), archive=tmp_path / "a.h5")
+    monkeypatch.setattr("continuation.archive.provenance.software", lambda: {"host": "another"})
+    export(tmp_path / "a.h5", tmp_path / "b.nc")
+    with open_archive(tmp_path / "a.h5") as traced, open_archive(tmp_path / "b.nc") as copy:
+        assert copy.attributes["host"] == traced.attributes["host"] != "another"
+        assert copy.status(-1) is copy.status(0) is Status.CLOSED
+        with pytest.raises(IndexError):
+            copy.status(1)
+
+
+def test_ctrl_c_ends_the_paths_of_threads():
+    """Which an interrupt does not reach: a task that is told to stop ends at its next step."""
+    stop = Event()
+    stop.set()
+    assert traced(Task(Circle(), 0, False, {}, stop)).status is Status.INTERRUPTED
+    assert traced(Task(Circle(), 0, False, {}, Event())).status is Status.CLOSED

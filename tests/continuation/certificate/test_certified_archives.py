@@ -91,3 +91,12 @@ def test_the_shell_checks_again(tmp_path, capsys):
     assert "path 0: Proved" in capsys.readouterr().out
     trace(FreudensteinRoth(), archive=tmp_path / "plain.h5")
     assert main(["recheck", str(tmp_path / "plain.h5")]) == 1
+
+
+def test_a_stored_proof_of_nothing_is_checked_again(tmp_path):
+    path = trace(FreudensteinRoth(), archive=tmp_path / "a.h5")
+    proof = certify(path, FreudensteinRoth())
+    none = evolve(proof, cells=proof.cells.take(slice(0, 0)), node_radius=proof.node_radius[:0])
+    add_proof(tmp_path / "a.h5", none)
+    (found,) = recheck(tmp_path / "a.h5")
+    assert not found

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from scipy.optimize import brentq
 
 import continuation
@@ -80,3 +81,30 @@ def test_unknowns_that_stand_still_have_units_of_their_own(seed, preset):
 @pytest.mark.parametrize("seed", [0, 8])
 def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, preset):
     passed(Trunk(seed, bent=True), preset)
+
+
+class Beam:
+    """K y - lam y - y^3 = 0 for a beam of n points: H' has a condition of 1e8, and loses one rank at lam = 1."""
+
+    target = 2.0
+
+    def __init__(self, n):
+        ends = 2.0 - 2.0 * np.cos(np.pi / (n + 1))
+        once = sp.diags_array([-np.ones(n - 1), np.full(n, 2.0), -np.ones(n - 1)], offsets=[-1, 0, 1])
+        self.n, self.K = n, sp.csc_array(once @ once / ends**2)
+
+    def start(self):
+        return np.zeros(self.n), 0.0
+
+    def residual(self, y, lam):
+        return self.K @ y - lam * y - y**3
+
+    def jacobian(self, y, lam):
+        return sp.csc_array(self.K - sp.diags_array(lam + 3.0 * y * y)), -y
+
+
+def test_a_fine_mesh_loses_no_rank_by_its_condition():
+    path = continuation.trace(Beam(150))
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert [event.name for event in path.events] == ["branch point"]
+    assert path.events[0].lam == pytest.approx(1.0, rel=1e-9)
