@@ -99,4 +99,4 @@ def test_a_stored_proof_of_nothing_is_checked_again(tmp_path):
     none = evolve(proof, cells=proof.cells.take(slice(0, 0)), node_radius=proof.node_radius[:0])
     add_proof(tmp_path / "a.h5", none)
     (found,) = recheck(tmp_path / "a.h5")
-    assert not found
+    assert not found.complete

@@ -107,4 +107,4 @@ def test_a_fine_mesh_loses_no_rank_by_its_condition():
     path = continuation.trace(Beam(150))
     assert path.status is continuation.Status.REACHED_TARGET
     assert [event.name for event in path.events] == ["branch point"]
-    assert path.events[0].lam == pytest.approx(1.0, rel=1e-9)
+    assert path.events[0].lam == pytest.approx(1.0, rel=1e-7)  # round-off of K is 1e-9
