@@ -30,8 +30,8 @@ def test_bodies_in_contact_are_solved_without_a_path(family):
         assert found.counts.factorizations < 60
 
 
-# Of one stack the finish finds the face early or late, as the last bits have it: 38 to 133 factorisations were seen, under
-# two versions of numpy and with four places at which it is tried first.
+# The last bits decide whether the finish finds the face of one stack early or late: 38 to 133 factorisations were seen,
+# under two versions of numpy and with four places of its first try.
 @pytest.mark.parametrize(("family", "most"), [("stacks", 160), ("arches", 120)])
 def test_the_kkt_path_alone_solves_bodies_in_contact(family, most):
     for problem in itertools.islice(outside.FAMILIES[family](7, 46), 0, 7, 2):
