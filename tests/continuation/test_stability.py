@@ -131,7 +131,7 @@ def test_what_stability_costs_on_a_large_sparse_branch():
     # One factorisation a point, none to find out that nothing crosses, and no H_y beyond those of the steps: it is kept
     # there, so that an arc which is looked at again needs it once.
     assert watched.counts.factorizations == alone.counts.factorizations + len(alone)
-    assert watched.counts.jacobians <= alone.counts.jacobians
+    assert alone.counts.jacobians - 1 <= watched.counts.jacobians <= alone.counts.jacobians
     assert watched.counts.solves <= alone.counts.solves + 40 * len(alone)
     assert {step.observed["unstable"] for step in watched.steps} == {0.0}
     assert all(step.observed["covered"] for step in watched.steps)
@@ -145,7 +145,7 @@ def test_what_a_hopf_point_costs_on_a_large_sparse_branch():
     assert abs(event.lam - homotopy.rate(1)) < 1e-10
     # A secant needs three spectra: two on the way, and that of the point.
     assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 3
-    assert watched.counts.jacobians <= alone.counts.jacobians + 4
+    assert alone.counts.jacobians + 3 <= watched.counts.jacobians <= alone.counts.jacobians + 4
     assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + 1)
 
 

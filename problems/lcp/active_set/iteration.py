@@ -40,8 +40,8 @@ class Ended(Enum):
 class Policy:
     """How long the iteration goes on.
 
-    `steps`: most corrections. `patience`: corrections in a row without a new low of changed indices. `singular`:
-    singular faces allowed, which are no steps.
+    `steps`: most corrections. `patience`: corrections in a row without a new low of changed indices. `singular`: this
+    many singular faces are no steps; 0 ends at the first one, None counts all.
     """
 
     steps: int
@@ -96,7 +96,7 @@ def iterate(
     centre = None if shift is None else x
     changes: list[int] = []
     singular = 0
-    while len(changes) - (singular if policy.singular else 0) <= policy.steps:
+    while len(changes) - min(singular, policy.singular or 0) <= policy.steps:
         if tried is not None:
             key = key_of(state)
             if key in tried.known or key + x.tobytes() in tried.known:
@@ -105,7 +105,7 @@ def iterate(
             counts.factorizations += 1
         face = faces.face(state, shift or 0.0, centre, policy.singular == 0, x)
         singular += face is None or not face.exact
-        if policy.singular is not None and singular > policy.singular:
+        if policy.singular == 0 and singular:
             return Iterated(Ended.SINGULAR, state, x)
         if tried is not None:
             tried.known.add(key if face is None or face.exact else key + x.tobytes())

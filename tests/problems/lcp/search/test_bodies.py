@@ -30,9 +30,7 @@ def test_bodies_in_contact_are_solved_without_a_path(family):
         assert found.counts.factorizations < 60
 
 
-# The last bits decide whether the finish finds the face of one stack early or late: 38 to 133 factorisations were seen,
-# under two versions of numpy and with four places of its first try.
-@pytest.mark.parametrize(("family", "most"), [("stacks", 160), ("arches", 120)])
+@pytest.mark.parametrize(("family", "most"), [("stacks", 60), ("arches", 120)])
 def test_the_kkt_path_alone_solves_bodies_in_contact(family, most):
     for problem in itertools.islice(outside.FAMILIES[family](7, 46), 0, 7, 2):
         found = lcp.solve(problem, "kkt")
