@@ -63,7 +63,7 @@ def passed(trunk, preset):
 
 
 @every_preset
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [*range(6), 93])
 def test_every_branch_point_is_found_with_its_multiplicity(seed, preset):
     trunk = Trunk(seed)
     path = passed(trunk, preset)
@@ -78,7 +78,7 @@ def test_unknowns_that_stand_still_have_units_of_their_own(seed, preset):
 
 
 @every_preset
-@pytest.mark.parametrize("seed", [0, 8])
+@pytest.mark.parametrize("seed", [0, 8, 43])
 def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, preset):
     passed(Trunk(seed, bent=True), preset)
 
