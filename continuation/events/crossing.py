@@ -21,7 +21,7 @@ PRODUCTS = 40
 """Largest Krylov dimension; two usually suffice."""
 
 EIGENVALUE_ACCURACY = 0.05
-"""Relative; Newton's method refines the crossing."""
+"""Relative, of real and of imaginary parts; Newton's method refines the crossing."""
 
 OUTSIDE_SPACE = 0.1
 """If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
@@ -55,27 +55,31 @@ def changes(
     there in the dual metric, so that turns give complex eigenvalues. `start`, shape (N + 1,): first vector;
     eigenvectors orthogonal to it are not found. `accuracy`: relative.
     """
-    values, vectors = _eigenvalues(a, apply, border, most, least, start, accuracy)
-    if not values.size:
-        return [], vectors
+    values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy)
     order = np.argsort(values)
-    return values[order].tolist(), vectors[:, order]
+    return values[order].tolist(), _unit(vectors[:, order], np.sqrt(a.weights))
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
     """Ranks lost at a `place` of `changes`: one Krylov space holds one vector of each eigenspace, so several starts
     serve.
     """
-    found: list[Array] = []
+    found = np.empty((a.u.size, 0))
     for k in range(RANKS):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
-        values, vectors = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
-        near = [i for i, value in enumerate(values) if abs(value * place - 1.0) < SAME]
+        values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
+        near = np.flatnonzero(np.abs(values * place - 1.0) < SAME)
         # A start may have no part along an eigenvector.
-        found += [vectors[:, near[0]]] if near else []
-        if found and np.linalg.svd(np.array(found), compute_uv=False)[-1] < INDEPENDENT:
-            return len(found) - 1
-    return len(found)
+        found = np.column_stack((found, vectors[:, near[:1]]))
+        if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < INDEPENDENT:
+            return found.shape[1] - 1
+    return found.shape[1]
+
+
+def _unit(vectors: Array, scale: Array) -> Array:
+    """The columns, of unit length in a scale."""
+    scaled: Array = scale[:, None] * vectors
+    return scaled / np.sqrt(np.sum(scaled * scaled, axis=0))
 
 
 def _eigenvalues(
@@ -86,7 +90,12 @@ def _eigenvalues(
     left: float,
     start: Array,
     accuracy: float,
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, Array]:
+    """Eigenvalues; vectors, in units of the unknowns; the scale in which Arnoldi's method measured these.
+
+    An unknown whose own unit is small beside what others make of it would be all that is seen of every eigenvector: the
+    first product tells a scale in which it is not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
+    """
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
@@ -95,6 +104,11 @@ def _eigenvalues(
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.approximate(apply(q), dot(border, q))
+        if k == 0:
+            balance = 1.0 / np.maximum(1.0, math.sqrt(x.size) * np.abs(x))
+            first = balance * Q[0]
+            balance /= math.sqrt(dot(first, first))
+            scale, Q[0], x = balance * scale, balance * Q[0], balance * x
         size = math.sqrt(dot(x, x))
         space = Q[: k + 1]
         first = space.dot(x)
@@ -109,7 +123,7 @@ def _eigenvalues(
             continue
         if k == 1 and _nothing_told(H, right, left):
             if whole or left_over <= OUTSIDE_SPACE * right:
-                return np.empty(0), np.empty((a.u.size, 0))
+                return np.empty(0), np.empty((a.u.size, 0)), scale
             converged = True
         else:
             values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
@@ -122,12 +136,15 @@ def _eigenvalues(
                 break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
+    # Off the path, where an arc is looked at, the equal eigenvalues of a multiple point may be a complex pair.
     wanted = [
         j
         for j, (z, e) in enumerate(zip(values, errors))
-        if (z.real > right or z.real < left) and abs(z.imag) <= e + EXHAUSTED * abs(z) and abs(z) > rounding
+        if (z.real > right or z.real < left)
+        and abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z))
+        and abs(z) > rounding
     ]
-    return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted]
+    return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
 
 
 def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:

@@ -122,7 +122,8 @@ def degenerate_point(
             if not abs(left) < MONOTONE * abs(last):
                 # M_a is nearly singular: the rest of z is round-off.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= BLURRED else None
-            if before:
+            if before and abs(left) > ROOT_OF_ROUND_OFF * t:
+                # Nearer, z' is round-off, and the order a chance.
                 order = min(max((t - before) / (left - last), 1.0), HIGHEST_ORDER)
             before, last, t = t, left, t - order * left
     except ArithmeticError:

@@ -10,15 +10,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.evaluation.noise import ENDLESS, allowed_along
-from continuation.homotopy import SupportsBordered, offers
-from continuation.linear import Banded, Symmetric
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
@@ -60,9 +56,6 @@ than the second.
 
 UNCERTAIN = 100.0
 """Corrections below this multiple of their sampled round-off are ignored."""
-
-RUIZ_SWEEPS = 10
-"""Sweeps of Ruiz's iteration, each of which halves the logarithms of what columns differ by."""
 
 OTHER_UNITS = 1e4
 """A larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
@@ -174,44 +167,8 @@ def initial_extent(
     extent[still] = median(extent[~still])
     extent *= unit
     if still.any() and exactly:
-        extent[:-1] *= np.where(still[:-1], _units(evaluator, u, still[:-1]), 1.0)
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent, blur
-
-
-def _units(evaluator: Evaluator, u: Array, still: NDArray[np.bool_]) -> Array:
-    """Units in which columns of H_y of still unknowns are alike (Ruiz, RAL-TR-2001-034); ones without a matrix."""
-    ones = np.ones(still.size)
-    if offers(evaluator.homotopy, SupportsBordered) or still.sum() < 2:
-        return ones
-    try:
-        H_y = evaluator.matrix(u)
-    except Exception:
-        # The step that needs H' there reports exceptions.
-        return ones
-    H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y.matrix if isinstance(H_y, Symmetric) else H_y
-    if not (isinstance(H_y, np.ndarray) or sp.issparse(H_y)):
-        return ones
-    entries = sp.coo_array(abs(H_y), dtype=float)
-    i, j, size = entries.row, entries.col, entries.data
-    # Round-off beside its row and its column says nothing.
-    known = (size > SUSPECT * _largest_of(i, size)[i]) | (size > SUSPECT * _largest_of(j, size)[j])
-    known &= still[j] & (size > 0.0)
-    i, j, size = i[known], j[known], size[known]
-    units = ones
-    for _ in range(RUIZ_SWEEPS):
-        rows, columns = np.sqrt(_largest_of(i, size)), np.sqrt(_largest_of(j, size))
-        size = size / (rows[i] * columns[j])
-        units[: columns.size] /= np.where(columns > 0.0, columns, 1.0)
-    told = np.isin(np.arange(still.size), j)
-    return np.where(told, units / median(units[told]), 1.0) if told.any() else np.ones(still.size)
-
-
-def _largest_of(places: NDArray[np.int32], sizes: Array) -> Array:
-    """The largest size at each place."""
-    largest: Array = np.zeros(int(places.max(initial=-1)) + 1)
-    np.maximum.at(largest, places, sizes)
-    return largest
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
