@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 from attrs import frozen
+from scipy.interpolate import KroghInterpolator
 
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
@@ -21,7 +22,6 @@ from continuation.metric import norm
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
-from continuation.predictors.polynomial import interpolate
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
@@ -194,12 +194,13 @@ def _sample(point: Linearization, noise: Array) -> Sample:
     return Sample(point.u, _slope(point), noise)
 
 
-def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
-    """The Hermite interpolant in t, with t = 1 at the first sample, and its nodes."""
+def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float], Array]:
+    """The Hermite interpolant in t, with t = 1 at the first sample."""
     gap = taken[0].u[-1] - target
     t = np.array([((sample.u[-1] - target) / gap) ** (1.0 / w) for sample in taken])
-    slopes = [sample.slope * (w * gap * node ** (w - 1)) for sample, node in zip(taken, t)]
-    return interpolate([float(node) for node in t], [sample.u for sample in taken], slopes), t
+    data = [(sample.u, sample.slope * (w * gap * node ** (w - 1))) for sample, node in zip(taken, t)]
+    curve: Callable[[float], Array] = KroghInterpolator(np.repeat(t, 2), np.concatenate(data))
+    return curve
 
 
 def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
@@ -207,9 +208,9 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
     ends = []
     noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
-        value = _polynomial(taken, target, w)[0](0.0)
+        value = _polynomial(taken, target, w)(0.0)
         # Without the last and the first sample: one small change may be chance.
-        others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
+        others = [_polynomial(some, target, w)(0.0) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
         error[-1] = 0.0
@@ -228,7 +229,7 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
         return guess
     recent = taken[-3:]
     gap = recent[0].u[-1] - target
-    curve, _ = _polynomial(recent, target, best.winding_number)
+    curve = _polynomial(recent, target, best.winding_number)
     guess = curve(((lam - target) / gap) ** (1.0 / best.winding_number))
     guess[-1] = lam
     return guess
