@@ -9,11 +9,11 @@ from typing import Protocol
 import numpy as np
 from attrs import define, frozen
 
-from continuation.arrays import Array, largest
-from continuation.contraction import Contraction, Iteration
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, largest
+from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.metric import norm
+from continuation.metric import INVERTIBLE, norm
 from continuation.point.linearization import Anchor, Linearization
 from continuation.rejection import Rejected, Rejection
 from continuation.tolerance import LEAST_TOLERANCE, Tolerance
@@ -91,29 +91,20 @@ class Corrector(Protocol):
         ...
 
 
-ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
-"""Tolerances below demand residuals at round-off: Newton's error is the increment squared."""
-
-TINY = 1e-300
-"""Replaces zero round-off."""
-
 POLISHING = Contraction(iterations=12)
-"""Enough halving chord steps from the tolerance to round-off."""
+"""Enough halving chord steps from the tolerance to round-off, and rounds: near a pole Newton begins slowly."""
 
 RESIDUAL_NOISE = 32.0
 """Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
 
 
-FAR_FROM_ROUND_OFF = 30.0 * RESIDUAL_NOISE
+FAR_FROM_ROUND_OFF = RESIDUAL_NOISE**2
 """Such a residual after polishing deserves a factorisation."""
-
-POLISHING_ROUNDS = 10
-"""Limit of helpful rounds: near a pole Newton begins slowly."""
 
 
 def level(r: Array, terms: Array) -> float:
     """Return the largest residual relative to its round-off."""
-    return largest(r / np.maximum(terms, TINY))
+    return largest(r / np.maximum(terms, INVERTIBLE**2))
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
@@ -122,14 +113,10 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
-INCREMENT_LEAVES = 0.5
-"""Largest part of a residual left by a valid increment."""
-
-
 def holds(evaluator: Evaluator, u: Array) -> bool:
     """Return whether H vanishes where Newton's increment is small.
 
-    The residual is round-off, or noise with a valid increment.
+    The residual is round-off, or noise with a valid increment, which leaves half of it at most.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -138,7 +125,7 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
         return False
     r = evaluator.residual(u)
     z = evaluator.factor(u, np.append(np.zeros(u.size - 1), 1.0)).solve(-r, 0.0)
-    return largest(apply(z) + r) <= INCREMENT_LEAVES * largest(r)
+    return largest(apply(z) + r) <= HALVING * largest(r)
 
 
 SAME_TERMS = 0.1
@@ -208,14 +195,15 @@ def iterate(
             r, found = evaluator.residual(iteration.x), True
             done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
+        # Newton's error is the increment squared: tolerances below its root demand residuals at round-off.
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
             # Polish by the residual: an increment may be large for a small component. A residual that stays is
             # round-off of constant terms. Later rounds refactor, as the component may have changed.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
-            for fresh in range(POLISHING_ROUNDS):
+            for fresh in range(POLISHING.iterations):
                 u = iteration.x
                 terms = evaluator.round_off(u, r, least) if fresh else evaluator.look(u, r, 1, least)
-                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0, least=least)
+                beside = _Terms(evaluator, u, r, np.maximum(terms, INVERTIBLE**2), twice=fresh > 0, least=least)
                 # Residuals far from round-off need no second sample.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:

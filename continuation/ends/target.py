@@ -73,19 +73,6 @@ class Target:
     solver: PathSolver
     target: float | None
 
-    # A homotopy with `max_step` has a domain, its target mostly on the boundary: hence these two and
-    # `Landing.lands_from_afar`.
-
-    @property
-    def expects_singular_end(self) -> bool:
-        """Whether the endgame precedes landing: H' may lose rank on the boundary."""
-        return self.solver.max_step is not None
-
-    @property
-    def may_turn_back(self) -> bool:
-        """Whether the start's parameter is an end: beyond it the homotopy has no meaning."""
-        return self.solver.max_step is not None
-
     # -- before a step --
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
@@ -97,7 +84,7 @@ class Target:
             return False
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
-        failed = state.last_failed_landing == point.lam or self.expects_singular_end
+        failed = state.last_failed_landing == point.lam or self.solver.interior
         return near and failed and abs(gap) <= RETRY_ENDGAME * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
@@ -115,7 +102,8 @@ class Target:
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
-            if self.may_turn_back:
+            if self.solver.interior:
+                # Beyond the start's parameter the homotopy has no meaning.
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, EndsAt.START_PARAMETER))
         for value, kind, at in ends:
             point = arc.b if landed else crossing(self.solver, arc, value)

@@ -5,29 +5,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, generic_vector
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import MONITOR_PLACES, Function, zeros
 from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization
-from continuation.point.projection import PathSolver
-
-SEEN = 4.0
-"""Two round-off samples show the largest of many values within this factor."""
+from continuation.point.projection import NOISE_LOOKS, PathSolver
 
 DIP = 0.25
 """A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
 
-TIED = 16.0
+TIED = NOISE_LOOKS**2
 """Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
 switches this near to zero vanish together."""
-
-NEAR_ZERO = 1e-6
-"""Ends nearer to zero, relative to a switch's largest value, are corrected first."""
-
-TOUCHING = 1e-9
-"""Allowed wrong sign, relative to the largest value, at a path's limit: that is known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
 """Most zeros located on one arc: neighbouring path points have no more between them."""
@@ -42,7 +33,7 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
     noise += solver.noise_by_component(point)
     here = pieces.values(point.u)
     looks = [np.abs(pieces.values(point.u + noise * move) - here) for move in (signs, signs[::-1])]
-    return SEEN * np.maximum(*looks) + np.spacing(np.abs(here))
+    return NOISE_LOOKS * np.maximum(*looks) + np.spacing(np.abs(here))
 
 
 def first_zero(
@@ -58,7 +49,7 @@ def first_zero(
         places = np.linspace(0.0, 1.0, MONITOR_PLACES)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        near = np.abs(grid[[0, -1]]) <= NEAR_ZERO * np.abs(grid).max(axis=0)
+        near = np.abs(grid[[0, -1]]) <= SIX_DIGITS * np.abs(grid).max(axis=0)
         if not (_suspects(grid) | near[1]).any():
             return None
         # Signs of nearly vanishing switches need points accurate to round-off.
@@ -84,13 +75,15 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the straight way from a path point to u stays on its piece."""
+    """Whether the straight way from a path point to u, known to half of the digits, stays on its piece."""
     try:
         way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
     except SwitchError:
         return False
-    return not _suspects(np.where(np.abs(values) <= TOUCHING * np.abs(values).max(axis=0), 0.0, values)[:-1]).any()
+    return not _suspects(
+        np.where(np.abs(values) <= ROOT_OF_ROUND_OFF * np.abs(values).max(axis=0), 0.0, values)[:-1]
+    ).any()
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:

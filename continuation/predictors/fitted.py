@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
@@ -19,9 +19,6 @@ FITTED_ORDER = 11
 
 CHORD = Contraction(iterations=30, ratio=HALVING)
 """With the current factorisation; divergence shortens the range."""
-
-FOUND_BESIDE = 1e-8
-"""Last increment relative to the point's distance: near round-off."""
 
 NOISE_SEEN = 8.0
 """Largest of many increments, in units of a point's noise; each is a difference of two."""
@@ -104,7 +101,7 @@ def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, b
             converged = chord.run(increment, size, done)
         except EvaluationError:
             return None
-        if not (converged or chord.size <= max(FOUND_BESIDE * abs(s), NOISE_SEEN * blur)):
+        if not (converged or chord.size <= max(ROOT_OF_ROUND_OFF * abs(s), NOISE_SEEN * blur)):
             return None
         bend = bends[k] = (chord.x - point.u - s * point.tangent) / s**2
     coefficients = np.empty((count + 2, point.u.size))

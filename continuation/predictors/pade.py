@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from attrs import Factory, field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.metric import INVERTIBLE
 from continuation.tolerance import Tolerance
 
@@ -90,19 +90,21 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() * INVERTIBLE > 1.0:
         return None
     shapes = [approximant(series[: k + 1], weights) for k in range(order, max(order - DEGREES, 2), -1)]
-    reaches = [_agreement(*pair, accuracy, series_reach, weights) for pair in pairwise(shapes)]
+    reaches = [_agreement(*pair, accuracy, series_reach, safety, weights) for pair in pairwise(shapes)]
     k = int(np.argmax(reaches))
     if safety * reaches[k] <= series_reach:
         return None
     return Series(shapes[k].coefficients, safety * reaches[k], shapes[k].denominator)
 
 
-def _agreement(upper: Series, lower: Series, accuracy: float, series_reach: float, weights: Array) -> float:
+def _agreement(
+    upper: Series, lower: Series, accuracy: float, series_reach: float, safety: float, weights: Array
+) -> float:
     measure = Tolerance(relative=accuracy).measure
-    end = min(LONGEST_RANGE * series_reach, *(first_pole(curve.denominator) for curve in (upper, lower)))
+    end = min(LONGEST_RANGE * series_reach, *(safety * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0
     if end > series_reach:
-        for s in np.geomspace(series_reach, end, LOOKS, endpoint=False).tolist():
+        for s in np.geomspace(series_reach, end, LOOKS).tolist():
             if not measure(upper(s) - lower(s), weights) <= 1.0:
                 break
             agreed = s
@@ -112,4 +114,5 @@ def _agreement(upper: Series, lower: Series, accuracy: float, series_reach: floa
 def first_pole(denominator: Array) -> float:
     """Return the denominator's smallest positive real root, or inf."""
     roots = np.polynomial.polynomial.polyroots(np.trim_zeros(denominator, "b"))
-    return float(roots.real[(roots.imag == 0.0) & (roots.real > 0.0)].min(initial=np.inf))
+    real = roots.real[np.abs(roots.imag) <= ROOT_OF_ROUND_OFF * np.abs(roots)]
+    return float(real[real > 0.0].min(initial=np.inf))
