@@ -12,7 +12,8 @@ from continuation.citation.bibliography import ALLGOWER_GEORG
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
-"""Least shrink factor of a rejected step, where asymptotics do not hold yet."""
+"""Least shrink factor of a rejected step, where asymptotics do not hold yet: with `deceleration` here FAST takes
+12 % more residuals on Freudenstein and Roth's path."""
 
 
 def _of_fixed(bounds: Any) -> Bounds:

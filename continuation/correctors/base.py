@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -91,7 +90,7 @@ class Corrector(Protocol):
         ...
 
 
-POLISHING = Contraction(iterations=12)
+POLISHING = Contraction()
 """Enough halving chord steps from the tolerance to round-off, and rounds: near a pole Newton begins slowly."""
 
 RESIDUAL_NOISE = 32.0
@@ -102,15 +101,10 @@ FAR_FROM_ROUND_OFF = RESIDUAL_NOISE**2
 """Such a residual after polishing deserves a factorisation."""
 
 
-def level(r: Array, terms: Array) -> float:
-    """Return the largest residual relative to its round-off."""
-    return largest(r / np.maximum(terms, INVERTIBLE**2))
-
-
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     """Return whether a residual at u is far above round-off."""
     r = evaluator.residual(u)
-    return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
+    return largest(r / np.maximum(evaluator.round_off(u, r), INVERTIBLE**2)) > FAR_FROM_ROUND_OFF
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
@@ -130,10 +124,6 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
 
 SAME_TERMS = 0.1
 """A component that changes less keeps its round-off."""
-
-
-def _alike(u: Array, v: Array) -> bool:
-    return bool((np.abs(u - v) <= SAME_TERMS * np.abs(u)).all())
 
 
 @define(eq=False)
@@ -157,11 +147,6 @@ class _Terms:
         return found
 
 
-@lru_cache(maxsize=8)
-def _rule(iterations: int, ratio: float) -> Contraction:
-    return Contraction(iterations, ratio, noise=1.0)
-
-
 Direction = Callable[[int, Array, Array, float], Array]
 """(iteration, u, residual, contraction so far) -> increment."""
 
@@ -181,7 +166,7 @@ def iterate(
     A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
     where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
-    iteration, weights = Iteration(predicted, _rule(max_iterations, max_contraction)), point.weights
+    iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False
     rejection: Rejection | None = None
     detail, count, worst = "", 0, 0.0
@@ -216,7 +201,7 @@ def iterate(
                         break
                     r = evaluator.residual(iteration.x)
                     left = beside.level(r)
-                if left <= RESIDUAL_NOISE and _alike(u, iteration.x):
+                if left <= RESIDUAL_NOISE and (np.abs(iteration.x - u) <= SAME_TERMS * np.abs(u)).all():
                     break
         elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"

@@ -27,7 +27,7 @@ ARRIVED, LAST_PLACES = 1e-11, 8.0
 """The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
 Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
 
-ASYMPTOTE_STEPS = 4
+QUADRATIC_STEPS = 4
 """From an error of a tenth, four quadratic steps give all digits."""
 
 LARGER = 2.0
@@ -42,9 +42,6 @@ p + 1 is at most 1/2.)"""
 
 ABOUT = 0.02
 """An order so near an integer or its inverse is that: three points give two digits."""
-
-PRINTED_DIGITS = 9
-"""Digits of the parameter's way in messages."""
 
 Monitor = tuple[float, ...]
 
@@ -99,7 +96,7 @@ def _met_further(
             grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
-            for _ in range(ASYMPTOTE_STEPS):
+            for _ in range(QUADRATIC_STEPS):
                 step = linearize(evaluator, u, at.weights, at.border).solve(-evaluator.residual(u), 0.0, at.border)
                 u = u + step
             if not abs(u[-1] - limit + nearer) <= abs(nearer / DECADE) or abs(step[-1]) > abs(nearer / DECADE):
@@ -124,8 +121,8 @@ def words(monitor: Monitor) -> str:
     if model is None:
         return ""
     limit, order = model
-    digits = PRINTED_DIGITS - math.floor(math.log10(way)) if way > 0.0 else PRINTED_DIGITS
-    lam = f"{round(limit, digits) + 0.0:.{PRINTED_DIGITS}g}"
+    # Nine digits of the parameter's way.
+    lam = f"{round(limit, 9 - math.floor(math.log10(way or 1.0))) + 0.0:.9g}"
     p = order - 1.0
     if order <= 1.0 + 1.0 / HIGHEST_POLE:
         return f"An asymptote: the parameter tends to {lam} and stands still while the unknowns grow, like a logarithm."

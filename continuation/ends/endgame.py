@@ -15,7 +15,6 @@ from scipy.interpolate import KroghInterpolator
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
-from continuation.ends.landing import regular
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.metric import norm
@@ -38,10 +37,6 @@ SAMPLES_WITHOUT_GAIN = 3
 SAMPLE_TOLERANCE = 1e-3
 """Accuracy of samples, in tolerances, as the extrapolation multiplies their errors; and the largest residual at the
 limit, relative to the first sample moved to the target."""
-
-AMPLIFICATION = 0.3, 10.0
-"""The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
-weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w)."""
 
 A_DIGIT = 10.0
 """The smallest winding number within this factor of the best error wins: multiples fit as well, later. Round-off in H
@@ -129,7 +124,7 @@ class Endgame:
             at = relinearize(self.solver.evaluator, end.u, last.weights, last.anchor, last.border, signed=True)
         except EvaluationError:
             return True
-        return at.orientation == last.orientation or not regular(self.solver, at, last)
+        return at.orientation == last.orientation
 
     def _within(self, end: SingularLimit) -> bool:
         return end.length <= self.solver.tolerance.relative
@@ -193,7 +188,8 @@ def _limit(taken: Samples, target: float, weights: Array) -> SingularLimit:
         # Without the last and the first sample: one small change may be chance.
         others = [_polynomial(some, target, w)(target) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
-        error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
+        # Sums of Hermite weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w), are 3, 30, 300, ...
+        error = change + 0.3 * A_DIGIT**w * noise
         ends.append(SingularLimit(value, largest(error), w, norm(weights, error)))
     known = [end for end in ends if np.isfinite(end.length)]
     if not known:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot, generic_vector
-from continuation.contraction import HALVING, RELIABLE
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot
+from continuation.contraction import RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import TurningPoint
 from continuation.events.locate import may_vanish, on_value, zero_between, zeros
-from continuation.metric import norm, share
+from continuation.metric import share
 from continuation.point.arc import Arc, cut
-from continuation.point.linearization import NEAR_SINGULAR, Linearization
+from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
@@ -35,7 +35,7 @@ STRETCH = 1.01
 ROOM = 0.9
 """Least distance to the boundary, in ways to the predicted end."""
 
-LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
+LANDING = BorderedNewton(max_contraction=RELIABLE)
 """It must contract well: at a fixed parameter far solutions look as good."""
 
 
@@ -142,21 +142,3 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
                 return None
     found = next(zeros(solver, gap, arc, before, after), None)
     return None if found is None else on_value(solver, found, -1, value)
-
-
-def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
-    """Whether H' has full rank at a point corrected with the factorisation of `near`.
-
-    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
-    contracts if H' is near `near`'s; otherwise H' is factored.
-    """
-    evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
-    z = near.solve(r)
-    size = norm(near.weights, z)
-    apply = evaluator.differential(end.u)
-    if apply is None or norm(near.weights, near.solve(r - apply(z))) <= HALVING * size:
-        return True
-    try:
-        return norm(near.weights, evaluator.factor(end.u, near.border).solve(r, 0.0)) <= NEAR_SINGULAR * size
-    except EvaluationError:
-        return False

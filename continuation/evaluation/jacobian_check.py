@@ -19,8 +19,6 @@ from continuation.evaluation.products import Residual, difference_along, exact
 Product = Callable[[Array], Array]
 """w -> H'(u) w."""
 
-_PROBES = 3
-
 
 @frozen
 class JacobianReport:
@@ -102,7 +100,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
     given = evaluator.differential(u)
     assert given is not None
     generator = np.random.default_rng(5)
-    probes = [generator.choice((-1.0, 1.0), u.size) * generator.uniform(0.5, 1.0, u.size) for _ in range(_PROBES)]
+    probes = [generator.choice((-1.0, 1.0), u.size) * generator.uniform(0.5, 1.0, u.size) for _ in range(3)]
     source, expected = _reference(evaluator.called, u, probes[0])
     pairs = [(given(w), expected(w)) for w in probes]
     size = np.max([np.fmax(np.abs(p), np.abs(q)) for p, q in pairs], axis=0)

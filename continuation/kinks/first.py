@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, generic_vector
 from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import MONITOR_PLACES, Function, zeros
 from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization
-from continuation.point.projection import NOISE_LOOKS, PathSolver
+from continuation.point.projection import PathSolver
 
 DIP = 0.25
 """A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
@@ -55,7 +56,7 @@ def first_zero(
         # Signs of nearly vanishing switches need points accurate to round-off.
         a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
         if a is not arc.a or b is not arc.b:
-            arc = part_between(arc, a, b)
+            arc = cubic_between(a, b, arc.border)
             grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
         # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
@@ -150,14 +151,9 @@ def _zero(
     if ga <= 0.0 or position(arc, begin.u) >= position(arc, end.u):
         return None
     if begin is not arc.a or end is not arc.b:
-        arc = part_between(arc, begin, end)
+        arc = cubic_between(begin, end, arc.border)
     return next(zeros(solver, switch, arc, ga, seen(end), noise), None)
 
 
 def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
     return solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
-
-
-def part_between(arc: Arc, a: Linearization, b: Linearization) -> Arc:
-    """The part of an arc between two of its points."""
-    return cubic_between(a, b, arc.border)

@@ -29,9 +29,8 @@ OFF_AXIS = 1e-10
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
 
-SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
-"""Relative errors of real parts: SURE tells the side, DIGITS holds for the rightmost and the one nearest to the axis;
-LAST_DIGITS of the eigenvalue suffices, as events are located to 1e-10."""
+DIGITS, LAST_DIGITS = 1e-4, 1e-12
+"""Relative errors of real parts, and of eigenvalues that suffice, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
 """Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
@@ -158,11 +157,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        # The rightmost and the one nearest to the axis are stored, and cross.
-        kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
-        wanted = np.full(theta.size, SURE)
-        wanted[kept] = DIGITS
-        return bool(((off <= wanted) | (error <= LAST_DIGITS * np.abs(theta))).all())
+        return bool(((off <= DIGITS) | (error <= LAST_DIGITS * np.abs(theta))).all())
 
     while True:
         theta, more = dominant(inverse, generic_vector(n), wanted, known)

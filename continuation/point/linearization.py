@@ -29,11 +29,11 @@ at half its range."""
 NEAR_SINGULAR = 1e10
 """Growth of a solution that means a singular matrix; six digits remain."""
 
-TANGENT_REFINEMENT = Contraction(iterations=20, ratio=RELIABLE, first=MONOTONE)
+TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)
 """The first increment is of a general error, the second of what the factorisation leaves: their ratio need only be
 below one."""
 
-SOLVE_REFINEMENT = Contraction(iterations=8, ratio=RELIABLE)
+SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
 
 
 @frozen(eq=False)

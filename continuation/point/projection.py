@@ -8,10 +8,11 @@ from functools import partial
 import numpy as np
 from attrs import Factory, define, evolve, field
 
-from continuation.arrays import Array, dot, generic_vector
+from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
+from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.metric import norm
 from continuation.point.arc import Arc
 from continuation.point.linearization import Anchor, Linearization, relinearize
@@ -38,13 +39,7 @@ still show in steps of a third (900 measured)."""
 ARC_NOISE = 1e2
 """Least allowed distance, in tolerances, for noise on short arcs."""
 
-NOISE_LOOKS = 4.0
-"""Factor from one random sample to the largest of many."""
-
-CHORD_STEPS = Contraction(iterations=20)
-
-NO_CHANGE = 1e-6
-"""Last increment, in tolerances; the next is negligible."""
+CHORD_STEPS = Contraction()
 
 SMALL_INCREMENT = 1e-4
 """Increment, in tolerances, that is accepted if round-off stops the iteration; after three factorisations 1 is."""
@@ -132,7 +127,8 @@ class PathSolver:
             size = measure(step, near.weights)
             if not chord.add(step, size):
                 break
-            if size <= NO_CHANGE:
+            # The next is negligible.
+            if size <= SIX_DIGITS:
                 return chord.x
         # The stalled increment joins two points of round-off.
         last = chord.size * min(chord.ratio, 1.0)

@@ -98,6 +98,7 @@ class Taylor:
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series:
         """Return the series at the point."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
+        reach = partial(series_reach, accuracy=self.accuracy, weights=point.weights)
         coefficients = self._exact(evaluator, point, order) if evaluator.followed else None
         if coefficients is None:
             evaluator.followed = False
@@ -105,15 +106,12 @@ class Taylor:
             lately = [knot.arclength for knot in history[-2:]]
             # The metric's unit: a path's length.
             first = 0.5 * (max(lately) - min(lately)) or 1.0
-            coefficients = fitted(evaluator, point, order, first, partial(self._reach, point), self.accuracy)
-        series = Series(coefficients, self.safety * self._reach(point, coefficients))
+            coefficients = fitted(evaluator, point, order, first, reach, self.accuracy)
+        series = Series(coefficients, self.safety * reach(coefficients))
         if not self.rational:
             return series
         rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
         return series if rational is None else rational
-
-    def _reach(self, point: Linearization, coefficients: Array) -> float:
-        return series_reach(coefficients, self.accuracy, point.weights)
 
     def _exact(self, evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
         try:
