@@ -19,6 +19,13 @@ Matrix: TypeAlias = Any
 """Dense (N, N) array, scipy sparse array, `continuation.linear.Banded`, or LinearOperator."""
 
 
+ROOT_OF_ROUND_OFF = float(np.sqrt(np.finfo(float).eps))
+"""Half of the digits: what the square root leaves of round-off."""
+
+SIX_DIGITS = 1e-6
+"""Six digits make a sign, a rank, a direction or a refinement certain; the other ten may be lost."""
+
+
 def finite(entries: Array) -> bool:
     """Return whether contiguous entries are finite: four times as fast as numpy, without warnings."""
     return isfinite(dasum(entries))

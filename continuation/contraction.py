@@ -28,11 +28,11 @@ MONOTONE = 0.9
 class Contraction:
     """When an iteration gives up.
 
-    `iterations`: Limit. `ratio`: Largest ratio of increments. `first`: Largest first ratio, if different. `noise`:
-    Smaller increments are round-off, their ratios ignored.
+    `iterations`: Limit; twenty halvings are six digits. `ratio`: Largest ratio of increments. `first`: Largest first
+    ratio, if different. `noise`: Smaller increments are round-off, their ratios ignored.
     """
 
-    iterations: int
+    iterations: int = 20
     ratio: float = HALVING
     first: float | None = None
     noise: float = 0.0

@@ -108,13 +108,6 @@ def hermite_is_near_the_best(engine_predictors):
     return total(engine_predictors, "Hermite (DEFAULT)") <= 1.1 * min(total(engine_predictors, m) for m in others)
 
 
-def secant_is_worse(engine_predictors):
-    return (
-        1.1 < ratio(engine_predictors, "secant", "Hermite (DEFAULT)") < 1.3
-        and 11 / 12 <= solved(engine_predictors, "tangent") < 1.0
-    )
-
-
 def series_and_pade_pay(engine_predictors):
     series, pade = SERIES
     return (
@@ -146,37 +139,6 @@ def reuse_saves_factorizations(engine_correctors):
         and ratio(engine_correctors, name, DEFAULT_CORRECTOR, "solves") < 1.0
         for name in ("bordered Newton", "Moore-Penrose")
     )
-
-
-def broyden_saves_nothing(engine_correctors):
-    return solved(engine_correctors, "Broyden") == 1.0 and all(
-        1.0 < ratio(engine_correctors, "Broyden", DEFAULT_CORRECTOR, work) < 1.15
-        for work in ("factorizations", "solves")
-    )
-
-
-def broyden_loses_on_larger_systems(scaling_curves):
-    largest = max(row.n for row in scaling_curves.of(family="H-equation (dense)"))
-    where = {"family": "H-equation (dense)", "n": largest}
-    return total(scaling_curves, "DEFAULT, Broyden", **where) > 1.3 * total(scaling_curves, "DEFAULT", **where)
-
-
-def linear_correctors_dislike_tight_tolerances(engine_correctors):
-    rungs = sorted({row.rung for row in engine_correctors.rows})
-
-    def growth(name):
-        """Of the factorisations from the loosest tolerance to the tightest, over problems where every run arrived."""
-        whole = [
-            p
-            for p in engine_correctors.problems
-            if not any(row.failed for row in engine_correctors.of(problem=p, method=name))
-        ]
-        first, last = (
-            sum(total(engine_correctors, name, problem=p, rung=rung) for p in whole) for rung in (rungs[-1], rungs[0])
-        )
-        return last / first
-
-    return all(growth(name) > 1.1 for name in ("Broyden", "chord"))
 
 
 def default_controller_is_on_the_front(engine_controllers):

@@ -34,16 +34,6 @@ COCHELIN = """@article{Cochelin1994,
   year = {1994},
 }"""
 
-DEN_HEIJER_RHEINBOLDT = """@article{denHeijerRheinboldt1981,
-  author = {den Heijer, C. and Rheinboldt, Werner C.},
-  title = {On Steplength Algorithms for a Class of Continuation Methods},
-  journal = {SIAM Journal on Numerical Analysis},
-  volume = {18},
-  number = {5},
-  pages = {925--948},
-  year = {1981},
-}"""
-
 DEUFLHARD = """@book{Deuflhard2004,
   author = {Deuflhard, Peter},
   title = {Newton Methods for Nonlinear Problems: Affine Invariance and Adaptive Algorithms},

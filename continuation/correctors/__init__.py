@@ -1,7 +1,6 @@
 """Correctors: from a predicted point back to the path."""
 
 from continuation.correctors.base import Correction, Corrector
-from continuation.correctors.broyden import Broyden
-from continuation.correctors.newton import BorderedNewton, Chord, MoorePenrose, NaturalParameter
+from continuation.correctors.newton import BorderedNewton, MoorePenrose, NaturalParameter
 
-__all__ = ["BorderedNewton", "Broyden", "Chord", "Correction", "Corrector", "MoorePenrose", "NaturalParameter"]
+__all__ = ["BorderedNewton", "Correction", "Corrector", "MoorePenrose", "NaturalParameter"]

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 from attrs import define, frozen
 
-from continuation.arrays import Array, largest
-from continuation.contraction import Contraction, Iteration
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, largest
+from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.metric import norm
+from continuation.metric import INVERTIBLE, norm
 from continuation.point.linearization import Anchor, Linearization
 from continuation.rejection import Rejected, Rejection
 from continuation.tolerance import LEAST_TOLERANCE, Tolerance
@@ -91,45 +90,27 @@ class Corrector(Protocol):
         ...
 
 
-ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
-"""Tolerances below demand residuals at round-off: Newton's error is the increment squared."""
-
-TINY = 1e-300
-"""Replaces zero round-off."""
-
-POLISHING = Contraction(iterations=12)
-"""Enough halving chord steps from the tolerance to round-off."""
+POLISHING = Contraction()
+"""Enough halving chord steps from the tolerance to round-off, and rounds: near a pole Newton begins slowly."""
 
 RESIDUAL_NOISE = 32.0
 """Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
 
 
-FAR_FROM_ROUND_OFF = 30.0 * RESIDUAL_NOISE
+FAR_FROM_ROUND_OFF = RESIDUAL_NOISE**2
 """Such a residual after polishing deserves a factorisation."""
-
-POLISHING_ROUNDS = 10
-"""Limit of helpful rounds: near a pole Newton begins slowly."""
-
-
-def level(r: Array, terms: Array) -> float:
-    """Return the largest residual relative to its round-off."""
-    return largest(r / np.maximum(terms, TINY))
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     """Return whether a residual at u is far above round-off."""
     r = evaluator.residual(u)
-    return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
-
-
-INCREMENT_LEAVES = 0.5
-"""Largest part of a residual left by a valid increment."""
+    return largest(r / np.maximum(evaluator.round_off(u, r), INVERTIBLE**2)) > FAR_FROM_ROUND_OFF
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
     """Return whether H vanishes where Newton's increment is small.
 
-    The residual is round-off, or noise with a valid increment.
+    The residual is round-off, or noise with a valid increment, which leaves half of it at most.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -138,15 +119,11 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
         return False
     r = evaluator.residual(u)
     z = evaluator.factor(u, np.append(np.zeros(u.size - 1), 1.0)).solve(-r, 0.0)
-    return largest(apply(z) + r) <= INCREMENT_LEAVES * largest(r)
+    return largest(apply(z) + r) <= HALVING * largest(r)
 
 
 SAME_TERMS = 0.1
 """A component that changes less keeps its round-off."""
-
-
-def _alike(u: Array, v: Array) -> bool:
-    return bool((np.abs(u - v) <= SAME_TERMS * np.abs(u)).all())
 
 
 @define(eq=False)
@@ -170,11 +147,6 @@ class _Terms:
         return found
 
 
-@lru_cache(maxsize=8)
-def _rule(iterations: int, ratio: float) -> Contraction:
-    return Contraction(iterations, ratio, noise=1.0)
-
-
 Direction = Callable[[int, Array, Array, float], Array]
 """(iteration, u, residual, contraction so far) -> increment."""
 
@@ -194,7 +166,7 @@ def iterate(
     A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
     where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
-    iteration, weights = Iteration(predicted, _rule(max_iterations, max_contraction)), point.weights
+    iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False
     rejection: Rejection | None = None
     detail, count, worst = "", 0, 0.0
@@ -208,14 +180,15 @@ def iterate(
             r, found = evaluator.residual(iteration.x), True
             done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
+        # Newton's error is the increment squared: tolerances below its root demand residuals at round-off.
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
             # Polish by the residual: an increment may be large for a small component. A residual that stays is
             # round-off of constant terms. Later rounds refactor, as the component may have changed.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
-            for fresh in range(POLISHING_ROUNDS):
+            for fresh in range(POLISHING.iterations):
                 u = iteration.x
                 terms = evaluator.round_off(u, r, least) if fresh else evaluator.look(u, r, 1, least)
-                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0, least=least)
+                beside = _Terms(evaluator, u, r, np.maximum(terms, INVERTIBLE**2), twice=fresh > 0, least=least)
                 # Residuals far from round-off need no second sample.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:
@@ -228,7 +201,7 @@ def iterate(
                         break
                     r = evaluator.residual(iteration.x)
                     left = beside.level(r)
-                if left <= RESIDUAL_NOISE and _alike(u, iteration.x):
+                if left <= RESIDUAL_NOISE and (np.abs(iteration.x - u) <= SAME_TERMS * np.abs(u)).all():
                     break
         elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -10,11 +11,33 @@ from attrs import field, frozen
 from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
 from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER, KELLEY
+from continuation.contraction import MONOTONE
 from continuation.correctors.base import Correction, iterate
-from continuation.correctors.broyden import updated
 from continuation.evaluation.evaluator import Evaluator
+from continuation.metric import inner
 from continuation.point.linearization import Anchor, Linearization, linearize
 from continuation.tolerance import Tolerance
+
+
+def updated(increments: list[Array], z: Array, weights: Array) -> Array:
+    """Apply Broyden's good update to a chord increment z; append it to `increments`.
+
+    All increments since the factorisation define the update (Kelley, Iterative Methods for Linear and Nonlinear
+    Equations, Section 7.3).
+    """
+    for before, after in pairwise(increments):
+        z = z + (inner(weights, before, z) / inner(weights, before, before)) * after
+    if increments:
+        last = increments[-1]
+        left = 1.0 - inner(weights, last, z) / inner(weights, last, last)
+        if left < 1.0 - MONOTONE:
+            # Round-off contains nothing about the matrix.
+            increments.clear()
+        else:
+            z = z / left
+    if inner(weights, z, z) > 0.0:
+        increments.append(z)
+    return z
 
 
 @frozen
@@ -62,27 +85,6 @@ class BorderedNewton:
         return iterate(
             evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction, offered
         )
-
-
-@frozen
-class Chord:
-    """Bordered iteration with the last point's factorisation.
-
-    Linear, at a ratio proportional to the step: short steps, one factorisation each.
-    """
-
-    max_iterations: int = field(default=12, validator=integer(1))
-    max_contraction: float = field(default=0.4, validator=POSITIVE)
-
-    def correct(
-        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
-    ) -> Correction:
-        """See `Corrector.correct`."""
-
-        def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
-            return point.solve(-r, 0.0, border)
-
-        return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)
 
 
 @frozen

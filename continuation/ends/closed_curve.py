@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+from continuation.arrays import SIX_DIGITS
 from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
@@ -13,19 +16,13 @@ SAME_POINT = 1e3
 """Distance, in tolerances, of equal points: their planes and metrics differ, and condition numbers of a thousand are
 ordinary."""
 
-SAME_TANGENT = 1e-3
-"""Distance of equal unit tangents."""
-
-NEAR_START = 0.5
-"""Distance from the start, in arc lengths, within which an arc is examined; segments err far less."""
-
 
 def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
     """Whether a path that began in a kink leaves it again by its first branch."""
     if solver.tolerance.measure(point.u - origin.u, point.weights) > SAME_POINT:
         return False
     v = origin.tangent / norm(point.weights, origin.tangent)
-    return norm(point.weights, point.tangent - v) <= SAME_TANGENT
+    return norm(point.weights, point.tangent - v) <= math.sqrt(SIX_DIGITS)
 
 
 def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
@@ -42,7 +39,8 @@ def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
         return False
     guess = arc.segment.at(behind / (behind - ahead))
     step = norm(weights, arc.b.u - arc.a.u)
-    if norm(weights, guess - origin.u) > NEAR_START * step:
+    # Segments err by far less than half of their length.
+    if norm(weights, guess - origin.u) > 0.5 * step:
         return False
     border = weights * v
     guess = guess - v * inner(weights, v, guess - origin.u)

@@ -20,19 +20,14 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
-"""Least growth of the slope between marks."""
-
-MET = 0.1
-"""Allowed error of a prediction, relative to the predicted change of the parameter."""
-
-MET_OVER = 1e-2
-"""The model is tried further once the distance to the limit fell by this factor with all predictions met."""
+"""Least growth of the slope between marks. A prediction may err by the inverse part of the change, and the model is
+tried further once the distance to the limit fell by two decades with all predictions met."""
 
 ARRIVED, LAST_PLACES = 1e-11, 8.0
 """The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
 Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
 
-ASYMPTOTE_STEPS = 5
+QUADRATIC_STEPS = 4
 """From an error of a tenth, four quadratic steps give all digits."""
 
 LARGER = 2.0
@@ -41,17 +36,12 @@ LARGER = 2.0
 HORIZON = 1e100
 """Largest number on a path: norms square it."""
 
-ASYMPTOTE_ORDERS = 0.9, 13.0
-"""Range of p + 1: at folds and cusps it is at most 1/2; no pole has an order above 12."""
-
-LOGARITHM = 13.0 / 12.0
-"""The p + 1 of order 1/12; smaller means a logarithm or an exponential decay."""
+HIGHEST_POLE = 12.0
+"""No pole has a higher order p, nor its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
+p + 1 is at most 1/2.)"""
 
 ABOUT = 0.02
 """An order so near an integer or its inverse is that: three points give two digits."""
-
-PRINTED_DIGITS = 9
-"""Digits of the parameter's way in messages."""
 
 Monitor = tuple[float, ...]
 
@@ -78,13 +68,13 @@ def divergence(
     if model is not None:
         limit, order = model
         ahead = (limit - marks[-2]) * (1.0 - (marks[-1] / slope) ** (1.0 / order))
-        met = abs(lam - marks[-2] - ahead) <= MET * abs(ahead) + LAST_PLACES * float(np.spacing(abs(lam)))
+        met = abs(lam - marks[-2] - ahead) <= abs(ahead) / DECADE + LAST_PLACES * float(np.spacing(abs(lam)))
         began = (began or abs(limit - marks[-2])) if met else 0.0
     marks = [*marks, lam, slope][-6:]
     known, model = (way, began, *marks), _fitted(marks) or model
-    if not met or model is None or abs(model[0] - lam) > MET_OVER * began:
+    if not met or model is None or abs(model[0] - lam) > began / DECADE**2:
         return known, ""
-    bounded = model[1] > LOGARITHM and largest(point.y) < LARGER * largest(origin.u[:-1])
+    bounded = model[1] > 1.0 + 1.0 / HIGHEST_POLE and largest(point.y) < LARGER * largest(origin.u[:-1])
     return known, words(known) if not bounded and _met_further(evaluator, point, *model, way, stops) else ""
 
 
@@ -106,10 +96,10 @@ def _met_further(
             grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
-            for _ in range(ASYMPTOTE_STEPS):
+            for _ in range(QUADRATIC_STEPS):
                 step = linearize(evaluator, u, at.weights, at.border).solve(-evaluator.residual(u), 0.0, at.border)
                 u = u + step
-            if not abs(u[-1] - limit + nearer) <= MET * abs(nearer) or abs(step[-1]) > MET * abs(nearer):
+            if not abs(u[-1] - limit + nearer) <= abs(nearer / DECADE) or abs(step[-1]) > abs(nearer / DECADE):
                 return False
             at = linearize(evaluator, u, at.weights, at.border)
     except (EvaluationError, ZeroDivisionError, OverflowError):
@@ -131,10 +121,10 @@ def words(monitor: Monitor) -> str:
     if model is None:
         return ""
     limit, order = model
-    digits = PRINTED_DIGITS - math.floor(math.log10(way)) if way > 0.0 else PRINTED_DIGITS
-    lam = f"{round(limit, digits) + 0.0:.{PRINTED_DIGITS}g}"
+    # Nine digits of the parameter's way.
+    lam = f"{round(limit, 9 - math.floor(math.log10(way or 1.0))) + 0.0:.9g}"
     p = order - 1.0
-    if order <= LOGARITHM:
+    if order <= 1.0 + 1.0 / HIGHEST_POLE:
         return f"An asymptote: the parameter tends to {lam} and stands still while the unknowns grow, like a logarithm."
     whole = round(p) if p >= 1.0 else 1.0 / round(1.0 / p)
     return f"A pole: the unknowns grow like |lam - {lam}|^-{whole if abs(p / whole - 1.0) <= ABOUT else p:.2g}."
@@ -154,8 +144,9 @@ def _fitted(marks: list[float]) -> tuple[float, float] | None:
         left, last = (a / b) ** (1.0 / order), (a / c) ** (1.0 / order)
         return float((left - last) / (1.0 - left) - ratio)
 
-    if not missed(ASYMPTOTE_ORDERS[0]) < 0.0 < missed(ASYMPTOTE_ORDERS[1]):
+    orders = 1.0 - 1.0 / HIGHEST_POLE, 1.0 + HIGHEST_POLE
+    if not missed(orders[0]) < 0.0 < missed(orders[1]):
         return None
-    order = float(brentq(missed, *ASYMPTOTE_ORDERS))
+    order = float(brentq(missed, *orders))
     gone = (a / c) ** (1.0 / order)
     return first + (third - first) / (1.0 - gone), order

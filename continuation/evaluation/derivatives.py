@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -13,29 +12,18 @@ from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.evaluation.pattern import Pattern, Places, found, generic, pattern_of
 from continuation.evaluation.products import (
-    BY_COMPLEX_STEP,
-    BY_JETS,
+    AGREEMENT,
     DIFFERENCE_STEPS,
     ByDifferences,
     Products,
     Residual,
     by_differences,
-    difference_along,
+    exact,
     sizes,
 )
-from continuation.linear import Banded
-
-ULPS = 8.0
-"""Rounding error of a difference, in ulps."""
-
-AGREEMENT = 1e-3
-"""Largest difference between correct derivatives and differences, relative to their terms."""
 
 SPARSE_FROM = 64
-"""Number of unknowns from which sparse factorisations win."""
-
-LOOKS_AT_ONCE = 64
-"""Directions at once; more cost only memory."""
+"""Number of unknowns from which sparse factorisations win. So many directions are tried at once; more cost memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
@@ -51,13 +39,6 @@ def check_derivative(answer: Any, n: int) -> None:
         kind = getattr(part, "dtype", None)
         if kind is not None and np.dtype(kind).kind not in "fiub":
             raise TypeError(f"jacobian: expected {wanted}, found some of the type {kind}")
-
-
-def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
-    """Effect of rounding u + h w on a difference."""
-    with np.errstate(all="ignore"):
-        here, ahead, behind = (np.array(residual(at[:-1], float(at[-1]))) for at in (u, u + h * w, u - h * w))
-    return np.asarray(ULPS * np.finfo(float).eps * (np.abs(ahead - here) + np.abs(behind - here)) / h**2, dtype=float)
 
 
 @define(eq=False)
@@ -132,9 +113,9 @@ class Derivative:
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
-            for first in range(0, count, LOOKS_AT_ONCE):
-                some = np.flatnonzero((labels >= first) & (labels < first + LOOKS_AT_ONCE))
-                directions = np.zeros((min(LOOKS_AT_ONCE, count - first), u.size))
+            for first in range(0, count, SPARSE_FROM):
+                some = np.flatnonzero((labels >= first) & (labels < first + SPARSE_FROM))
+                directions = np.zeros((min(SPARSE_FROM, count - first), u.size))
                 directions[labels[some] - first, some] = generic(u.size)[some]
                 rows.append(self.products(self.residual, u, directions) != 0.0)
             return np.concatenate(rows, axis=1)
@@ -200,37 +181,17 @@ def from_residual(
 ) -> Derivative:
     """Return the best derivative: jets, else complex step, else central differences.
 
-    The first two must agree with a difference: ``abs`` is wrong on complex numbers.
-
     `start` of shape (N,). `pattern`: Searched if None and N is large. `notes`: Receives the method. `products`: The
     homotopy's own.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)
-    w = sizes(u) * generic_vector(u.size)
     said: set[str] = set() if notes is None else notes
     if pattern is None and y.size >= SPARSE_FROM:
         pattern = _looked_for(residual, u)
+    products = products or exact(residual, u, sizes(u) * generic_vector(u.size))
     if products is not None:
         return _said(Derivative(residual, products, pattern, said))
-    reference: Array | None = None
-    for products in (BY_JETS, BY_COMPLEX_STEP):
-        derivative = Derivative(residual, products, pattern, said)
-        try:
-            with warnings.catch_warnings(), np.errstate(all="ignore"):
-                warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                H_y, H_lam = derivative(y, lam)
-        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
-            continue
-        if H_y.shape != (y.size, y.size):
-            continue
-        if reference is None:
-            reference, step = difference_along(residual, u, w)
-            rounding = _rounding(residual, u, w, step)
-        size = AGREEMENT * (_absolute(H_y) @ np.abs(w[:-1]) + np.abs(H_lam * w[-1]))
-        allowed = np.maximum(size, AGREEMENT * float(size.max())) + rounding
-        if (np.abs(H_y @ w[:-1] + H_lam * w[-1] - reference) <= allowed).all():
-            return _said(derivative)
     if pattern is None:
         return _said(Derivative(residual, by_differences(residual, u), None, said))
     groups = np.append(pattern.groups, pattern.count)
@@ -242,7 +203,3 @@ def _said(derivative: Derivative) -> Derivative:
     groups = "" if pattern is None else f" in {pattern.count} groups of columns"
     derivative.notes.add(f"H' by {derivative.products.name}{groups}")
     return derivative
-
-
-def _absolute(matrix: Matrix) -> Matrix:
-    return abs(matrix.tosparse() if isinstance(matrix, Banded) else matrix)

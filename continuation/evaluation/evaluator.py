@@ -17,7 +17,7 @@ from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual, given_pattern
 from continuation.evaluation.errors import EvaluationError, NotFiniteError, SingularPointError, unevaluated
-from continuation.evaluation.noise import noise_along
+from continuation.evaluation.noise import LOOK, noise_along
 from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
 from continuation.evaluation.products import given
@@ -37,14 +37,6 @@ POINT_ULPS = 4.0
 
 DERIVATIVES_KEPT = 4
 """Derivatives kept for step ends and the search for crossings."""
-
-LOOK = 64.0
-"""Perturbation of the round-off estimate, in ulps; signs and sizes vary, as common values cancel in differences."""
-
-NOT_OF_POINT = 3.0
-"""Noise above this multiple of the point's round-off has another source; `Evaluator.look` sees
-POINT_ULPS / LOOK of it.
-"""
 
 
 @frozen(eq=False, slots=False)
@@ -225,7 +217,8 @@ class Evaluator:
             noise = noise_along(self.residual, u, w, residual)
         except EvaluationError:
             return terms
-        self.noisy(np.where(noise > NOT_OF_POINT * terms, noise, 0.0))
+        # More than the point's round-off has another source; `look` sees POINT_ULPS / LOOK of it.
+        self.noisy(np.where(noise > POINT_ULPS * terms, noise, 0.0))
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,18 +10,14 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arguments.checks import real_vector
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.evaluation.products import BY_COMPLEX_STEP, BY_JETS, Products, Residual, difference_along
+from continuation.evaluation.products import Residual, difference_along, exact
 
 Product = Callable[[Array], Array]
 """w -> H'(u) w."""
-
-_PROBES = 3
-_RELATIVE = 1e-6
-"""Largest error relative to the row; differences have about ten digits."""
 
 
 @frozen
@@ -106,12 +100,12 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
     given = evaluator.differential(u)
     assert given is not None
     generator = np.random.default_rng(5)
-    probes = [generator.choice((-1.0, 1.0), u.size) * generator.uniform(0.5, 1.0, u.size) for _ in range(_PROBES)]
-    source, expected = _reference(evaluator, u, probes[0])
+    probes = [generator.choice((-1.0, 1.0), u.size) * generator.uniform(0.5, 1.0, u.size) for _ in range(3)]
+    source, expected = _reference(evaluator.called, u, probes[0])
     pairs = [(given(w), expected(w)) for w in probes]
     size = np.max([np.fmax(np.abs(p), np.abs(q)) for p, q in pairs], axis=0)
-    # A zero row is measured by the others.
-    allowed = _RELATIVE * size + 1e-10 * float(size.max())
+    # Differences have about ten digits. A zero row is measured by the others.
+    allowed = SIX_DIGITS * size + 1e-10 * float(size.max())
     for w, (p, q) in zip(probes, pairs):
         excess = np.where(np.isfinite(p), np.abs(p - q), np.inf) / np.maximum(allowed, np.finfo(float).tiny)
         if excess.max() > 1.0:
@@ -120,28 +114,12 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
     return JacobianReport(True, sentence, source)
 
 
-def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Product]:
+def _reference(residual: Residual, u: Array, probe: Array) -> tuple[str, Product]:
     """The best product that agrees with differences."""
-
-    def by_differences(w: Array) -> Array:
-        return difference_along(evaluator.called, u, w)[0]
-
-    rough = by_differences(probe)
-    for products in (BY_JETS, BY_COMPLEX_STEP):
-        product = partial(_product, products, evaluator.called, u)
-        try:
-            with warnings.catch_warnings(), np.errstate(all="ignore"):
-                warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                fine = product(probe)
-        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
-            continue
-        if fine.shape == rough.shape and np.allclose(fine, rough, rtol=1e-4, atol=1e-4 * float(np.abs(rough).max())):
-            return products.name, product
-    return "differences", by_differences
-
-
-def _product(products: Products, residual: Residual, u: Array, w: Array) -> Array:
-    return products(residual, u, w[None])[:, 0]
+    products = exact(residual, u, probe)
+    if products is None:
+        return "differences", lambda w: difference_along(residual, u, w)[0]
+    return products.name, lambda w: products(residual, u, w[None])[:, 0]
 
 
 def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:

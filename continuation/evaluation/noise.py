@@ -9,8 +9,11 @@ import numpy as np
 
 from continuation.arrays import Array
 
-DISTINCT_ULPS = 64.0
-"""Least distance of samples, in ulps; rounding is then small."""
+NOISE_LOOKS = 4.0
+"""Factor from one random sample to the largest of many."""
+
+LOOK = 64.0
+"""Least distance of samples, in ulps, whose own rounding is then small."""
 
 NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
 """Sample parameters. On even places rounding hid the noise of 17 of 150 rings that are zero by symmetry."""
@@ -48,7 +51,7 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
     least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
     for k in range(NOISE_TRIES):
-        h = max(NOISE_REACH * NOISE_FINER**k, DISTINCT_ULPS * near)
+        h = max(NOISE_REACH * NOISE_FINER**k, LOOK * near)
         samples = np.stack([here, *(residual(u + t * h * w) for t in NOISE_PLACES[1:])])
         found = np.abs(_FOURTH @ samples).max(axis=0)
         # Equal samples are no evidence.

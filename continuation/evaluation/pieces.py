@@ -8,25 +8,14 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arguments.checks import complain
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, largest
+from continuation.evaluation.products import USUAL_STEP, Exact, exact
 
 Signs = tuple[int, ...]
 """Signs -1 or +1 of all switches: a piece's name."""
 
 REMEMBERED = 64
 """Pieces kept: kinks need the same few again."""
-
-DIFFERENCE_STEP = 6e-6
-"""Relative step of central differences: the cube root of round-off."""
-
-DERIVATIVES_AGREE = 1e-4
-"""Largest relative difference between valid jets and a difference."""
-
-BORDER_DISTANCE = 1e-9
-"""A start this near to a border, relative to its direction, is on it."""
-
-SWITCH_STILL = 1e-9
-"""Smaller switch derivatives, relative to the largest, are round-off."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
 """Capabilities that the map takes from its pieces."""
@@ -42,7 +31,7 @@ class Pieces:
 
     homotopy: Any
     _made: dict[Signs, Any] = field(factory=dict, init=False)
-    _jets: list[bool] = field(factory=list, init=False)
+    _exact: list[Exact | None] = field(factory=list, init=False)
 
     def values(self, u: Array) -> Array:
         """Return the switches at u, shape (m,).
@@ -82,43 +71,28 @@ class Pieces:
 
     def along(self, u: Array, v: Array) -> Array:
         """Return derivatives of the switches at u along v, shape (m,): by jets, else differences, as first decided."""
-        if not self._jets:
-            try:
-                with np.errstate(all="ignore"):
-                    one, other = self._by_jets(u, v), self._by_differences(u, v)
-                known = one.shape == other.shape
-                self._jets.append(
-                    known and bool((np.abs(one - other) <= DERIVATIVES_AGREE * np.abs(other).max(initial=0.0)).all())
-                )
-            except (TypeError, ArithmeticError, ValueError, AttributeError):
-                self._jets.append(False)
-        return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
+        switches = self.homotopy.switches
+        if not self._exact:
+            self._exact.append(exact(switches, u, v))
+        if (products := self._exact[0]) is not None:
+            return products(switches, u, v[None])[:, 0]
+        h = USUAL_STEP * (largest(u) or 1.0) / (largest(v) or 1.0)
+        change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
+        return change
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
         """Return the lower median distance to borders ahead along v.
 
-        Without one: the size of the given direction, else of the point, else 1.
+        A start this near to a border, half of the digits relative to its direction, is on it, and smaller derivatives
+        are round-off. Without a border: the size of the given direction, else of the point, else 1.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
-        beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))
-        ahead = (s > beside) & (slope > SWITCH_STILL * slope.max(initial=0.0))
+        beside = 0.0 if direction is None else ROOT_OF_ROUND_OFF * np.abs(self.along(u, direction))
+        ahead = (s > beside) & (slope > ROOT_OF_ROUND_OFF * slope.max(initial=0.0))
         if ahead.any():
             return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
         size = float(np.abs(u if direction is None else direction).max())
         return (size or 1.0) / (float(np.abs(v).max()) or 1.0)
-
-    def _by_jets(self, u: Array, v: Array) -> Array:
-        from continuation import jets
-
-        switches = self.homotopy.switches
-        found: Array = jets.directional_derivatives(lambda at: switches(at[:-1], at[-1]), u, v, 1)[1]
-        return found
-
-    def _by_differences(self, u: Array, v: Array) -> Array:
-        size = float(np.abs(v).max())
-        h = DIFFERENCE_STEP * (float(np.abs(u).max()) or 1.0) / size if size > 0.0 else 1.0
-        change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
-        return change
 
 
 class WholeMap:

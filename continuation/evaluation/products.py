@@ -2,69 +2,38 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 from continuation.evaluation.pattern import generic
 
 Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
 
-
-class Products(Protocol):
-    """A way to compute H' from the residual."""
-
-    @property
-    def name(self) -> str:
-        """Name for messages."""
-        ...
-
-    @property
-    def agreement(self) -> float:
-        """Tolerance of the check, relative to the terms."""
-        ...
-
-    @property
-    def references(self) -> tuple[str, ...]:
-        """BibTeX entries."""
-        ...
-
-    @property
-    def even(self) -> Array | float:
-        """Factors of `scale` that move all components alike, relative to size."""
-        ...
-
-    def scale(self, u: Array) -> Array | None:
-        """Return units of directions at u, shape (N + 1,); None for 1."""
-        ...
-
-    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """Return H'(u) times directions in units of `scale`: (k, N + 1) gives (N, k)."""
-        ...
-
-    def whole(self, residual: Residual, u: Array) -> Array:
-        """Return H'(u), shape (N, N + 1)."""
-        ...
+AGREEMENT = 1e-3
+"""Largest difference between correct derivatives and differences, relative to their terms."""
 
 
 @frozen
 class Exact:
     """Products to round-off.
 
-    `function`: Maps residual, u and directions (k, N + 1) to (N, k). `entire`: All of H', if faster.
+    `function`: Maps residual, u and directions (k, N + 1) to (N, k). `entire`: All of H', if faster. `agreement`:
+    Tolerance of a check, relative to the terms. `scale`, `even`: See `ByDifferences`.
     """
 
     name: str
     function: Callable[[Residual, Array, Array], Array]
     references: tuple[str, ...] = ()
     entire: Callable[[Residual, Array], Array] | None = None
-    agreement: ClassVar[float] = float(np.sqrt(np.finfo(float).eps))
+    agreement: ClassVar[float] = ROOT_OF_ROUND_OFF
     even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> None:
@@ -117,14 +86,11 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
     return Exact("differential", function)
 
 
-DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
-"""Steps relative to a component's size (or 1): eps^(1/3), usually best, and others, since origin and units are
-arbitrary.
-"""
+USUAL_STEP = float(np.cbrt(np.finfo(float).eps))
+"""Step relative to a component's size (or 1) that is usually best, and the accuracy of a difference squared."""
 
-
-CHANCE = float(np.finfo(float).eps) ** (2.0 / 3.0)
-"""Best accuracy of a difference: closer agreement is chance."""
+DIFFERENCE_STEPS = USUAL_STEP * 100.0 ** np.arange(2, -5, -1)
+"""This and others, since origin and units are arbitrary."""
 
 
 def sizes(u: Array) -> Array:
@@ -152,13 +118,14 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
         # In single precision short steps show no change: such zeros do not agree.
         seen = (np.array(found) != 0.0).any(axis=0)
+        # Closer agreement than the best accuracy of a difference is chance.
         changes = []
         for one, other in pairwise(found):
             size = np.maximum(np.abs(one) + np.abs(other), rows)
             change = np.where(
                 (one == 0.0) & (other == 0.0) & seen, 1.0, np.abs(one - other) / np.where(size > 0.0, size, 1.0)
             )
-            changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), CHANCE))
+            changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), USUAL_STEP**2))
     return found, np.array(changes)
 
 
@@ -190,7 +157,7 @@ class ByDifferences:
     steps: Array
     usual: Array
     name: str = "differences"
-    agreement: float = 1e-3
+    agreement: float = AGREEMENT
     references: tuple[str, ...] = ()
 
     def over(self, noise: Array) -> ByDifferences:
@@ -201,16 +168,16 @@ class ByDifferences:
 
     @property
     def even(self) -> Array:
-        """Steps differ by orders of magnitude."""
+        """Factors of `scale` that move all components alike, relative to size: steps differ by orders of magnitude."""
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
-        """Return the steps at u, rounded."""
+        """Return the steps at u, rounded: the units of directions, shape (N + 1,)."""
         reach = self.steps * np.maximum(sizes(self.u0), np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """Evaluate two residuals a direction."""
+        """Return H'(u) times directions in units of `scale`, (k, N + 1) to (N, k), by two residuals each."""
         found = []
         for w in directions * self.scale(u):
             ahead, behind = u + w, u - w
@@ -244,3 +211,27 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
         seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
         steps[own] = DIFFERENCE_STEPS[_best(seen)]
     return ByDifferences(u0, steps, usual)
+
+
+Products: TypeAlias = Exact | ByDifferences
+"""A way to compute H' from the residual."""
+
+
+def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
+    """Return jets, else complex steps, whose product with w agrees with a difference, or None.
+
+    They must agree: ``abs`` is wrong on complex numbers.
+    """
+    expected = difference_along(residual, u, w)[0]
+    for products in (BY_JETS, BY_COMPLEX_STEP):
+        try:
+            with warnings.catch_warnings(), np.errstate(all="ignore"):
+                warnings.simplefilter("error", np.exceptions.ComplexWarning)
+                found = products(residual, u, w[None])[:, 0]
+        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
+            continue
+        if found.shape == expected.shape:
+            size = AGREEMENT * (np.abs(found) + np.abs(expected))
+            if (np.abs(found - expected) <= np.maximum(size, size.max(initial=0.0))).all():
+                return products
+    return None

@@ -13,10 +13,9 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.kernels import Bordered, kernels
 from continuation.events.singularity import ScaledDerivative, row_sizes
+from continuation.linear.nullspace import Bordered, kernels
 from continuation.metric import norm
 from continuation.point.linearization import linearize
 
@@ -188,10 +187,10 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
             raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
         evaluator.counts.factorizations += 2
-        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Bordered(matrix, left, kernel.T))
+        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
         found = _on_sphere(reduced, step)
         branches = [_branch(reduced, a, step, weights) for a in found]
-    except (EvaluationError, np.linalg.LinAlgError, RuntimeError) as error:
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise Unresolved(f"the branching equations could not be solved there: {error}") from error
     branches.sort(key=lambda b: -abs(float(np.dot(weights * heading, b.ray))))
     branches[:2] = sorted(branches[:2], key=lambda b: float(np.dot(weights * heading, b.ray)))

@@ -13,9 +13,9 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.kernels import RANK, Bordered, kernels
 from continuation.linear import Banded, Symmetric
 from continuation.linear.entries import extended
+from continuation.linear.nullspace import RANK, Bordered, kernels
 from continuation.metric import inner, norm
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
@@ -124,7 +124,7 @@ def branch_point_near(
         evaluator.counts.factorizations += 1
         matrix = scaled.at(u)
         if here is None:
-            return Bordered(matrix, generic[:n, None], generic[n:].reshape(2, n + 1))
+            return Bordered.of(matrix, generic[:n, None], generic[n:].reshape(2, n + 1))
         return here.refreshed(matrix)
 
     def increment() -> Array:
@@ -160,7 +160,7 @@ def branch_point_near(
             # After an early halt H' is known only to the last increment.
             halted = newton.size > HALTED[0]
             accuracy = max(RANK, HALTED[1] * newton.size)
-            if (here.weak or halted) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
+            if (here.weak or halted) and kernels(scaled.at(u), accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
             if halted:
@@ -172,7 +172,7 @@ def branch_point_near(
                 u = newton.x[:-1]
                 here = at(u)
             found = directions(scaled, here, u, heading / extent)
-    except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
+    except (ArithmeticError, np.linalg.LinAlgError):
         return None
     if found is None:
         return None

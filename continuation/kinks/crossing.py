@@ -5,16 +5,13 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs
-from continuation.kinks.rays import SAME_RAY, Corner, Ray, UnresolvedError, rays_at
+from continuation.kinks.rays import Corner, Ray, UnresolvedError, rays_at
 from continuation.metric import inner, norm, share
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-
-PIECES_AGREE = 1e-6
-"""Largest correction, in the metric, of a kink on the next piece."""
 
 STILL = 1e-12
 """Smaller parameter shares of a tangent are round-off: no turning kink."""
@@ -65,7 +62,7 @@ def cross(
         here = linearize(solver.evaluator, point.u, point.weights, point.border)
         corner = Corner(pieces, solver.evaluator, here, signs, beta)
         back = -here.tangent[None]
-        found = [ray for ray in rays_at(corner, come=True) if norm(here.weights, ray.v - back[0]) > SAME_RAY]
+        found = [ray for ray in rays_at(corner, come=True) if norm(here.weights, ray.v - back[0]) > SIX_DIGITS]
         leaving = [_linearized(corner, ray) for ray in found]
     except UnresolvedError as error:
         return Crossing(point, beta, back, reason=str(error))
@@ -87,8 +84,8 @@ def _linearized(corner: Corner, ray: Ray) -> Linearization:
     point, evaluator = corner.point, corner.on(ray.signs)
     there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
     off = norm(point.weights, there.solve(-evaluator.residual(point.u)))
-    if off > PIECES_AGREE:
+    if off > SIX_DIGITS:
         raise UnresolvedError(f"The pieces do not agree there: the next one is off by {off:.1g}.")
-    if norm(point.weights, there.tangent - ray.v) > np.sqrt(SAME_RAY):
+    if norm(point.weights, there.tangent - ray.v) > np.sqrt(SIX_DIGITS):
         raise UnresolvedError("A ray of the pieces' low-rank changes is not one of the piece itself.")
     return there

@@ -5,29 +5,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, generic_vector
 from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import MONITOR_PLACES, Function, zeros
 from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
-SEEN = 4.0
-"""Two round-off samples show the largest of many values within this factor."""
-
 DIP = 0.25
 """A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
 
-TIED = 16.0
+TIED = NOISE_LOOKS**2
 """Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
 switches this near to zero vanish together."""
-
-NEAR_ZERO = 1e-6
-"""Ends nearer to zero, relative to a switch's largest value, are corrected first."""
-
-TOUCHING = 1e-9
-"""Allowed wrong sign, relative to the largest value, at a path's limit: that is known to a root of round-off."""
 
 ZEROS_ON_ARC = 50
 """Most zeros located on one arc: neighbouring path points have no more between them."""
@@ -42,7 +34,7 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
     noise += solver.noise_by_component(point)
     here = pieces.values(point.u)
     looks = [np.abs(pieces.values(point.u + noise * move) - here) for move in (signs, signs[::-1])]
-    return SEEN * np.maximum(*looks) + np.spacing(np.abs(here))
+    return NOISE_LOOKS * np.maximum(*looks) + np.spacing(np.abs(here))
 
 
 def first_zero(
@@ -58,13 +50,13 @@ def first_zero(
         places = np.linspace(0.0, 1.0, MONITOR_PLACES)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        near = np.abs(grid[[0, -1]]) <= NEAR_ZERO * np.abs(grid).max(axis=0)
+        near = np.abs(grid[[0, -1]]) <= SIX_DIGITS * np.abs(grid).max(axis=0)
         if not (_suspects(grid) | near[1]).any():
             return None
         # Signs of nearly vanishing switches need points accurate to round-off.
         a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
         if a is not arc.a or b is not arc.b:
-            arc = part_between(arc, a, b)
+            arc = cubic_between(a, b, arc.border)
             grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
         # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
@@ -84,13 +76,15 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the straight way from a path point to u stays on its piece."""
+    """Whether the straight way from a path point to u, known to half of the digits, stays on its piece."""
     try:
         way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
     except SwitchError:
         return False
-    return not _suspects(np.where(np.abs(values) <= TOUCHING * np.abs(values).max(axis=0), 0.0, values)[:-1]).any()
+    return not _suspects(
+        np.where(np.abs(values) <= ROOT_OF_ROUND_OFF * np.abs(values).max(axis=0), 0.0, values)[:-1]
+    ).any()
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:
@@ -157,14 +151,9 @@ def _zero(
     if ga <= 0.0 or position(arc, begin.u) >= position(arc, end.u):
         return None
     if begin is not arc.a or end is not arc.b:
-        arc = part_between(arc, begin, end)
+        arc = cubic_between(begin, end, arc.border)
     return next(zeros(solver, switch, arc, ga, seen(end), noise), None)
 
 
 def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
     return solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
-
-
-def part_between(arc: Arc, a: Linearization, b: Linearization) -> Arc:
-    """The part of an arc between two of its points."""
-    return cubic_between(a, b, arc.border)

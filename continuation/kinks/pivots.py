@@ -9,13 +9,10 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, generic_vector
 
-ZERO_COMPONENT = 1e-9
+ZERO_COMPONENT = ROOT_OF_ROUND_OFF
 """Smaller components and singular values, relative to the largest, are zero."""
-
-IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
-"""Its multiples modulo one are generic; they perturb the switches."""
 
 PIVOTS_PER_SWITCH = 50
 """Most pivots per switch."""
@@ -57,7 +54,7 @@ def way(S: Array, r: Array) -> Way | None:
     Cottle, Pang and Stone, section 4.9: that a perturbed problem, like a lexicographic rule, resolves ties.
     """
     m = r.size
-    apart = 1.0 + np.arange(1, m + 1) * IRRATIONAL % 1.0
+    apart = 1.5 + 0.5 * generic_vector(m)
     scale = np.maximum(np.abs(r), np.abs(S).max(axis=1))
     apart *= np.where(scale > 0.0, scale, 1.0)
     table = np.column_stack([S, r, apart])

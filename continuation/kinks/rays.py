@@ -7,8 +7,8 @@ C_tau G, G the gradients of beta. With M = [H'_sigma; border], M v = e_{N+1} and
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n complementary, p =
-(I + D G Z D) n + alpha D G v.
+of order |beta|. Derivatives may be differences, of eight digits: six decide. For many switches pivots find one ray:
+w = D (p - n), D the incoming signs, p and n complementary, p = (I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
@@ -30,19 +30,6 @@ from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
 """Most switches of which all 2^10 pieces are tried; for more, pivots find one ray."""
-
-RANK_ONE = 1e-5
-"""Largest relative defect of rank-one differences of pieces: derivatives by differences have eight digits, pieces that
-disagree differ by one."""
-
-TILT = 1e-7
-"""Smaller relative derivatives of a switch along a ray do not show its sign: differences have eight digits."""
-
-KERNEL = 1e-9
-"""Least relative singular value of a piece whose kernel is a line."""
-
-SAME_RAY = 1e-6
-"""Unit vectors that differ by less are one ray."""
 
 
 class UnresolvedError(ArithmeticError):
@@ -97,7 +84,7 @@ def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
         )
     found: list[Ray] = []
     for ray in _candidates(corner):
-        if not any(norm(corner.point.weights, ray.v - other.v) <= SAME_RAY for other in found):
+        if not any(norm(corner.point.weights, ray.v - other.v) <= SIX_DIGITS for other in found):
             found.append(ray)
     if len(corner.beta) > SWITCHES_ENUMERATED and not found:
         raise UnresolvedError(f"Their number is {len(corner.beta)}, and where pivots lead no ray is found.")
@@ -116,9 +103,9 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
             along = np.array(taus) * tilts / family.sizes
             unit = v / norm(weights, v)
             along = along / norm(weights, v)
-            if (along < -TILT).any():
+            if (along < -SIX_DIGITS).any():
                 continue
-            unsure = np.flatnonzero(along <= TILT).tolist()
+            unsure = np.flatnonzero(along <= SIX_DIGITS).tolist()
             if not unsure or _stays(corner, signs, unit, unsure, family.sizes[unsure]):
                 yield Ray(unit, signs)
 
@@ -172,7 +159,7 @@ class _Family:
         change = np.array([self.applied(signs, r) for r in self.R]) - own
         c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
         left = float(np.abs(change - np.outer(self.GR[k], c)).max())
-        if left > RANK_ONE * max(float(np.abs(change).max()), float(np.abs(own).max())):
+        if left > SIX_DIGITS * max(float(np.abs(change).max()), float(np.abs(own).max())):
             raise UnresolvedError(f"The pieces beside switch {corner.beta[k]} do not agree where it vanishes.")
         return c
 
@@ -186,8 +173,8 @@ class _Family:
             small = np.eye(len(taus)) + self.GZ * (flipped * self.sizes)[None, :] / self.sizes[:, None]
             small = np.column_stack([small, -self.tilts / self.sizes])
             _, values, rows = np.linalg.svd(small)
-            if not values[-1] > KERNEL * values[0]:
-                self._refuse_cone(signs, taus, rows[int((values > KERNEL * values[0]).sum()) :])
+            if not values[-1] > ROOT_OF_ROUND_OFF * values[0]:
+                self._refuse_cone(signs, taus, rows[int((values > ROOT_OF_ROUND_OFF * values[0]).sum()) :])
                 return
             w, alpha = rows[-1][:-1] * self.sizes, float(rows[-1][-1])
             v = alpha * self.corner.point.tangent - (flipped * w) @ self.Z
@@ -203,7 +190,7 @@ class _Family:
         units = came * self.sizes
         falls = self.tilts / units
         on = None
-        if (falls <= TILT * norm(corner.point.weights, corner.point.tangent)).all():
+        if (falls <= SIX_DIGITS * norm(corner.point.weights, corner.point.tangent)).all():
             on = way(np.eye(came.size) + self.GZ * units / units[:, None], np.minimum(falls, 0.0))
         if on is None or on.ray.back:
             raise UnresolvedError(f"{many}, and pivots lead {'nowhere' if on is None else 'back'}.")
@@ -221,7 +208,7 @@ class _Family:
         assert own is not None
         assert there is not None
         left = there - own - (flipped * self.GR[:, 0]) @ self.columns
-        return float(np.abs(left).max()) <= RANK_ONE * float(np.abs(there).max() + np.abs(own).max())
+        return float(np.abs(left).max()) <= SIX_DIGITS * float(np.abs(there).max() + np.abs(own).max())
 
     def _factored(self, signs: Signs) -> Array:
         """A kernel by its own factorisation; two borders must agree."""
@@ -230,7 +217,7 @@ class _Family:
             border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
             found.append(linearize(corner.on(signs), corner.point.u, corner.point.weights, border).tangent)
         cosine = abs(inner(corner.point.weights, *found))
-        if cosine < 1.0 - SAME_RAY:
+        if cosine < 1.0 - SIX_DIGITS:
             raise UnresolvedError("The kernel of a piece that meets there has more than one dimension.")
         return found[0]
 
@@ -240,17 +227,15 @@ class _Family:
         if len(kernel) == 2:
             # A cone in the plane has edges on these lines.
             edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
-            if b.any() and not any((a * (x @ b) >= -KERNEL * norm(np.ones(2), x)).all() for x in edges if x.any()):
+            if b.any() and not any(
+                (a * (x @ b) >= -ROOT_OF_ROUND_OFF * norm(np.ones(2), x)).all() for x in edges if x.any()
+            ):
                 return
         raise UnresolvedError(f"The kernel of the piece with the signs {list(taus)} there has more than one dimension.")
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5
 """Lengths, in the metric, at which rays are checked if first order is unclear."""
-
-LAST_CORRECTION, OFF = 1e-3, 1e-9
-"""Largest last correction, relative to length^2, by which a curved branch leaves a border; and round-off of a switch,
-relative to its first order."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
@@ -266,10 +251,10 @@ def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes:
                 move = near.solve(-evaluator.residual(u), 0.0, near.weights * v)
                 u = u + move
                 moves.append(norm(near.weights, move))
-            if not moves[-1] <= LAST_CORRECTION * length**2:
+            if not moves[-1] <= SIX_DIGITS * length:
                 continue
             s = np.array(signs)[which] * corner.pieces.values(u)[which]
-            return bool((s >= -OFF * length * sizes).all())
+            return bool((s >= -ROOT_OF_ROUND_OFF * length * sizes).all())
     except EvaluationError:
         pass
     return False

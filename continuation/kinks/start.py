@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from continuation.arguments.checks import complain, real_vector
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.evaluation.pieces import BORDER_DISTANCE, Pieces, Signs, SwitchError
+from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.homotopy import SupportsPieces
 from continuation.kinks.first import switch_noise
 from continuation.kinks.rays import Corner, UnresolvedError, rays_at
@@ -88,8 +88,8 @@ def _out_of_kink(
 
 
 def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
-    """The signs a little ahead, a thousand times the accuracy of a kink."""
-    return pieces.signs(u + v * (BORDER_DISTANCE * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
+    """The signs a little ahead, half of the digits."""
+    return pieces.signs(u + v * (ROOT_OF_ROUND_OFF * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
 
 
 def kink_rays(homotopy: Any, u: Array) -> Array:

@@ -1,8 +1,14 @@
-"""Bordered matrices of any rank, and null vectors."""
+"""One bordered system [[A, P], [R, S]] for a matrix A of any rank, and the null spaces that it gives.
+
+Where A has lost at most as many ranks as there are columns P, the whole is regular for almost all borders, and the
+solutions for unit vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations of Dynamical
+Equilibria, Sections 3.3 and 4.1).
+"""
 
 from __future__ import annotations
 
 import warnings
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,7 +17,7 @@ from attrs import frozen
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse.linalg import splu
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix, generic_vector, largest
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import extended
 from continuation.linear.superlu import superlu_sign
@@ -23,44 +29,57 @@ LONG = 10.0
 REFRESHED = 4
 """Limit of attempts; more do not help if two ranks are lost."""
 
-BORDER_SIZE = 1e-8
-"""Largest border entry relative to a sparse matrix's: weak rows are eliminated late and do not fill the factors
-(Laplacian of two species, 2000 unknowns: 17 thousand entries, 673 thousand at 1e-4). One correction restores the lost
-half of the digits."""
+BORDERS = 5
+"""Lost ranks that can be counted: two more than `continuation.events.multiple` resolves, for its message."""
+
+RANK = SIX_DIGITS
+"""Smaller singular values, relative to A, count as zero."""
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Bordered:
-    """[[A, P], [R, S]] with k border rows, factored whole; A is dense or sparse, real or complex, of any rank.
+    """[[A, P], [R, S]], factored whole; A, (n, m), is dense or sparse, real or complex.
 
     Attributes
     ----------
+    shape : (int, int)
+        Of A.
     matrix : ndarray or sparse array
         The whole; sparse border rows are scaled.
+    columns, rows : ndarray
+        P, (n, l), and [R, S], (k, m + l).
     lu : object
         Its factors.
     scale : ndarray, shape (n + k, 1)
         Row factors.
     """
 
+    shape: tuple[int, int]
     matrix: Matrix
+    columns: Array
+    rows: Array
     lu: Any
     scale: Array
 
     @classmethod
     def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
-        """Factor A, (n, m), with columns, (n, l), and rows, (k, m + l), or raise `SingularError`."""
-        sparse, scale = sp.issparse(matrix), np.ones((matrix.shape[0] + len(rows), 1))
+        """Factor A with columns, (n, l), and rows, (k, m + l) or (k, m) if S = 0, or raise `SingularError`."""
+        (n, m), sparse = matrix.shape, sp.issparse(matrix)
+        rows = np.hstack([rows, np.zeros((len(rows), m + columns.shape[1] - rows.shape[1]))])
+        scale = np.ones((n + len(rows), 1))
         if sparse:
-            largest = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
-            scale[matrix.shape[0] :, 0] = BORDER_SIZE * largest / np.abs(rows).max(axis=1)
-        whole = extended(matrix, columns, rows * scale[matrix.shape[0] :])
+            # Weak rows are eliminated late and do not fill the factors (Laplacian of two species, 2000 unknowns: 17
+            # thousand entries, 673 thousand at 1e-4); one correction restores the lost half of the digits.
+            size = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
+            scale[n:, 0] = ROOT_OF_ROUND_OFF * size / np.abs(rows).max(axis=1)
+        whole = extended(matrix, columns, rows * scale[n:])
         with warnings.catch_warnings():
             warnings.simplefilter("error", LinAlgWarning)
             try:
-                return cls(whole, splu(whole) if sparse else lu_factor(whole, check_finite=False), scale)
+                lu = splu(whole) if sparse else lu_factor(whole, check_finite=False)
             except (LinAlgWarning, RuntimeError, ValueError) as error:
                 raise SingularError(str(error)) from error
+        return cls((n, m), whole, columns, rows, lu, scale)
 
     def solve(self, rhs: Array, adjoint: bool = False) -> Array:
         """The solution of M x = rhs, or M* x = rhs, for one or more columns."""
@@ -89,13 +108,35 @@ class Bordered:
         lu, pivots = self.lu
         return lu_sign(pivots, lu.diagonal())
 
+    @property
+    def weak(self) -> bool:
+        """Whether a general solution is so large that the whole may be singular, as it is if more ranks are lost."""
+        return largest(self.solve(generic_vector(len(self.scale)))) * ROOT_OF_ROUND_OFF >= 1.0
+
+    @cached_property
+    def right(self) -> tuple[Array, Array]:
+        """Columns that span the right null space, (m, k), and their defects, which vanish with it, (l, k)."""
+        (n, m), k = self.shape, len(self.rows)
+        found = self.solve(np.eye(n + k, k, -n))
+        return found[:m], found[m:]
+
+    @cached_property
+    def left(self) -> tuple[Array, Array]:
+        """Columns that span the left null space, (n, l), and their defects, (k, l)."""
+        (n, m), count = self.shape, self.columns.shape[1]
+        found = self.solve(np.eye(m + count, count, -m), adjoint=True)
+        return found[:n], found[n:]
+
+    def refreshed(self, matrix: Matrix) -> Bordered:
+        """Another matrix, bordered with these null vectors: the best condition."""
+        return Bordered.of(matrix, np.linalg.qr(self.left[0])[0], np.linalg.qr(self.right[0])[0].conj().T)
+
 
 @frozen(eq=False)
 class NearlySingular:
     """Solutions of [[A, b], [c*, 0]] (v, s) = (0, 1) and of the adjoint system, (w, s*) = (0, 1).
 
-    s vanishes where A is singular, with null vectors v and w; s' = -w* A' v (Govaerts, Numerical Methods for
-    Bifurcations of Dynamical Equilibria, Section 4.1).
+    s vanishes where A is singular, with null vectors v and w; s' = -w* A' v.
     """
 
     factors: Bordered
@@ -103,8 +144,6 @@ class NearlySingular:
     right: Array
     left: Array
     s: complex
-    made: int
-    """Number of factorisations."""
 
 
 def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
@@ -112,14 +151,31 @@ def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
 
     Matrices share no state, so resumed paths are the same. Raises `SingularError` if several ranks are lost.
     """
-    unit = np.zeros(len(b) + 1)
-    unit[-1] = 1.0
-    for made in range(1, REFRESHED + 1):
-        factors = Bordered.of(matrix, b[:, None], np.append(c.conj(), 0.0)[None])
-        right, left = factors.solve(unit.astype(b.dtype)), factors.solve(unit.astype(b.dtype), adjoint=True)
-        found = NearlySingular(factors, b, right[:-1], left[:-1], right[-1], made)
-        v, w = (float(np.linalg.norm(x)) for x in (found.right, found.left))
+    for _ in range(REFRESHED):
+        factors = Bordered.of(matrix, b[:, None], c.conj()[None])
+        right, left = factors.right[0][:, 0], factors.left[0][:, 0]
+        found = NearlySingular(factors, b, right, left, factors.right[1][0, 0])
+        v, w = (float(np.linalg.norm(x)) for x in (right, left))
         if v <= LONG and w <= LONG:
             break
-        b, c = found.left / w, found.right / v
+        b, c = left / w, right / v
     return found
+
+
+def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
+    """Orthonormal bases of both kernels of a matrix, shape (N, N + 1), as columns.
+
+    `accuracy`: relative size of vanishing singular values.
+    """
+    n = matrix.shape[0]
+    k = min(BORDERS, n)
+    generator = np.random.default_rng(7)
+    bordered = Bordered.of(matrix, generator.standard_normal((n, k)), generator.standard_normal((k + 1, n + 1)))
+    return _vanishing(*bordered.right, accuracy), _vanishing(*bordered.left, accuracy)
+
+
+def _vanishing(vectors: Array, defects: Array, accuracy: float) -> Array:
+    values, turned = np.linalg.svd(defects)[1:]
+    rank = int(np.count_nonzero(values > accuracy * np.linalg.norm(vectors, 2)))
+    basis: Array = np.linalg.qr(vectors @ turned[rank:].T)[0]
+    return basis

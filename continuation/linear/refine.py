@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import SIX_DIGITS, Array, Matrix
 from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
@@ -18,7 +18,7 @@ REFINEMENTS = 2
 BACKWARD_ERROR = 16 * float(np.finfo(float).eps)
 """Row-wise backward error of round-off."""
 
-TRUSTED = 1e-6
+TRUSTED = SIX_DIGITS
 """Largest relative error of H_y^{-1} H_lam, and smallest relative Schur complement: refinement then gains six digits a
 step, and both signs are certain."""
 

@@ -10,10 +10,10 @@ from attrs import evolve, frozen
 from scipy.linalg import eigvals
 from scipy.sparse import csc_array, eye_array, issparse
 
-from continuation.arrays import Array, Matrix, generic_vector
+from continuation.arrays import SIX_DIGITS, Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
 from continuation.linear.dense import factor_lu
-from continuation.linear.refine import Factored
+from continuation.linear.refine import BACKWARD_ERROR, Factored
 from continuation.linear.sparse import factor_square
 from continuation.linear.symmetric import Symmetric, factor_ldl
 
@@ -29,19 +29,12 @@ OFF_AXIS = 1e-10
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
 
-LEAST_SHIFT = 1e-6
-"""Relative to the diagonal; a singular matrix needs a shift."""
-
-SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
-"""Relative errors of real parts: SURE tells the side, DIGITS holds for the rightmost and the one nearest to the axis;
-LAST_DIGITS of the eigenvalue suffices, as events are located to 1e-10."""
+DIGITS, LAST_DIGITS = 1e-4, 1e-12
+"""Relative errors of real parts, and of eigenvalues that suffice, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
 """Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
 solves."""
-
-LOST_DIRECTION = 1e-14
-"""Relative size of a vector after orthogonalisation at which it counts as zero."""
 
 
 @frozen(eq=False)
@@ -119,7 +112,7 @@ def nearest_zero(matrix: Matrix, k: int) -> Any:
     n = matrix.shape[0]
     if n <= ALL_OF_DENSE:
         return _all(matrix)
-    shift = LEAST_SHIFT * float(np.abs(matrix.diagonal()).max())
+    shift = SIX_DIGITS * float(np.abs(matrix.diagonal()).max())
 
     def known(theta: Any, error: Array) -> bool:
         return bool((error <= DIGITS * np.abs(theta)).all())
@@ -156,19 +149,15 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
-    # If all are stable, the shift is comparable to oscillations.
-    shift = SHIFT * max(real, 0.1 * imaginary, LEAST_SHIFT * float(np.abs(matrix.diagonal()).max()))
+    # A singular matrix needs a shift. If all are stable, the shift is comparable to oscillations.
+    shift = SHIFT * max(real, 0.1 * imaginary, SIX_DIGITS * float(np.abs(matrix.diagonal()).max()))
     inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
     wanted, solves = min(k, n), 0
 
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        # The rightmost and the one nearest to the axis are stored, and cross.
-        kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
-        wanted = np.full(theta.size, SURE)
-        wanted[kept] = DIGITS
-        return bool(((off <= wanted) | (error <= LAST_DIGITS * np.abs(theta))).all())
+        return bool(((off <= DIGITS) | (error <= LAST_DIGITS * np.abs(theta))).all())
 
     while True:
         theta, more = dominant(inverse, generic_vector(n), wanted, known)
@@ -201,7 +190,7 @@ def dominant(
             H[:j, j - 1] += part
             x = x - part @ Q[:j]
         H[j, j - 1] = float(np.linalg.norm(x))
-        exhausted = j == n or H[j, j - 1] <= LOST_DIRECTION * size
+        exhausted = j == n or H[j, j - 1] <= BACKWARD_ERROR * size
         if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK_EVERY == 0):
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]

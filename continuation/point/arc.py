@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from attrs import Factory, field, frozen
 
@@ -59,12 +60,13 @@ def position(arc: Arc, u: Array) -> float:
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
-    """The prediction's own segment, else the Hermite cubic."""
-    border = a.border
+    """The prediction itself, made to end on b, if it is a `Curve`; else the Hermite cubic."""
     # hasattr is faster than isinstance of a Protocol.
-    if hasattr(prediction, "segment"):
-        return Arc(a, b, border, prediction.segment(dot(border, b.u - a.u), b.u))
-    return cubic_between(a, b, border)
+    if not hasattr(prediction, "derivative"):
+        return cubic_between(a, b, a.border)
+    curve: Any = prediction
+    h = dot(a.border, b.u - a.u)
+    return Arc(a, b, a.border, SeriesSegment(curve, h, b.u - curve(h), curve.order + 1))
 
 
 def cubic_between(a: Linearization, b: Linearization, border: Array) -> Arc:

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve, field, frozen
 from scipy.linalg.blas import dscal
 
-from continuation.arrays import Array, dot, generic_vector, largest
+from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
@@ -22,9 +22,6 @@ REFINED = 1e-14
 ROUND_OFF_LEFT = 1e3
 """A last increment within this factor is accepted if round-off ends the contraction."""
 
-TANGENT_LEAVES = 1e-6
-"""Allowed defect, by an exact solve, of a tangent refined by an approximate solver: six digits."""
-
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 """Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
 at half its range."""
@@ -32,11 +29,11 @@ at half its range."""
 NEAR_SINGULAR = 1e10
 """Growth of a solution that means a singular matrix; six digits remain."""
 
-TANGENT_REFINEMENT = Contraction(iterations=20, ratio=RELIABLE, first=MONOTONE)
+TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)
 """The first increment is of a general error, the second of what the factorisation leaves: their ratio need only be
 below one."""
 
-SOLVE_REFINEMENT = Contraction(iterations=8, ratio=RELIABLE)
+SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
 
 
 @frozen(eq=False)
@@ -188,7 +185,7 @@ def _refined(
     if anchor.system.approximates:
         # Small increments of an inexact solver may hide a defect.
         left = anchor.system.solve(-apply(v), 1.0 - dot(border, v))
-        if norm(weights, left) > TANGENT_LEAVES * norm(weights, v):
+        if norm(weights, left) > SIX_DIGITS * norm(weights, v):
             return None
     return v
 

@@ -8,10 +8,11 @@ from functools import partial
 import numpy as np
 from attrs import Factory, define, evolve, field
 
-from continuation.arrays import Array, dot, generic_vector
+from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
+from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.metric import norm
 from continuation.point.arc import Arc
 from continuation.point.linearization import Anchor, Linearization, relinearize
@@ -38,19 +39,10 @@ still show in steps of a third (900 measured)."""
 ARC_NOISE = 1e2
 """Least allowed distance, in tolerances, for noise on short arcs."""
 
-EPS = float(np.finfo(float).eps)
+CHORD_STEPS = Contraction()
 
-NOISE_LOOKS = 4.0
-"""Factor from one random sample to the largest of many."""
-
-CHORD_STEPS = Contraction(iterations=20)
-
-NO_CHANGE = 1e-6
-"""Last increment, in tolerances; the next is negligible."""
-
-SMALL_INCREMENT, WITHIN_TOLERANCE = 1e-4, 1.0
-"""Increment, in tolerances, that is accepted if round-off stops the iteration; the second after three
-factorisations."""
+SMALL_INCREMENT = 1e-4
+"""Increment, in tolerances, that is accepted if round-off stops the iteration; after three factorisations 1 is."""
 
 
 @define(eq=False)
@@ -76,6 +68,11 @@ class PathSolver:
     straight: MaxStep | None = None
     room: MaxStep | None = None
     asked: float = field(default=Factory(lambda solver: solver.tolerance.relative, takes_self=True), init=False)
+
+    @property
+    def interior(self) -> bool:
+        """Whether the homotopy has a domain. Its target is mostly on the boundary, where H' may lose rank."""
+        return self.max_step is not None
 
     def noisy(self, least: float) -> None:
         """Raise the tolerance to the `least` that noise allows."""
@@ -108,7 +105,7 @@ class PathSolver:
         if settled is not None:
             return settled, near.anchor
         u = guess
-        for enough in (SMALL_INCREMENT, SMALL_INCREMENT, SMALL_INCREMENT, *3 * (WITHIN_TOLERANCE,)):
+        for enough in (*3 * (SMALL_INCREMENT,), *3 * (1.0,)):
             system = evaluator.factor(u, border)
             settled = self._chord_steps(u, partial(_approximate, system), near, enough)
             if settled is not None:
@@ -130,13 +127,12 @@ class PathSolver:
             size = measure(step, near.weights)
             if not chord.add(step, size):
                 break
-            if size <= NO_CHANGE:
+            # The next is negligible.
+            if size <= SIX_DIGITS:
                 return chord.x
         # The stalled increment joins two points of round-off.
         last = chord.size * min(chord.ratio, 1.0)
-        if chord.size <= enough or (
-            last <= WITHIN_TOLERANCE and last <= 2.0 * self.noise(near) / self.tolerance.relative
-        ):
+        if chord.size <= enough or (last <= 1.0 and last <= 2.0 * self.noise(near) / self.tolerance.relative):
             return chord.x
         return None
 
@@ -151,7 +147,7 @@ class PathSolver:
         moving it back is round-off.
         """
         evaluator, u = self.evaluator, near.u
-        last_place = np.maximum(np.spacing(np.abs(u)), EPS / np.sqrt(near.weights * u.size))
+        last_place = np.maximum(np.spacing(np.abs(u)), np.finfo(float).eps / np.sqrt(near.weights * u.size))
         moved = POINT_ULPS * last_place * np.sign(generic_vector(u.size))
         try:
             back = near.solve(evaluator.residual(u + moved) - evaluator.residual(u))

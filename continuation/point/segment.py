@@ -88,8 +88,8 @@ class Curve(Protocol):
     """A series in pseudo-arclength."""
 
     @property
-    def reach(self) -> float:
-        """Longest trusted step."""
+    def order(self) -> int:
+        """Order of its last term."""
         ...
 
     def __call__(self, h: float) -> Array:

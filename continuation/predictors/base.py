@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 from attrs import frozen
 
-from continuation.arrays import Array, dot
+from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
-from continuation.point.segment import Curve, Segment
 
 
 @frozen(eq=False)
@@ -23,7 +22,11 @@ class Knot:
 
 
 class Prediction(Protocol):
-    """A curve from the current point; made once a point, called once an attempt."""
+    """A curve from the current point; made once a point, called once an attempt.
+
+    If it also has a `derivative` and an `order`, it is accurate enough to be the path between its ends
+    (`continuation.point.segment.Curve`).
+    """
 
     @property
     def reach(self) -> float:
@@ -32,22 +35,6 @@ class Prediction(Protocol):
 
     def __call__(self, h: float) -> Array:
         """Return the point at step length h > 0, shape (N + 1,)."""
-        ...
-
-
-@runtime_checkable
-class SupportsSegment(Curve, Protocol):
-    """A prediction accurate enough to be the path between its ends."""
-
-    def segment(self, h: float, end: Array) -> Segment:
-        """Return the path from the current to the corrected point.
-
-        Parameters
-        ----------
-        h : float
-        end : ndarray, shape (N + 1,)
-            Corrected point.
-        """
         ...
 
 
@@ -86,19 +73,3 @@ class Predictor(Protocol):
             At most `memory` knots, the current one last.
         """
         ...
-
-
-def history_in_pseudo_arclength(point: Linearization, history: Sequence[Knot]) -> list[tuple[float, Array, Array]]:
-    """Return the history, newest first: (sigma, u, du/dsigma), sigma = border . (u - point.u).
-
-    Knots before a right-angle turn, or where sigma stops decreasing, are dropped.
-    """
-    border = point.border
-    knots = [(0.0, point.u, point.tangent)]
-    for knot in reversed(history[:-1]):
-        sigma = dot(border, knot.u - point.u)
-        along = dot(border, knot.tangent)
-        if not (sigma < knots[-1][0] and along > 0.0):
-            break
-        knots.append((sigma, knot.u, knot.tangent / along))
-    return knots

@@ -7,27 +7,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import Array
-from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
+from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.metric import norm
 from continuation.point.linearization import Linearization
 
 FITTED_ORDER = 11
 """Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
 
-CHORD = Contraction(iterations=30, ratio=HALVING)
+CHORD = Contraction()
 """With the current factorisation; divergence shortens the range."""
-
-FOUND_BESIDE = 1e-8
-"""Last increment relative to the point's distance: near round-off."""
-
-NOISE_SEEN = 8.0
-"""Largest of many increments, in units of a point's noise; each is a difference of two."""
-
-ROUNDS = 40
-"""Limit of range changes; 4^-40 of a range is nothing."""
 
 
 def fitted(
@@ -64,7 +56,7 @@ def fitted(
     if evaluator.noise is not None:
         blur = point.blur(evaluator.noise)
         order = max(min(order, int(math.log2(accuracy / blur))), 2) if 0.0 < blur < accuracy else 2
-    for _ in range(ROUNDS):
+    for _ in range(2 * CHORD.iterations):
         found = _through(evaluator, point, order, r, blur)
         if found is None:
             if last is not None:
@@ -104,7 +96,7 @@ def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, b
             converged = chord.run(increment, size, done)
         except EvaluationError:
             return None
-        if not (converged or chord.size <= max(FOUND_BESIDE * abs(s), NOISE_SEEN * blur)):
+        if not (converged or chord.size <= max(ROOT_OF_ROUND_OFF * abs(s), 2.0 * NOISE_LOOKS * blur)):
             return None
         bend = bends[k] = (chord.x - point.u - s * point.tangent) / s**2
     coefficients = np.empty((count + 2, point.u.size))

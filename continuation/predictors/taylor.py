@@ -21,10 +21,9 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsTaylor, offers
 from continuation.point.linearization import Linearization, factored, with_exact_solves
-from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
 from continuation.predictors.fitted import fitted
-from continuation.predictors.pade import Pade, best
+from continuation.predictors.pade import Series, best
 from continuation.tolerance import Tolerance
 
 ORDERS = (8, 30)
@@ -35,40 +34,6 @@ LARGEST_ORDER = 100
 
 LONGEST_STEP = 100.0
 """In the metric: a polynomial path has no last terms."""
-
-
-@frozen(eq=False)
-class Series:
-    """A truncated series and its trusted range."""
-
-    coefficients: Array
-    reach: float
-
-    @property
-    def order(self) -> int:
-        """Order of the last term."""
-        return len(self.coefficients) - 1
-
-    def __call__(self, h: float) -> Array:
-        """Return the point at pseudo-arclength h, by Horner's rule."""
-        value: Array = self.coefficients[-1].copy()
-        for coefficient in self.coefficients[-2::-1]:
-            value *= h
-            value += coefficient
-        return value
-
-    def segment(self, h: float, end: Array) -> SeriesSegment:
-        """Return the path up to the corrected point at h."""
-        return SeriesSegment(self, h, end - self(h), len(self.coefficients))
-
-    def derivative(self, h: float) -> Array:
-        """Return du/ds at h."""
-        order = len(self.coefficients) - 1
-        value: Array = order * self.coefficients[-1]
-        for k in range(order - 1, 0, -1):
-            value *= h
-            value += k * self.coefficients[k]
-        return value
 
 
 def best_order(n: int, accuracy: float) -> int:
@@ -130,9 +95,10 @@ class Taylor:
         """The given or least order; `Series.order` is the actual one."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
-    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series:
         """Return the series at the point."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
+        reach = partial(series_reach, accuracy=self.accuracy, weights=point.weights)
         coefficients = self._exact(evaluator, point, order) if evaluator.followed else None
         if coefficients is None:
             evaluator.followed = False
@@ -140,15 +106,12 @@ class Taylor:
             lately = [knot.arclength for knot in history[-2:]]
             # The metric's unit: a path's length.
             first = 0.5 * (max(lately) - min(lately)) or 1.0
-            coefficients = fitted(evaluator, point, order, first, partial(self._reach, point), self.accuracy)
-        series = Series(coefficients, self.safety * self._reach(point, coefficients))
+            coefficients = fitted(evaluator, point, order, first, reach, self.accuracy)
+        series = Series(coefficients, self.safety * reach(coefficients))
         if not self.rational:
             return series
         rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
         return series if rational is None else rational
-
-    def _reach(self, point: Linearization, coefficients: Array) -> float:
-        return series_reach(coefficients, self.accuracy, point.weights)
 
     def _exact(self, evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
         try:

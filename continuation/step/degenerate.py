@@ -13,9 +13,8 @@ from functools import partial
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.contraction import MONOTONE
-from continuation.correctors.base import ROOT_OF_ROUND_OFF
 from continuation.evaluation.noise import allowed_along
 from continuation.events.singularity import SimpleBranchPoint
 from continuation.metric import norm

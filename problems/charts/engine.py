@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,10 +19,10 @@ from continuation.chart import (
     traced,
 )
 from continuation.chart.study import Size
-from continuation.controllers import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
-from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
+from continuation.controllers import AllgowerGeorg, Bounds, Fixed, SeriesRange
+from continuation.correctors import BorderedNewton, MoorePenrose, NaturalParameter
 from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
-from continuation.predictors import Hermite, Polynomial, Secant, Tangent, Taylor
+from continuation.predictors import Hermite, Tangent, Taylor
 from problems.charts import rivals
 from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
@@ -37,8 +38,6 @@ PRESETS: Parts = {
 PREDICTORS: Parts = {
     "Hermite (DEFAULT)": {"predictor": Hermite()},
     "tangent": {"predictor": Tangent()},
-    "secant": {"predictor": Secant()},
-    "polynomial, degree 4": {"predictor": Polynomial(4)},
     "Taylor + series range": {"predictor": Taylor(), "controller": SeriesRange()},
     "Pade + series range": {"predictor": Taylor(rational=True), "controller": SeriesRange()},
 }
@@ -46,18 +45,14 @@ CORRECTORS: Parts = {
     "bordered, reuse 0.2 (DEFAULT)": {"corrector": BorderedNewton(0.2)},
     "bordered, reuse 0.5": {"corrector": BorderedNewton(0.5)},
     "bordered Newton": {"corrector": BorderedNewton(0.0)},
-    "chord": {"corrector": Chord()},
-    "Broyden": {"corrector": Broyden()},
     "Moore-Penrose": {"corrector": MoorePenrose()},
     "natural parameter": {"corrector": NaturalParameter()},
 }
 CONTROLLERS: Parts = {
     "Allgower-Georg (DEFAULT)": {"controller": continuation.DEFAULT.controller},
     "Allgower-Georg, own values": {"controller": AllgowerGeorg()},
-    "curvature": {"controller": Curvature()},
-    "iteration count": {"controller": IterationCount()},
     "fixed, 0.1": {"controller": Fixed()},
-    "geometric (the paper's)": {"controller": Geometric()},
+    "geometric (the paper's)": {"controller": Fixed(Bounds(1e-6, initial=1.0), max_angle=math.inf)},
 }
 SERIES: Parts = {
     f"{kind}, accuracy {accuracy:g}{' (SERIES)' if rational and accuracy == 1e-5 else ''}": {

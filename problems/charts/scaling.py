@@ -8,7 +8,6 @@ import continuation
 from continuation.chart import END_POINT, Lines, Problem, Study, tolerances, traced
 from continuation.chart import scaling as table
 from continuation.chart.study import Size
-from continuation.correctors import Broyden
 from problems import lcp
 from problems.charts.lcp import RESIDUAL, direct_methods, notes, path, problem, solver
 from problems.charts.subjects import bratu, bratu_square, chandrasekhar
@@ -18,12 +17,11 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     """Bifurcation problems and LCPs at one tolerance."""
     repeats = {"smoke": 0, "moderate": 1, "full": 3}[size]
     presets = (continuation.DEFAULT, continuation.FAST, continuation.SERIES)
-    broyden = traced("DEFAULT, Broyden", corrector=Broyden())
     curves = Study(
         name="scaling-curves",
         title="Cost of a path round a fold against size",
         problems=_curves(size),
-        methods=[*(traced(preset.name, preset=preset) for preset in presets), broyden],
+        methods=[traced(preset.name, preset=preset) for preset in presets],
         ladder=tolerances(1e-8),
         errors=(END_POINT,),
         work=("seconds", "factorizations"),

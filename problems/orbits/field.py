@@ -12,8 +12,7 @@ from attrs import evolve, field, frozen
 from continuation.arguments.checks import complain
 from continuation.arrays import Array
 from continuation.citation.bibliography import SQUIRE_TRAPP
-from continuation.evaluation.derivatives import AGREEMENT
-from continuation.evaluation.products import sizes
+from continuation.evaluation.products import AGREEMENT, sizes
 
 COMPLEX_STEP = 1e-200
 """Imaginary step; its square underflows (Squire and Trapp 1998)."""

@@ -9,7 +9,7 @@ from attrs import evolve
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
 from continuation.auditing import audit
 from continuation.auditing.length import arclength
-from continuation.controllers import Bounds, Geometric
+from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
@@ -25,6 +25,10 @@ TABLE = {
     6: (1.9949909313114, 17.260258578309, 12), 7: (2.3730945655736, 24.433767691728, 18),
     8: (0.39859096762391, 48.712616148201, 24),
 }  # fmt: skip
+
+
+PAPER = Fixed(Bounds(minimum=1e-6, initial=1.0), max_angle=inf)
+"""The paper's controller: the longest step first, whatever the angle."""
 
 
 @pytest.mark.parametrize("n", TABLE)
@@ -77,7 +81,7 @@ def unguarded(monkeypatch):
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
 def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=PAPER)
     assert path.status is Status.REACHED_TARGET
     assert len(path.turning_points) == TABLE[n][2]
 
@@ -85,7 +89,7 @@ def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
 @pytest.mark.usefixtures("unguarded")
 def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=PAPER, metric=Euclidean())
     assert path.status is Status.REACHED_TARGET
     assert len(path.turning_points) != TABLE[n][2]
     assert not audit(ExponentialCosine(n), path).same
@@ -93,6 +97,6 @@ def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
 
 @pytest.mark.usefixtures("unguarded")
 def test_a_path_that_jumped_has_no_length():
-    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
+    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=PAPER, metric=Euclidean())
     with pytest.raises(ArithmeticError, match="are not joined"):
         arclength(ExponentialCosine(5), path)

@@ -91,22 +91,12 @@ def parts() -> Iterator[Call]:
             for corrector, more in (
                 (correctors.BorderedNewton, {"reuse": "share"}),
                 (correctors.NaturalParameter, {"reuse": "share"}),
-                (correctors.Broyden, {}), (correctors.Chord, {}), (correctors.MoorePenrose, {}),
+                (correctors.MoorePenrose, {}),
             )
         ),
-        Call(predictors.Polynomial, {}, {"degree": "degree"}),
         Call(predictors.Taylor, {}, series),
         Call(controllers.AllgowerGeorg, {}, {**measures, **speeds, **bounds}),
-        Call(
-            controllers.Curvature, {},
-            {"contraction": "fraction", "initial_distance": "positive", "growth": "factor", **angle, **bounds},
-        ),
-        Call(controllers.Fixed, {}, {**angle, **bounds}),
-        Call(controllers.Geometric, {}, {"ratio": "fraction", **bounds}),
-        Call(
-            controllers.IterationCount, {},
-            {"target": "count", "grow": "factor", "shrink": "fraction", **angle, **bounds},
-        ),
+        Call(controllers.Fixed, {}, {"ratio": "fraction", **angle, **bounds}),
         Call(controllers.SeriesRange, {}, {"distance": "positive", **angle, **bounds}),
         Call(Banded, {"ab": np.ones((3, 4)), "lower": 1, "upper": 1}, {"lower": "from 0", "upper": "from 0"}),
     )  # fmt: skip

@@ -30,7 +30,7 @@ RESULTS = {
     "Proof", "Sensitivity", "Settings", "Solution", "Solutions", "Start", "Status", "Step", "StepMeasures",
     "Answers", "Diagram", "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy",
     "BrownAlmostLinear", "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
-    "Secant", "Tangent", "Followed", "plot_orbits",
+    "Tangent", "Followed", "plot_orbits",
 }  # fmt: skip
 """What is made by the package and handed over, made by a function that is in the table, or takes no argument."""
 

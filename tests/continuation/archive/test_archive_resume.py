@@ -145,7 +145,7 @@ def test_resumed_again_and_again(tmp_path):
 def test_events_and_options_come_from_the_file(tmp_path):
     options = {
         "events": [TargetValue(0.25, terminal=0), TargetValue(-0.5, terminal=2)],
-        "predictor": continuation.predictors.Secant(),
+        "predictor": continuation.predictors.Tangent(),
         "tolerance": 1e-10,
         "direction": 1,
         "target": 3.0,

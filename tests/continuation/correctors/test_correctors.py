@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import Tolerance, from_functions
-from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
+from continuation.correctors import BorderedNewton, MoorePenrose, NaturalParameter
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
@@ -12,10 +12,8 @@ from continuation.rejection import Rejection
 from problems.bifurcation import Circle, ExponentialCosine
 from tests.truth import exponential_cosine
 
-CORRECTORS = [
-    BorderedNewton(), BorderedNewton(reuse=0.0), BorderedNewton(reuse=1.0, max_iterations=20), Chord(), Broyden(),
-    MoorePenrose(), NaturalParameter(),
-]  # fmt: skip
+CHORD = BorderedNewton(reuse=1.0, max_iterations=20)
+CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), CHORD, MoorePenrose(), NaturalParameter()]
 every_corrector = pytest.mark.parametrize("corrector", CORRECTORS, ids=repr)
 TOLERANCE = Tolerance(1e-10)
 
@@ -61,7 +59,7 @@ def test_the_prediction_is_left_alone(corrector):
     np.testing.assert_array_equal(setting.predicted, before)
 
 
-@pytest.mark.parametrize("corrector", [BorderedNewton(), BorderedNewton(reuse=0.0), Chord(), Broyden()], ids=repr)
+@pytest.mark.parametrize("corrector", [BorderedNewton(), BorderedNewton(reuse=0.0), CHORD], ids=repr)
 def test_kellers_kind_stays_in_the_plane(corrector):
     setting = Setting()
     moved = setting.correct(corrector).u - setting.predicted
@@ -84,13 +82,6 @@ def test_the_natural_parameter_is_kept():
     assert setting.correct(NaturalParameter()).u[-1] == setting.predicted[-1]
 
 
-@pytest.mark.parametrize("corrector", [Chord(), Broyden()], ids=repr)
-def test_no_factorisation_of_their_own(corrector):
-    setting = Setting()
-    assert setting.correct(corrector).converged
-    assert setting.factorizations == 0
-
-
 def test_newton_factors_at_every_iterate():
     setting = Setting()
     correction = setting.correct(BorderedNewton(reuse=0.0))
@@ -107,15 +98,12 @@ def test_reuse_saves_factorisations():
 def test_a_reused_factorisation_may_serve_the_tangent():
     setting = Setting()
     assert setting.correct(BorderedNewton(reuse=0.5)).anchor is not None
-    assert setting.correct(Chord()).anchor is None
+    assert setting.correct(BorderedNewton(reuse=0.0)).anchor is None
 
 
-def test_newton_is_quadratic_and_chord_linear_with_broyden_between():
-    iterations = {
-        type(corrector): Setting(0.05).correct(corrector, Tolerance(1e-13)).iterations
-        for corrector in (BorderedNewton(reuse=0.0), Broyden(), Chord(max_iterations=40))
-    }
-    assert iterations[BorderedNewton] < iterations[Broyden] < iterations[Chord]
+def test_newton_is_quadratic_and_reuse_is_slower():
+    tight = Tolerance(1e-13)
+    assert Setting().correct(BorderedNewton(reuse=0.0), tight).iterations < Setting().correct(CHORD, tight).iterations
 
 
 def test_the_contraction_is_the_largest_ratio_of_increments():
@@ -124,7 +112,7 @@ def test_the_contraction_is_the_largest_ratio_of_increments():
         lambda y, lam: 2.0 * y - lam**2, lambda y, lam: (np.eye(1), np.array([-2.0 * lam])), start=([0.0], 0.0)
     )
     setting = Setting(0.1, homotopy, np.zeros(2))
-    correction = setting.correct(Chord(max_contraction=2.0))
+    correction = setting.correct(BorderedNewton(reuse=0.0, max_contraction=2.0))
     assert not correction.converged
     assert correction.contraction == pytest.approx(1.0, abs=0.02)
 

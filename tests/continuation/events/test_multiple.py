@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from continuation import Kind, branch_directions, from_functions, switch_branch, trace
-from continuation.events.kernels import kernels
+from continuation.linear.nullspace import kernels
 
 
 def forks(ranks, more=1):

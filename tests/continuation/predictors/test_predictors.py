@@ -8,9 +8,9 @@ from continuation import from_functions
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
-from continuation.predictors import Hermite, Knot, Polynomial, Secant, Tangent
+from continuation.predictors import Hermite, Knot, Tangent
 
-PREDICTORS = [Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(3), Polynomial(4)]
+PREDICTORS = [Tangent(), Hermite()]
 every_predictor = pytest.mark.parametrize("predictor", PREDICTORS, ids=repr)
 
 PARABOLA = from_functions(
@@ -97,12 +97,3 @@ def test_a_prediction_costs_nothing(predictor):
     before = evaluator.counts.copy()
     ahead(0.1)
     assert evaluator.counts == before
-
-
-def test_a_rough_history_lowers_the_degree():
-    rng = np.random.default_rng(0)
-    history = [Knot(s, knot(s).u + 1e-2 * rng.standard_normal(2), knot(s).tangent) for s in (0.1, 0.2, 0.3, 0.4, 0.5)]
-    evaluator = Evaluator(PARABOLA, Counts())
-    here = history[-1]
-    point = linearize(evaluator, here.u, np.ones(2), here.tangent)
-    assert len(Polynomial(5).prepare(evaluator, point, history).coefficients) < 6

@@ -2,23 +2,21 @@
 
 import numpy as np
 
-from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Geometric, IterationCount
-from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose
+from continuation.controllers import AllgowerGeorg, Bounds, Fixed
+from continuation.correctors import BorderedNewton, MoorePenrose
 from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
-from continuation.predictors import Hermite, Polynomial, Secant, Tangent
+from continuation.predictors import Hermite, Tangent
 
-PREDICTORS = [Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(4)]
+PREDICTORS = [Tangent(), Hermite()]
 
 
-CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), Chord(), Broyden(), MoorePenrose()]
+CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), MoorePenrose()]
 
 
 CONTROLLERS = [
     Fixed(Bounds(initial=0.2)),
-    Geometric(bounds=Bounds(minimum=1e-6, initial=0.25)),
-    IterationCount(),
+    Fixed(Bounds(minimum=1e-6, initial=0.25), max_angle=np.inf),
     AllgowerGeorg(),
-    Curvature(),
 ]
 
 
