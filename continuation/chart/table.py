@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from attrs import frozen
 
-from continuation.chart.results import Results, by_size, excess, exponents, ratios
+from continuation.chart.results import Results, excess
 from continuation.counts import Counts
 
 Cell = str | int | float
@@ -104,35 +104,15 @@ def summary(results: Results) -> Table:
     return Table(head, lines)
 
 
-def profile(results: Results, work: str = "factorizations") -> Table:
-    """Fractions solved, and within 1, 2, 10 times the best work, per family and method.
+def solved(results: Results) -> Table:
+    """Percentage of runs that each method solves, per family.
 
     Parameters
     ----------
     results : Results
-    work : str
     """
-    lines: list[tuple[Cell, ...]] = [
-        (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
-         float(np.isfinite(values).mean()))
-        for family in results.families
-        for method, values in ratios(results, work, family).items()
-    ]  # fmt: skip
-    return Table(("family", "method", "runs", "best", "within 2", "within 10", "solved"), lines)
-
-
-def scaling(results: Results, work: str = "factorizations") -> Table:
-    """Work by size, and exponent, per family and method.
-
-    Parameters
-    ----------
-    results : Results
-    work : str
-    """
-    sizes = sorted({row.n for row in results.rows})
     lines: list[tuple[Cell, ...]] = []
-    for (family, method), power in exponents(results, work).items():
-        costs = dict(by_size(results, family, method, work))
-        if costs:
-            lines.append((family, method, *(costs.get(float(n), math.nan) for n in sizes), round(power, 2)))
-    return Table(("family", "method", *(f"n = {n}" for n in sizes), "exponent"), lines)
+    for method in results.methods:
+        families = [results.of(method=method, family=family) for family in results.families]
+        lines.append((method, *(100 * sum(not row.failed for row in rows) // max(len(rows), 1) for rows in families)))
+    return Table(("% solved", *results.families), lines)

@@ -10,12 +10,12 @@ from continuation.chart.results import ERROR_FLOOR
 from continuation.counts import Counts
 
 
-def test_profiles_reach_as_far_as_anything_is_solved():
-    results = made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump"))
+def test_a_profile_has_a_row_for_each_method_and_those_that_solve_most_stand_above():
+    results = made(("slow", 1.0, 700, ""), ("lost", 1.0, 1, "jump"), ("quick", 1.0, 7, ""))
     (panel,) = chart.Profile("factorizations").draw(results).axes
-    assert panel.get_xlim() == (1.0, 1000.0)
-    assert [line.get_ydata()[-1] for line in panel.get_lines()] == [1.0, 1.0, 0.0]
-    assert {text.get_text() for text in panel.texts} == {"a  100 %", "b  100 %", "c  0 %"}
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["quick", "slow", "lost"]
+    assert [text.get_text() for text in panel.texts] == ["100% solved", "100% solved", "0% solved"]
+    assert {tuple(line.get_xdata()) for line in panel.get_lines()} == {(), (1.0,), (1.0, 1.0), (100.0,), (100.0, 100.0)}
 
 
 def made(*points):
@@ -47,16 +47,12 @@ def test_the_front_is_what_nothing_beats():
     assert lines["failed"][1:4] == (1, 0, "1 jump")
 
 
-def test_profiles_count_failures_as_unsolved():
-    results = made(("a", 1.0, 10, ""), ("b", 1.0, 15, ""), ("c", 1.0, 1, "jump"))
-    assert {name: values.tolist() for name, values in chart.ratios(results, "factorizations").items()} == {
-        "a": [1.0], "b": [1.5], "c": [math.inf]
-    }  # fmt: skip
-    assert chart.profile(results, "factorizations").rows == [
-        ("p", "a", 1, 1.0, 1.0, 1.0, 1.0),
-        ("p", "b", 1, 0.0, 1.0, 1.0, 1.0),
-        ("p", "c", 1, 0.0, 0.0, 0.0, 0.0),
+def test_what_is_solved_is_counted_by_family():
+    rows = [
+        evolve(row, family=family) for family in "ab" for row in made(("x", 1.0, 1, ""), ("y", 1.0, 1, "jump")).rows
     ]
+    results = evolve(made(), rows=[*rows, rows[1], evolve(rows[0], method="y")])
+    assert chart.solved(results) == chart.Table(("% solved", "a", "b"), [("x", 100, 100), ("y", 33, 0)])
 
 
 def test_exponents_are_fitted_to_the_larger_sizes():
@@ -67,7 +63,6 @@ def test_exponents_are_fitted_to_the_larger_sizes():
     )
     results = evolve(made(), rows=rows)
     assert chart.exponents(results, "factorizations")["p", "a"] == pytest.approx(3.0)
-    assert chart.scaling(results, "factorizations").rows[0][-1] == 3.0
     assert math.isnan(chart.exponents(evolve(results, rows=rows[:2]), "factorizations")["p", "a"])
 
 

@@ -17,7 +17,7 @@ def installed(monkeypatch):
     small = chart.Study(
         name="closed",
         problems=[cosine(2)],
-        methods=[chart.traced("Hermite"), chart.Method("raises", boom, laddered=False)],
+        methods=[chart.traced("Hermite"), chart.Method("raises", boom)],
         ladder=chart.tolerances(1e-6),
         errors=[chart.END_POINT],
         figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
