@@ -70,6 +70,7 @@ def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) 
     axes.set_xscale("log")
     axes.set_ylim(0.6 - len(lines), 0.6)
     axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
+    plain_ticks(axes.xaxis)
     tidy(axes)
     axes.grid(axis="y", visible=False)
     return figure, axes
