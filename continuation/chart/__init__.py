@@ -30,13 +30,13 @@ from continuation.chart.model import (
     traced,
 )
 from continuation.chart.pictures import Dumbbell, Lines, Profile
-from continuation.chart.results import WORK, Results, Row, excess, exponents, read, write
+from continuation.chart.results import WORK, Results, Row, excess, read, write
 from continuation.chart.run import run
 from continuation.chart.study import CURVE_DISTANCE, END_POINT, Error, Study, observed
 from continuation.chart.table import Table, runs, solved, summary
 
 __all__ = [
     "CURVE_DISTANCE", "END_POINT", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Lines", "Method", "Problem",
-    "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "exponents", "longest_steps", "observed",
+    "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "longest_steps", "observed",
     "read", "reference", "run", "runs", "solved", "summary", "tolerances", "traced", "write",
 ]  # fmt: skip

@@ -21,7 +21,7 @@ from continuation.chart.panels import (
     tidy,
     to_round_off,
 )
-from continuation.chart.results import WORK, Results, Row, by_size, excess, exponents, some
+from continuation.chart.results import WORK, Results, Row, by_size, excess, some
 from continuation.plot.drawing import COLOURS
 
 Line = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
@@ -39,8 +39,8 @@ def _names(value: str | Sequence[str]) -> tuple[str, ...]:
 class Lines:
     """Work against an error or the size ``"n"``, both logarithmic: lower is better.
 
-    Errors fall to the right. A panel shows a problem and kind of work, with numbers of failures; for n, a family with
-    exponents. Ours have colours, outside methods are grey.
+    Errors fall to the right. A panel shows a problem and kind of work, with numbers of failures; for n, a family.
+    Ours have colours, outside methods are grey.
 
     Attributes
     ----------
@@ -81,27 +81,20 @@ class Lines:
         columns = len(self.work) if len(self.work) > 1 else min(2, len(subjects))
         figure, axes = panels(len(cases), columns, results.title)
         for ax, (subject, work) in zip(axes, cases):
-            self._panel(ax, (self._by_size if sizes else self._by_error)(results, subject, work, looks))
+            of = {"family" if sizes else "problem": subject}
+            self._panel(ax, [self._line(results.of(method=m, **of), m, work, look) for m, look in looks.items()])
             ax.set_title(subject, fontsize="medium", loc="left")
             ax.set_ylabel(WORK[work])
         for ax in axes[-columns:]:
             ax.set_xlabel("size n" if sizes else results.errors[self.across])
         return figure
 
-    def _by_error(self, results: Results, problem: str, work: str, looks: dict[str, Any]) -> list[Line]:
-        lines: list[Line] = []
-        for method, look in looks.items():
-            rows = results.of(problem=problem, method=method)
-            points = [point for row in rows if (point := row.placed(self.across, work)) is not None]
-            failed = sum(row.failed for row in rows)
-            said = f" ({failed} of {len(rows)} failed)" if failed else ""
-            lines += [(method + said, look, points)] if rows else []
-        return lines
-
-    def _by_size(self, results: Results, family: str, work: str, looks: dict[str, Any]) -> list[Line]:
-        powers = {method: power for (of, method), power in exponents(results, work).items() if of == family}
-        named = {m: f"{m}, $n^{{{powers[m]:.1f}}}$" if math.isfinite(powers[m]) else m for m in looks}
-        return [(named[m], look, by_size(results, family, m, work)) for m, look in looks.items()]
+    def _line(self, rows: Sequence[Row], method: str, work: str, look: dict[str, Any]) -> Line:
+        if self.across == "n":
+            return method, look, by_size(rows, work)
+        points = [point for row in rows if (point := row.placed(self.across, work)) is not None]
+        failed = sum(row.failed for row in rows)
+        return method + (f" ({failed} of {len(rows)} failed)" if failed else ""), look, points
 
     def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
         for _, look, points in lines:

@@ -17,9 +17,6 @@ from continuation.counts import Counts
 ERROR_FLOOR = 1e-13
 """Errors below this are round-off and count as equal."""
 
-FITTED = 3
-"""Least number of sizes for an exponent; costs are asymptotic, so the larger half is fitted."""
-
 
 @frozen
 class Row:
@@ -212,32 +209,7 @@ def excess(results: Results, error: str, work: str) -> Array:
     ])  # fmt: skip
 
 
-def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
+def by_size(rows: Sequence[Row], work: str) -> list[tuple[float, float]]:
     """(n, mean work of successes), by n."""
-    rows = [row for row in results.of(family=family, method=method) if not row.failed]
-    sizes = sorted({row.n for row in rows})
-    return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
-
-
-def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
-    """Exponent p of work ~ n^p by (family, method), least squares on logarithms of means; NaN below `FITTED` sizes.
-
-    Parameters
-    ----------
-    results : Results
-    work : str
-
-    Raises
-    ------
-    ValueError
-        For an unknown work.
-    """
-    some("work", [work], WORK)
-    found = {}
-    for family in results.families:
-        for method in results.methods:
-            points = by_size(results, family, method, work)
-            upper = np.log(points[-max(FITTED, len(points) // 2) :]).reshape(-1, 2)
-            enough = len(upper) >= FITTED
-            found[family, method] = float(np.polyfit(upper[:, 0], upper[:, 1], 1)[0]) if enough else math.nan
-    return found
+    sizes = sorted({row.n for row in rows if not row.failed})
+    return [(n, float(np.mean([row.work(work) for row in rows if row.n == n and not row.failed]))) for n in sizes]

@@ -1,4 +1,4 @@
-"""Cost against problem size, with fitted exponents."""
+"""Cost against problem size."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""What is read off results: the front, profiles, exponents, as tables."""
+"""What is read off results: the front, profiles, tables."""
 
 import math
 
-import pytest
 from attrs import evolve
 
 from continuation import chart
@@ -55,15 +54,12 @@ def test_what_is_solved_is_counted_by_family():
     assert chart.solved(results) == chart.Table(("% solved", "a", "b"), [("x", 100, 100), ("y", 33, 0)])
 
 
-def test_exponents_are_fitted_to_the_larger_sizes():
+def test_work_is_drawn_against_the_size_as_the_mean_of_what_succeeded():
     one = made(("a", 1.0, 1, "")).rows[0]
-    sizes = [1, 2, 10, 20, 40]
-    rows = tuple(
-        evolve(one, problem=str(n), n=n, counts=Counts(factorizations=1000 if n < 10 else n**3)) for n in sizes
-    )
-    results = evolve(made(), rows=rows)
-    assert chart.exponents(results, "factorizations")["p", "a"] == pytest.approx(3.0)
-    assert math.isnan(chart.exponents(evolve(results, rows=rows[:2]), "factorizations")["p", "a"])
+    runs = [(4, 10, ""), (2, 3, ""), (2, 5, ""), (2, 99, "jump"), (8, 99, "jump")]
+    rows = [evolve(one, n=n, counts=Counts(factorizations=work), failure=failure) for n, work, failure in runs]
+    (panel,) = chart.Lines("n", "factorizations").draw(evolve(made(), rows=rows)).axes
+    assert panel.get_lines()[0].get_xydata().tolist() == [[2.0, 4.0], [4.0, 10.0]]
 
 
 def test_tables_as_text_and_markdown():
