@@ -109,7 +109,7 @@ def tables(results: Results) -> dict[str, Table]:
     """Tables by title: summary, families if there are several, failures."""
     families, failed = len(results.families) > 1, runs(results, failures_only=True)
     return {
-        "Methods": summary(results),
+        "Median excess": summary(results),
         **({"Families": solved(results)} if families else {}),
         **({"Failures": failed} if failed.rows else {}),
     }

@@ -81,27 +81,21 @@ def runs(results: Results, failures_only: bool = False) -> Table:
 
 
 def summary(results: Results) -> Table:
-    """One line per method: successes; median and worst `excess` of successful runs.
+    """One line per method: successes, failures, and for each work the median `excess` of successful runs.
 
     Parameters
     ----------
     results : Results
     """
-    head = ["method", "runs", "solved", "failures"]
-    for work in results.work:
-        head += [f"{work}: median excess", "worst"]
     far = [excess(results, next(iter(results.errors)), work) for work in results.work]
-    lines = []
+    lines: list[tuple[Cell, ...]] = []
     for method in results.methods:
         rows, mine = results.of(method=method), np.array([row.method == method for row in results.rows])
         failures = Counter(row.failure for row in rows if row.failed)
         said = ", ".join(f"{count} {name}" for name, count in failures.items())
-        cells: list[Cell] = [method, len(rows), len(rows) - failures.total(), said]
-        for times in far:
-            values = times[mine & np.isfinite(times)]
-            cells += [float(np.median(values)), float(values.max())] if values.size else [math.nan, math.nan]
-        lines.append(tuple(cells))
-    return Table(head, lines)
+        medians = [float(np.median(found)) if (found := t[mine & np.isfinite(t)]).size else math.nan for t in far]
+        lines.append((method, f"{len(rows) - failures.total()} of {len(rows)}", said, *medians))
+    return Table(("method", "solved", "failures", *results.work), lines)
 
 
 def solved(results: Results) -> Table:
