@@ -217,7 +217,7 @@ class Dumbbell:
         axes.set_xlabel(WORK[self.work])
         if not self.every:
             # Room for names on both sides.
-            axes.margins(x=0.5)
+            axes.margins(x=0.35)
             for k, (_, rows, _) in enumerate(lines):
                 for row in rows[1:]:
                     side = -1 if row.work(self.work) < rows[0].work(self.work) else 1
