@@ -68,6 +68,7 @@ $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 STUDIES := engine lcp robustness scaling scenes
 chart: $(VENV)-chart/.done
 	$(MAKE) -j2 $(STUDIES:%=chart-%)
+	$(TESTENV) $(VENV)-chart/bin/python examples/draw_images.py
 	$(TESTENV) $(VENV)-chart/bin/python docs/generate_choosing.py build/chart
 $(STUDIES:%=chart-%): chart-%: $(VENV)-chart/.done
 	$(TESTENV) $(VENV)-chart/bin/continuation chart $* --compare --output build/chart
