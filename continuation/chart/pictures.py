@@ -55,11 +55,6 @@ class Lines:
     problems: Sequence[str] | None = None
     methods: Sequence[str] | None = None
 
-    @property
-    def name(self) -> str:
-        """File name."""
-        return "-".join((self.across, *self.work))
-
     def draw(self, results: Results) -> Figure:
         """Draw the figure.
 
@@ -129,11 +124,6 @@ class Profile:
 
     work: str
 
-    @property
-    def name(self) -> str:
-        """File name."""
-        return f"profile-{self.work}"
-
     def draw(self, results: Results) -> Figure:
         """Draw the figure.
 
@@ -190,11 +180,6 @@ class Dumbbell:
     work: str
     problems: Sequence[str] | None = None
     every: bool = False
-
-    @property
-    def name(self) -> str:
-        """File name."""
-        return f"{'every' if self.every else 'dumbbell'}-{self.work}"
 
     def draw(self, results: Results) -> Figure:
         """Draw the figure.

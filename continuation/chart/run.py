@@ -10,7 +10,7 @@ from continuation.archive.provenance import now, software
 from continuation.chart.model import Answer, Failure, Method, Problem, Rung
 from continuation.chart.results import Results, Row, write
 from continuation.chart.study import WRONG, Study, distance
-from continuation.chart.table import Table, runs, solved, summary
+from continuation.chart.table import Table, failures, solved, summary
 from continuation.counts import Counts
 from continuation.linear.threads import one_thread
 from continuation.status import Status
@@ -107,25 +107,21 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
 
 def tables(results: Results) -> dict[str, Table]:
     """Tables by title: summary, families if there are several, failures."""
-    families, failed = len(results.families) > 1, runs(results, failures_only=True)
-    return {
-        "Median excess": summary(results),
-        **({"Families": solved(results)} if families else {}),
-        **({"Failures": failed} if failed.rows else {}),
-    }
+    found = {"Median excess": summary(results), "Families": solved(results), "Failures": failures(results)}
+    return {title: table for title, table in found.items() if len(table.head) > 2 and table.rows}
 
 
 def report(study: Study, results: Results, folder: File) -> list[File]:
-    """Write ``NAME.json`` and ``NAME-FIGURE.png`` to an existing folder; return the files.
+    """Write ``NAME.json`` and ``NAME-1.png``, ... to an existing folder; return the files.
 
     They replace existing ones; without matplotlib there are no figures.
     """
     files = [write(results, folder / f"{study.name}.json")]
-    for figure in study.figures:
+    for k, figure in enumerate(study.figures, start=1):
         try:
             drawing = figure.draw(results)
         except ImportError:
             break
-        files.append(folder / f"{study.name}-{figure.name}.png")
+        files.append(folder / f"{study.name}-{k}.png")
         drawing.savefig(files[-1])
     return files

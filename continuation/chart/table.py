@@ -10,7 +10,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.chart.results import Results, excess
-from continuation.counts import Counts
 
 Cell = str | int | float
 
@@ -60,24 +59,16 @@ def _shown(cell: Cell) -> str:
     return "inf" if math.isinf(cell) else f"{cell:.3g}"
 
 
-def runs(results: Results, failures_only: bool = False) -> Table:
-    """One line per run, starred on the front of first error and work.
+def failures(results: Results) -> Table:
+    """One line per run that failed, with the reason.
 
     Parameters
     ----------
     results : Results
-    failures_only : bool
     """
-    far = excess(results, next(iter(results.errors)), results.work[0])
-    counts = [name for name in Counts().as_dict() if name != "jacobians"]
-    head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
-    lines: list[tuple[Cell, ...]] = [
-        (row.problem, row.n, row.method, row.rung, "*" if times == 1.0 else "", row.failure or "ok", row.turns,
-         *row.errors.values(), *(row.counts.as_dict()[name] for name in counts), row.seconds)
-        for row, times in zip(results.rows, far)
-        if row.failed or not failures_only
-    ]  # fmt: skip
-    return Table(head, lines)
+    rows = [row for row in results.rows if row.failed]
+    lines = [(row.problem, row.method, row.rung, row.failure, row.message) for row in rows]
+    return Table(("problem", "method", results.ladder, "failure", "reason"), lines)
 
 
 def summary(results: Results) -> Table:

@@ -40,6 +40,9 @@ def test_what_went_wrong_is_named(results, method, failure):
 
 def test_the_reason_is_kept(results):
     assert row(results, "raises").message == "ArithmeticError: on purpose"
+    assert ("exponential-cosine, n = 5", "raises", 1e-8, "exception", "ArithmeticError: on purpose") in [
+        tuple(line) for line in chart.failures(results).rows
+    ]
     assert "the path has 10" in row(results, "jumps").message
 
 
@@ -48,11 +51,6 @@ def test_counts_are_those_of_a_single_trace(results):
     found = row(results, "Hermite", 1e-4)
     assert found.counts == path.counts
     assert found.turns == len(path.turning_points)
-    table = chart.runs(results)
-    line = dict(zip(table.head, table.rows[0]))
-    assert line["factorizations"] == path.counts.factorizations
-    assert line["solves"] == path.counts.solves
-    assert line["residuals"] == path.counts.residuals
 
 
 def test_errors_are_those_of_the_path(results):
@@ -111,7 +109,7 @@ def test_results_come_back_from_their_file_to_the_last_bit(results, tmp_path):
         results.study, results.title, results.ladder, results.errors
     )  # fmt: skip
     assert again.provenance == results.provenance
-    assert chart.runs(again).text() == chart.runs(results).text()
+    assert chart.summary(again).text() == chart.summary(results).text()
     for other in ("a,b\n1,2\n", "[]", '{"rows": [{}]}'):
         (tmp_path / "other.json").write_text(other)
         with pytest.raises(ValueError, match="file: expected results that `write` wrote"):
