@@ -88,9 +88,9 @@ def sampled(path: Drawn) -> tuple[Array, Array]:
     inner = np.linspace(0.0, 1.0, int(np.clip(SAMPLES // (len(steps) - 1), 1, SMOOTHNESS)), endpoint=False)
     if all(step.segment is not None for step in steps[1:]):
         u = np.array([*(step.segment.at(t) for step in steps[1:] for t in inner), steps[-1].u])
-        # Arclength inside a step goes as its chords: no picture shows the difference.
+        # Arclength inside a step goes as its chords: no picture shows the difference. Archives fill with NaN.
         weights = [np.ones(u.shape[1]) if step.weights is None else step.weights for step in steps[1:]]
-        lengths = np.sqrt((np.diff(u, axis=0) ** 2 * np.repeat(weights, inner.size, axis=0)).sum(axis=1))
+        lengths = np.sqrt(np.nansum(np.diff(u, axis=0) ** 2 * np.repeat(weights, inner.size, axis=0), axis=1))
         chords = np.append(0.0, np.cumsum(lengths))
         return np.interp(chords, chords[:: inner.size], knots), u
     fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inner).ravel(), knots[-1])
@@ -148,7 +148,8 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
         flat = flat and bool(np.ptp(curve.y) < off.max(initial=0.0))
     if flat:
         # Nothing but round-off: as a constant is drawn.
-        axes.set_ylim(np.add(curves[0].y[0], (-0.055, 0.055)))
+        middle = float(curves[0].y[0])
+        axes.set_ylim(np.add(middle, np.multiply(abs(middle) or 1.0, (-0.055, 0.055))))
     label_axis(axes, against, [curve.path for curve in curves])
     tidy(axes)
     # This fixes the limits, which names need.

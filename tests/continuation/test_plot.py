@@ -185,6 +185,21 @@ def test_components_that_are_nan_throughout_are_left_out(path, axes):
     assert np.isfinite(lines(axes)[-1].get_ydata()).all()
 
 
+def test_dense_output_with_nan_of_an_archive_is_drawn(path, axes):
+    class Padded:
+        def __init__(self, segment):
+            self.segment = segment
+
+        def at(self, t):
+            return np.where([False, True, False], np.nan, self.segment.at(t))
+
+    steps = [evolve(step, segment=step.segment and Padded(step.segment)) for step in path.steps]
+    plot_components(continuation.Path(steps), axes, components=[0], against="arclength")
+    (line,) = lines(axes)
+    assert np.isfinite(line.get_xydata()).all()
+    assert len(line.get_xdata()) > 3 * len(path)
+
+
 def padded_event(event):
     return evolve(event, u=np.array([event.u[0], np.nan, event.u[2]]))
 
