@@ -48,8 +48,10 @@ $(VENV)/.proof: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[test]" "python-flint>=0.6"
 	touch $@
 
-$(VENV)/.chart: pyproject.toml | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[chart,progress]"
+# With the other software, in an environment of its own: some of it would change what the library does.
+$(VENV)-chart/.done: pyproject.toml
+	$(PYTHON) -m venv $(VENV)-chart
+	$(VENV)-chart/bin/python -m pip install --quiet --disable-pip-version-check -e ".[chart,progress]"
 	touch $@
 
 $(VENV)/.docs: pyproject.toml | $(VENV)/bin/python
@@ -60,19 +62,21 @@ $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
 	touch $@ $(VENV)/.demo
 
-# The studies of speed against accuracy, at a moderate size: tables and pictures in build/chart. Other software takes part
-# where it is installed (the names are in problems/charts/rivals.py and problems/scenes).
-# The longest first, so that two processes end together.
+# The studies of speed against accuracy, at a moderate size, ours and other software: tables and pictures in build/chart.
+# Then the pictures and tables of the documentation are made anew, and what its pages say is checked: a quarter of an hour
+# on a quiet machine of two cores. The longest studies first, so that two processes end together.
 STUDIES := engine lcp robustness scaling scenes
-chart: $(VENV)/.chart
+chart: $(VENV)-chart/.done
 	$(MAKE) -j2 $(STUDIES:%=chart-%)
-$(STUDIES:%=chart-%): chart-%: $(VENV)/.chart
-	$(TESTENV) $(BIN)/continuation chart $* --compare --output build/chart
+	$(TESTENV) $(VENV)-chart/bin/python examples/draw_images.py
+	$(TESTENV) $(VENV)-chart/bin/python docs/generate_choosing.py build/chart
+$(STUDIES:%=chart-%): chart-%: $(VENV)-chart/.done
+	$(TESTENV) $(VENV)-chart/bin/continuation chart $* --compare --output build/chart
 
 docs: $(VENV)/.docs
 	$(BIN)/python docs/generate_constants.py
 	$(TESTENV) $(BIN)/python -m sphinx -b html -W --keep-going docs build/docs
 
 clean:
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-chart build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find continuation problems tests examples docs -name __pycache__ -prune -exec rm -rf {} +

@@ -91,8 +91,8 @@ def presets_never_fail(engine_presets):
     return all(solved(engine_presets, name) == 1.0 for name in PRESETS)
 
 
-def fast_saves_an_eighth(engine_presets):
-    return 0.83 < ratio(engine_presets, "FAST", "DEFAULT") < 0.92
+def fast_saves_little(engine_presets):
+    return 0.8 < total(engine_presets, "FAST") / total(engine_presets, "DEFAULT") < 1.0
 
 
 def tolerance_is_cheap(engine_presets):
@@ -210,34 +210,37 @@ def kkt_solves_n_matrices(robustness):
     return solved(robustness, "KKT", family="N") == 1.0 and solved(robustness, "Wang", family="N") == 0.0
 
 
-def wang_series_saves(lcp_generated):
+def wang_series_saves(scaling_lcp):
     return (
-        solved(lcp_generated, "Wang") == solved(lcp_generated, "Wang, series") == 1.0
-        and ratio(lcp_generated, "Wang, series", "Wang") <= 0.75
+        solved(scaling_lcp, "Wang") == solved(scaling_lcp, "Wang, series") == 1.0
+        and ratio(scaling_lcp, "Wang, series", "Wang") <= 0.85
     )
 
 
-def kkt_fails_on_scaled_p(lcp_generated):
-    rows = [row for row in lcp_generated.of(family="scaled P", method="KKT") if row.n == 100]
+def kkt_fails_on_scaled_p(scaling_lcp):
+    rows = [row for row in scaling_lcp.of(family="scaled P", method="KKT") if row.n >= 100]
     return all(row.failure == chart.Failure.BUDGET for row in rows)
 
 
-def zhao_never_arrives(lcp_generated):
-    return solved(lcp_generated, "Zhao") == 0.0
+def zhao_never_arrives(robustness):
+    return solved(robustness, "Zhao") == 0.0
 
 
 # -- size and robustness -------------------------------------------------------------------------------------------
 
 
 def factorizations_do_not_grow(scaling_curves):
-    return all(abs(p) < 0.25 for p in chart.exponents(scaling_curves, "factorizations").values())
+    counts = {}
+    for row in scaling_curves.rows:
+        counts.setdefault((row.family, row.method), []).append(row.work("factorizations"))
+    return all(max(each) < 1.5 * min(each) for each in counts.values())
 
 
 def series_comes_nearer_with_size(scaling_curves):
     rows = scaling_curves.of(family="H-equation (dense)")
     seconds = {(row.method, row.n): row.seconds for row in rows}
     first, last = (seconds["SERIES", n] / seconds["DEFAULT", n] for n in (10, 1000))
-    return first > 4.0 and 1.5 < last < 3.0
+    return 2.5 < first < 6.0 and 1.0 < last < min(2.0, first / 1.5)
 
 
 def solve_is_robust_where_theory_says_so(robustness):

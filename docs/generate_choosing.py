@@ -2,8 +2,8 @@
 
     python docs/generate_choosing.py [FOLDER]
 
-FOLDER holds what ``make chart`` wrote (build/chart by default). Needs matplotlib. Ends with status 1, after writing
-everything, if a statement of the page does not hold.
+FOLDER holds results of all studies, run with ``--compare`` (build/chart by default): ``make chart`` runs them, and this.
+Needs matplotlib. Ends with status 1, after writing everything, if a statement of the page does not hold.
 """
 
 import inspect
@@ -20,8 +20,7 @@ from continuation import chart
 
 PAGES = [Path(__file__).with_name(name) for name in ("choosing.md", "scenes_measured.md")]
 IMAGES = Path(__file__).parent / "images"
-SCENES = ("scenes-meshes", "scenes-exact")
-OURS_AND_THEIRS = ["DEFAULT", "SERIES", "plain scipy loop", "PITCON (dense)"]
+OURS_AND_THEIRS = ["DEFAULT", "SERIES", "plain scipy loop", "PITCON (dense)", "bice"]
 
 
 def shown(results):
@@ -30,34 +29,28 @@ def shown(results):
     return [name for kind in kinds for name in results.problems if name.startswith(kind)]
 
 
-def scenes(charts):
-    """All scenes as results of one study."""
-    first, second = (charts[name] for name in SCENES)
-    return evolve(first, title="Scenes: time to the answer", rows=[*first.rows, *second.rows])
-
-
 def pictures(charts):
     """Each picture by the name of its file."""
-    presets, steps = charts["engine-presets"], charts["engine-steps"]
+    presets, scenes = charts["engine-presets"], charts["scenes"]
+    both = ("seconds", "factorizations")
     # Of the README: two paths, ours and theirs.
     taken = [method for method in OURS_AND_THEIRS if method in presets.methods]
     headline = chart.Lines("end_point", "seconds", shown(presets), taken)
     yield "headline", headline, evolve(presets, title="Error at the end of the path against time")
-    yield "presets", chart.Lines("end_point", ("seconds", "factorizations"), shown(presets)), presets
-    yield "steps", chart.Lines("curve_distance", "factorizations"), steps
+    yield "presets", chart.Lines("end_point", both, shown(presets)), presets
+    yield "steps", chart.Lines("curve_distance", "factorizations"), charts["engine-steps"]
     yield "lcp-paper", chart.Profile("factorizations"), charts["lcp-paper"]
     yield "robustness", chart.Profile("factorizations"), charts["robustness"]
-    yield "scaling-curves", chart.Lines("n", "seconds"), charts["scaling-curves"]
-    yield "scaling-lcp", chart.Lines("n", "seconds"), charts["scaling-lcp"]
-    every = scenes(charts)
-    yield "scenes", chart.Dumbbell("answer", "seconds"), every
-    names = sorted(every.problems)
+    yield "scaling-curves", chart.Lines("n", both), charts["scaling-curves"]
+    yield "scaling-lcp", chart.Lines("n", both), charts["scaling-lcp"]
+    yield "scenes", chart.Dumbbell("answer", "seconds"), scenes
+    names = sorted(scenes.problems)
     for k in range(4):
         part = names[k * len(names) // 4 : (k + 1) * len(names) // 4]
-        yield f"scenes-{k + 1}", chart.Dumbbell("answer", "seconds", part, every=True), evolve(every, title="")
+        yield f"scenes-{k + 1}", chart.Dumbbell("answer", "seconds", part, every=True), evolve(scenes, title="")
 
 
-TABLES = {"scaling": chart.scaling, "profile": chart.profile}
+TABLES = {"": chart.summary, "solved": chart.solved}
 
 ROOMS = ("engine", "lcp", "robustness", "scaling", "scenes")
 CLAIMS = {
@@ -90,9 +83,8 @@ def tables(text, charts):
     """The page with every table made anew."""
 
     def made(match):
-        study, _, figure = match[1].partition("/")
-        table = TABLES[figure](charts[study]) if figure else chart.summary(charts[study])
-        return f"<!-- table {match[1]} -->\n\n{table.markdown()}\n\n<!-- end -->"
+        study, _, kind = match[1].partition("/")
+        return f"<!-- table {match[1]} -->\n\n{TABLES[kind](charts[study]).markdown()}\n\n<!-- end -->"
 
     return TABLE.sub(made, text)
 

@@ -28,16 +28,7 @@ def bratu(file: Path) -> None:
     left, right = figure.subplots(1, 2)
     plot_bifurcation(path, left)
     plot_steps(path, right)
-    fold = path.turning_points[0]
-    left.annotate(
-        f"fold at $\\lambda$ = {fold.lam:.9f}",
-        (fold.lam, abs(fold.y).max()),
-        (-12, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        fontsize="small",
-    )
+    left.set_title(f"fold at $\\lambda$ = {path.turning_points[0].lam:.9f}", fontsize="small")
     figure.savefig(file, dpi=110)
 
 

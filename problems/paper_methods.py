@@ -23,7 +23,7 @@ def _literal(problem: Problem, rung: Rung) -> Answer:
 
 METHODS: Mapping[str, Method] = {
     **{name: path(name, one.make) for name, one in HOMOTOPIES.items()},
-    "literal": Method("literal", _literal, laddered=False, outside=True),
+    "literal": Method("literal", _literal, outside=True),
     **{name: direct(name, *DIRECT[title][1:]) for name, title in
        (("lemke", "Lemke"), ("modulus", "modulus"), ("min-newton", "min-Newton"))},
 }  # fmt: skip

@@ -13,7 +13,7 @@ A plug-in author charts a homotopy of their own in ten lines::
         errors=[chart.CURVE_DISTANCE],
     )
     results = chart.run(study)
-    print(chart.runs(results).text())
+    print(chart.summary(results).text())
     chart.Lines("curve_distance", "factorizations").draw(results).savefig("mine.png")
 """
 
@@ -30,14 +30,13 @@ from continuation.chart.model import (
     traced,
 )
 from continuation.chart.pictures import Dumbbell, Lines, Profile
-from continuation.chart.results import WORK, Results, Row, excess, exponents, ratios, read, write
+from continuation.chart.results import WORK, Results, Row, excess, read, write
 from continuation.chart.run import run
-from continuation.chart.study import CURVE_DISTANCE, END_POINT, TURNING_POINTS, Error, Study, observed
-from continuation.chart.table import Table, profile, runs, scaling, summary
+from continuation.chart.study import CURVE_DISTANCE, END_POINT, Error, Study, observed
+from continuation.chart.table import Table, failures, solved, summary
 
 __all__ = [
-    "CURVE_DISTANCE", "END_POINT", "TURNING_POINTS", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Lines",
-    "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "exponents",
-    "longest_steps", "observed", "profile", "ratios", "read", "reference", "run", "runs", "scaling", "summary",
-    "tolerances", "traced", "write",
+    "CURVE_DISTANCE", "END_POINT", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Lines", "Method", "Problem",
+    "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "failures", "longest_steps", "observed",
+    "read", "reference", "run", "solved", "summary", "tolerances", "traced", "write",
 ]  # fmt: skip

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Unpack
 
-import numpy as np
-from attrs import Factory, evolve, field, frozen
+from attrs import Factory, field, frozen
 
-from continuation.arguments.checks import POSITIVE, POSITIVE_FINITE
+from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.path import Path
 from continuation.step.options import Options, check_names
-from continuation.step.presets import CONSERVATIVE, DEFAULT
+from continuation.step.presets import CONSERVATIVE
 from continuation.tracing import trace
 
 
@@ -24,26 +23,13 @@ class Rung:
     Attributes
     ----------
     name : str
-        Label.
+        An option of `continuation.trace`, or what the study's methods know by it.
     value : float
         Positive.
-    change : callable
-        Maps (options, value) to options; default: no change.
     """
 
     name: str
     value: float = field(validator=POSITIVE_FINITE)
-    change: Callable[[dict[str, Any], float], dict[str, Any]] = lambda options, value: options
-
-    def apply(self, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Set the value.
-
-        Parameters
-        ----------
-        options : mapping
-            For `continuation.trace`.
-        """
-        return self.change(dict(options), self.value)
 
 
 def tolerances(*values: float) -> tuple[Rung, ...]:
@@ -53,27 +39,18 @@ def tolerances(*values: float) -> tuple[Rung, ...]:
     ----------
     *values : float
     """
-    return tuple(Rung("tolerance", value, lambda options, value: {**options, "tolerance": value}) for value in values)
+    return tuple(Rung("tolerance", value) for value in values)
 
 
 def longest_steps(*values: float) -> tuple[Rung, ...]:
-    """Vary the controller's longest step, a bound for the first too.
+    """Vary the longest step.
 
     Parameters
     ----------
     *values : float
         Arclengths.
     """
-    return tuple(Rung("longest step", value, _limited) for value in values)
-
-
-def _limited(options: dict[str, Any], value: float) -> dict[str, Any]:
-    controller = options.get("controller") or options.get("preset", DEFAULT).controller
-    bounds = controller.bounds
-    # Keep an open or shorter first step.
-    first = bounds.initial if bounds.initial is None else min(bounds.initial, value)
-    limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value), initial=first)
-    return {**options, "controller": evolve(controller, bounds=limited)}
+    return tuple(Rung("max_step", value) for value in values)
 
 
 class Failure:
@@ -93,15 +70,14 @@ class Truth:
 
     Attributes
     ----------
-    end, turning_points : ndarray or None
-        Shapes (N + 1,) and (k, N + 1): (y, lam), in path order.
-    within : float
-        Relative distance from `end` beyond which an end is wrong.
+    end : ndarray or None
+        Shape (N + 1,): (y, lam).
+    turns : int or None
+        Number of turning points.
     """
 
     end: Array | None = None
-    turning_points: Array | None = None
-    within: float = field(default=1e-2, validator=POSITIVE)
+    turns: int | None = None
 
 
 REFERENCE_TOLERANCE = 1e-11
@@ -125,7 +101,7 @@ def reference(homotopy: Any, **options: Any) -> Truth:
     path: Path = trace(homotopy, **{"preset": CONSERVATIVE, "tolerance": REFERENCE_TOLERANCE, **options})
     if not path.success:
         raise ArithmeticError(f"the reference path did not arrive: {path.message}")
-    return Truth(path.endpoint.u, np.reshape([event.u for event in path.turning_points], (-1, path.endpoint.u.size)))
+    return Truth(path.endpoint.u, len(path.turning_points))
 
 
 @frozen(eq=False)
@@ -190,15 +166,14 @@ class Method:
     name : str
     run : callable
         Maps (problem, rung) to an Answer; may raise.
-    laddered, outside : bool
-        Whether to run on every rung; whether others provide the method.
     applies : callable
         Whether it solves a given problem.
+    outside : bool
+        Whether others provide the method.
     """
 
     name: str
     run: Callable[[Problem, Rung], Answer]
-    laddered: bool = True
     applies: Callable[[Problem], bool] = lambda problem: True
     outside: bool = False
 
@@ -218,9 +193,12 @@ def traced(name: str, **options: Unpack[Options]) -> Method:
         For an unknown option.
     """
     check_names(options)
-    return Method(
-        name, lambda problem, rung: answer_of(trace(problem.subject, **rung.apply({**problem.options, **options})))
-    )
+
+    def run(problem: Problem, rung: Rung) -> Answer:
+        asked: dict[str, Any] = {**problem.options, **options, rung.name: rung.value}
+        return answer_of(trace(problem.subject, **asked))
+
+    return Method(name, run)
 
 
 def answer_of(path: Path) -> Answer:

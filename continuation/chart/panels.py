@@ -21,14 +21,8 @@ LINE = 0.165
 Axes = Any
 Figure = Any
 
-
-def some(kind: str, wanted: Sequence[str] | None, known: Sequence[str]) -> Sequence[str]:
-    """Return wanted or all names; ValueError for unknown ones."""
-    if wanted is None:
-        return known
-    if not wanted or not set(wanted) <= set(known):
-        raise ValueError(f"{kind}: expected some of {', '.join(known)}, found {wanted}")
-    return wanted
+Mark = tuple[float, dict[str, Any]]
+"""Place on a row, style."""
 
 
 def _look(k: int, outside: bool) -> dict[str, Any]:
@@ -63,6 +57,24 @@ def panels(count: int, across: int, title: str, height: float = 3.0, width: floa
         unused.remove()
     figure.suptitle(title, fontsize="medium")
     return figure, list(grid[:count])
+
+
+def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) -> tuple[Figure, Axes]:
+    """One row per line (name, marks, remark), the marks joined; a logarithmic axis."""
+    figure, (axes,) = panels(1, 1, title, height=1.2 + 1.35 * LINE * len(lines), width=9.0)
+    for k, (_, marks, said) in enumerate(lines):
+        axes.plot([x for x, _ in marks], [-k] * len(marks), color="0.8", linewidth=2.0, zorder=1)
+        for x, look in marks:
+            axes.plot(x, -k, **look)
+        axes.annotate(said, (1.01, -k), xycoords=("axes fraction", "data"), va="center", fontsize="small")
+    axes.set_xscale("log")
+    axes.set_ylim(0.6 - len(lines), 0.6)
+    axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
+    axes.tick_params(axis="y", length=0.0)
+    plain_ticks(axes.xaxis)
+    tidy(axes)
+    axes.grid(axis="y", visible=False)
+    return figure, axes
 
 
 def tidy(axes: Axes) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as File
 
@@ -16,9 +16,6 @@ from continuation.counts import Counts
 
 ERROR_FLOOR = 1e-13
 """Errors below this are round-off and count as equal."""
-
-FITTED = 3
-"""Least number of sizes for an exponent; costs are asymptotic, so the larger half is fitted."""
 
 
 @frozen
@@ -33,7 +30,7 @@ class Row:
     outside : bool
         See `Method`.
     rung, seconds : float
-        Ladder value or NaN; least processor time.
+        Ladder value; least processor time.
     failure, message : str
         See `Answer`.
     errors : mapping of str to float
@@ -60,15 +57,15 @@ class Row:
         return bool(self.failure)
 
     def work(self, name: str) -> float:
-        """Work, at least its least value.
+        """Work, positive for logarithms and ratios.
 
         Parameters
         ----------
         name : str
             From `WORK`.
         """
-        measure = WORK[name]
-        return max(measure.of(self), measure.least)
+        # A clock counts nanoseconds.
+        return max(self.seconds, 1e-9) if name == "seconds" else max(float(getattr(self.counts, name)), 1.0)
 
     def placed(self, error: str, work: str) -> tuple[float, float] | None:
         """(error, work), or None for a failure or without error.
@@ -85,22 +82,23 @@ class Row:
         return max(float(f"{value:.2e}"), ERROR_FLOOR), self.work(work)
 
 
-@frozen
-class Work:
-    """A measure of work; `least` is positive for logarithms and ratios."""
-
-    label: str
-    of: Callable[[Row], float]
-    least: float = 1.0
-
-
-WORK: Mapping[str, Work] = {
-    "factorizations": Work("factorisations", lambda row: float(row.counts.factorizations)),
-    "solves": Work("solves with a factorisation", lambda row: float(row.counts.solves)),
-    "residuals": Work("residual evaluations", lambda row: float(row.counts.residuals)),
-    "steps": Work("accepted steps", lambda row: float(row.counts.accepted)),
-    "seconds": Work("processor time (s)", lambda row: row.seconds, 1e-9),
+WORK: Mapping[str, str] = {
+    "factorizations": "factorisations",
+    "solves": "solves with a factorisation",
+    "residuals": "residual evaluations",
+    "accepted": "accepted steps",
+    "seconds": "processor time (s)",
 }
+"""Labels of what is counted of a run, and of its time."""
+
+
+def some(kind: str, wanted: Sequence[str] | None, known: Iterable[str]) -> Sequence[str]:
+    """Return wanted or all names; ValueError for unknown ones."""
+    if wanted is None:
+        return list(known)
+    if isinstance(wanted, str) or not wanted or not set(wanted) <= set(known):
+        raise ValueError(f"{kind}: expected some of {', '.join(known)}, found {wanted!r}")
+    return wanted
 
 
 @frozen
@@ -152,17 +150,6 @@ class Results:
         given = {name: value for name, value in where.items() if value is not None}
         return [row for row in self.rows if all(getattr(row, name) == value for name, value in given.items())]
 
-    def check(self, error: str | None = None, work: str | None = None) -> None:
-        """Raise ValueError for an unknown error or work.
-
-        Parameters
-        ----------
-        error, work : str, optional
-        """
-        for kind, name, known in (("error", error, self.errors), ("work", work, WORK)):
-            if name is not None and name not in known:
-                raise ValueError(f"{kind}: expected one of {', '.join(known)}, found {name!r}")
-
 
 def write(results: Results, file: str | PathLike[str]) -> File:
     """Write results as a JSON object; pandas reads its ``rows``.
@@ -212,7 +199,8 @@ def excess(results: Results, error: str, work: str) -> Array:
     ValueError
         For unknown names.
     """
-    results.check(error, work)
+    some("error", [error], results.errors)
+    some("work", [work], WORK)
     placed = [(row.problem, row.placed(error, work)) for row in results.rows]
     points = [(problem, *point) for problem, point in placed if point is not None]
     return np.array([
@@ -221,59 +209,7 @@ def excess(results: Results, error: str, work: str) -> Array:
     ])  # fmt: skip
 
 
-def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
-    """Work over the least of all methods, per method, problem and rung; infinite for failures.
-
-    Methods without rung count for every rung.
-
-    Parameters
-    ----------
-    results : Results
-    work, family : str
-        Default: all families.
-    """
-    results.check(work=work)
-    rows = results.of(family=family)
-    rungs = sorted({row.rung for row in rows if not math.isnan(row.rung)}) or [math.nan]
-    cost = {
-        (row.problem, rung, row.method): math.inf if row.failed else row.work(work)
-        for row in rows
-        for rung in (rungs if math.isnan(row.rung) else [row.rung])
-    }
-    cases = list(dict.fromkeys((problem, rung) for problem, rung, _ in cost))
-    table = np.array([[cost.get((*case, method), math.inf) for case in cases] for method in results.methods])
-    least = table.min(axis=0)
-    # Avoid inf / inf where all failed.
-    least[np.isinf(least)] = 1.0
-    return dict(zip(results.methods, table / least))
-
-
-def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
+def by_size(rows: Sequence[Row], work: str) -> list[tuple[float, float]]:
     """(n, mean work of successes), by n."""
-    rows = [row for row in results.of(family=family, method=method) if not row.failed]
-    sizes = sorted({row.n for row in rows})
-    return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
-
-
-def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
-    """Exponent p of work ~ n^p by (family, method), least squares on logarithms of means; NaN below `FITTED` sizes.
-
-    Parameters
-    ----------
-    results : Results
-    work : str
-
-    Raises
-    ------
-    ValueError
-        For an unknown work.
-    """
-    results.check(work=work)
-    found = {}
-    for family in results.families:
-        for method in results.methods:
-            points = by_size(results, family, method, work)
-            upper = np.log(points[-max(FITTED, len(points) // 2) :]).reshape(-1, 2)
-            enough = len(upper) >= FITTED
-            found[family, method] = float(np.polyfit(upper[:, 0], upper[:, 1], 1)[0]) if enough else math.nan
-    return found
+    sizes = sorted({row.n for row in rows if not row.failed})
+    return [(n, float(np.mean([row.work(work) for row in rows if row.n == n and not row.failed]))) for n in sizes]

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 import numpy as np
 from attrs import Attribute, Factory, field, frozen
 from attrs.validators import min_len
 
-from continuation.arguments.checks import NOT_NEGATIVE, integer
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.chart.model import Answer, Method, Problem, Rung, tolerances
-from continuation.chart.results import WORK, Results
-from continuation.chart.table import Table
+from continuation.chart.results import WORK, some
 from continuation.correctors import MoorePenrose
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -25,6 +23,10 @@ from continuation.tolerance import Tolerance
 Size = Literal["smoke", "moderate", "full"]
 """Size of a ready study: for tests, for minutes on two cores, for reports. A ready study maps (size, compare) to
 studies; `compare` adds installed outside solvers."""
+
+
+WRONG = 1e-2
+"""An answer that is off by more, relatively, is another one: what arrives is far nearer, what jumped farther."""
 
 
 @frozen
@@ -54,13 +56,6 @@ def _end_point(problem: Problem, answer: Answer) -> float:
     return math.nan if true is None or answer.end is None else distance(answer.end, true)
 
 
-def _turning_points(problem: Problem, answer: Answer) -> float:
-    true = problem.truth.turning_points
-    if true is None or answer.path is None or not len(true) or len(answer.path.turning_points) != len(true):
-        return math.nan
-    return max(distance(event.u, row) for event, row in zip(answer.path.turning_points, true))
-
-
 BETWEEN = (0.25, 0.5, 0.75)
 """Step fractions at which dense output is compared."""
 
@@ -70,23 +65,17 @@ def _curve_distance(problem: Problem, answer: Answer) -> float:
     path = answer.path
     if path is None or len(path) < 2:
         return math.nan
-    between = [
-        after.segment.at(t) if after.segment is not None else (1.0 - t) * before.u + t * after.u
-        for before, after in pairwise(path.steps)
-        for t in BETWEEN
-    ]
+    s = path.arclength
     evaluator, corrector = Evaluator(problem.subject, Counts()), MoorePenrose(max_contraction=10.0)
-    largest = 0.0
-    for u in [*path.u, *between]:
+    distances = []
+    for u in path(np.concatenate([s, *(s[:-1] + part * np.diff(s) for part in BETWEEN)])):
         try:
             here = linearize(evaluator, u, np.ones_like(u), np.ones_like(u))
             found = corrector.correct(evaluator, here, u, here.border, Tolerance(relative=1e-12))
         except ArithmeticError:
             return math.nan
-        if not found.converged:
-            return math.nan
-        largest = max(largest, distance(u, found.u))
-    return largest
+        distances.append(distance(u, found.u) if found.converged else math.nan)
+    return float(np.max(distances))
 
 
 def observed(name: str, label: str) -> Error:
@@ -103,19 +92,17 @@ def observed(name: str, label: str) -> Error:
 
 
 END_POINT = Error("end_point", "relative error of the end point", _end_point)
-TURNING_POINTS = Error("turning_points", "relative error of the turning points", _turning_points)
 CURVE_DISTANCE = Error("curve_distance", "relative distance of the dense output from the curve", _curve_distance)
 
 
-def _named_once(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+def _named_once(study: Study, attribute: Attribute[Any], value: Any) -> None:
     names = [getattr(item, "name", None) for item in value] if isinstance(value, Sequence) else []
     if not names or None in names or len(set(names)) < len(names):
         raise ValueError(f"{attribute.name}: expected a list of some, each with a name of its own, found {value!r}")
 
 
-def _known(instance: Any, attribute: Attribute[Any], value: Sequence[str]) -> None:
-    if isinstance(value, str) or not value or not set(value) <= set(WORK):
-        raise ValueError(f"work: expected a list of some of {', '.join(WORK)}, found {value!r}")
+def _known(study: Study, attribute: Attribute[Any], value: Sequence[str]) -> None:
+    some("work", value, WORK)
 
 
 @frozen(eq=False, kw_only=True)
@@ -132,14 +119,8 @@ class Study:
         Most important first; work from `WORK`.
     figures : sequence
         `Lines`, `Profile`, `Dumbbell`.
-    tables : mapping of str to callable
-        Functions of the results, by title.
     repeats : int
-        Timed runs after the first.
-    patience : float
-        Seconds; slower or failed runs are not repeated.
-    give_up : bool
-        Whether running out of budget also fails, unrun, later rungs and larger problems of the family.
+        Timed runs after the first, of what succeeded.
     notes : sequence of str
         Remarks kept with the results.
 
@@ -156,9 +137,6 @@ class Study:
     errors: Sequence[Error] = field(validator=_named_once)
     work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known)
     figures: Sequence[Any] = ()
-    tables: Mapping[str, Callable[[Results], Table]] = field(factory=dict)
     title: str = field(default=Factory(lambda study: study.name, takes_self=True))
     repeats: int = field(default=2, validator=integer(0))
-    patience: float = field(default=0.5, validator=NOT_NEGATIVE)
-    give_up: bool = False
     notes: Sequence[str] = ()

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from attrs import frozen
 
-from continuation.chart.results import Results, by_size, excess, exponents, ratios
-from continuation.counts import Counts
+from continuation.chart.results import Results, excess
 
 Cell = str | int | float
 
@@ -60,79 +59,45 @@ def _shown(cell: Cell) -> str:
     return "inf" if math.isinf(cell) else f"{cell:.3g}"
 
 
-def runs(results: Results, failures_only: bool = False) -> Table:
-    """One line per run, starred on the front of first error and work.
+def failures(results: Results) -> Table:
+    """One line per run that failed, with the reason.
 
     Parameters
     ----------
     results : Results
-    failures_only : bool
     """
-    far = excess(results, next(iter(results.errors)), results.work[0])
-    counts = [name for name in Counts().as_dict() if name != "jacobians"]
-    head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
-    lines: list[tuple[Cell, ...]] = [
-        (row.problem, row.n, row.method, row.rung, "*" if times == 1.0 else "", row.failure or "ok", row.turns,
-         *row.errors.values(), *(row.counts.as_dict()[name] for name in counts), row.seconds)
-        for row, times in zip(results.rows, far)
-        if row.failed or not failures_only
-    ]  # fmt: skip
-    return Table(head, lines)
+    rows = [row for row in results.rows if row.failed]
+    lines = [(row.problem, row.method, row.rung, row.failure, row.message) for row in rows]
+    return Table(("problem", "method", results.ladder, "failure", "reason"), lines)
 
 
 def summary(results: Results) -> Table:
-    """One line per method: successes; median and worst `excess` of successful runs.
+    """One line per method: successes, failures, and for each work the median `excess` of successful runs.
 
     Parameters
     ----------
     results : Results
     """
-    head = ["method", "runs", "solved", "failures"]
-    for work in results.work:
-        head += [f"{work}: median excess", "worst"]
     far = [excess(results, next(iter(results.errors)), work) for work in results.work]
-    lines = []
+    lines: list[tuple[Cell, ...]] = []
     for method in results.methods:
         rows, mine = results.of(method=method), np.array([row.method == method for row in results.rows])
         failures = Counter(row.failure for row in rows if row.failed)
         said = ", ".join(f"{count} {name}" for name, count in failures.items())
-        cells: list[Cell] = [method, len(rows), len(rows) - failures.total(), said]
-        for times in far:
-            values = times[mine & np.isfinite(times)]
-            cells += [float(np.median(values)), float(values.max())] if values.size else [math.nan, math.nan]
-        lines.append(tuple(cells))
-    return Table(head, lines)
+        medians = [float(np.median(found)) if (found := t[mine & np.isfinite(t)]).size else math.nan for t in far]
+        lines.append((method, f"{len(rows) - failures.total()} of {len(rows)}", said, *medians))
+    return Table(("method", "solved", "failures", *results.work), lines)
 
 
-def profile(results: Results, work: str = "factorizations") -> Table:
-    """Fractions solved, and within 1, 2, 10 times the best work, per family and method.
+def solved(results: Results) -> Table:
+    """Percentage of runs that each method solves, per family.
 
     Parameters
     ----------
     results : Results
-    work : str
     """
-    lines: list[tuple[Cell, ...]] = [
-        (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
-         float(np.isfinite(values).mean()))
-        for family in results.families
-        for method, values in ratios(results, work, family).items()
-    ]  # fmt: skip
-    return Table(("family", "method", "runs", "best", "within 2", "within 10", "solved"), lines)
-
-
-def scaling(results: Results, work: str = "factorizations") -> Table:
-    """Work by size, and exponent, per family and method.
-
-    Parameters
-    ----------
-    results : Results
-    work : str
-    """
-    sizes = sorted({row.n for row in results.rows})
     lines: list[tuple[Cell, ...]] = []
-    for (family, method), power in exponents(results, work).items():
-        costs = dict(by_size(results, family, method, work))
-        if costs:
-            lines.append((family, method, *(costs.get(float(n), math.nan) for n in sizes), round(power, 2)))
-    return Table(("family", "method", *(f"n = {n}" for n in sizes), "exponent"), lines)
+    for method in results.methods:
+        families = [results.of(method=method, family=family) for family in results.families]
+        lines.append((method, *(100 * sum(not row.failed for row in rows) // max(len(rows), 1) for rows in families)))
+    return Table(("% solved", *results.families), lines)

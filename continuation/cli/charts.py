@@ -60,7 +60,7 @@ def _one(study: Study, folder: Path) -> None:
     from continuation.chart.run import report, tables
 
     results = run_study(study, _watch(study.name))
-    for title, table in tables(study, results).items():
+    for title, table in tables(results).items():
         print(f"\n{results.title}: {title}\n{table.text()}")
     for note in study.notes:
         print(f"\n{results.title}: {note}")

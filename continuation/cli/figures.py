@@ -28,7 +28,7 @@ def register(subparsers: Subparsers) -> None:
             "--against", choices=("lam", "arclength"), default="lam", help="the horizontal axis (default: lam)"
         ),
         argument(
-            "--components", type=_numbers, metavar="I,J,...", help="components of y, from 0; default: at most twelve"
+            "--components", type=_numbers, metavar="I,J,...", help="components of y, from 0; default: at most seven"
         ),
         argument(
             "--diagram", action="store_true", help="draw the maximum norm of y (or the one component) against lambda"

@@ -137,7 +137,7 @@ class Diagram:
         Axes
         """
         drawn = [evolve(path, events=[e for e in path.events if e.kind in LABELS]) for path in self.paths]
-        axes = plot_bifurcation(drawn, axes, value=value, **options)
+        axes = plot_bifurcation(drawn, axes, value=value, **{"legend": False, **options})
         if labels:
             along = options.get("against", "lam") == "lam"
             for point in self.points:

@@ -9,24 +9,20 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.plot.drawing import (
     COLOURS,
+    MOST_COMPONENTS,
     Axes,
-    Drawing,
+    Curve,
     Drawn,
-    across,
-    arrow,
     axes_or_new,
     check_path,
     chosen_components,
+    draw,
     label_axis,
     line_style,
-    name_events,
-    sign,
+    sampled,
+    stable_parts,
     tidy,
 )
-from continuation.plot.stretches import by_stability, draw_line
-
-MOST_PROFILES = 6
-"""Lines of a panel that a reader distinguishes at a glance."""
 
 
 def plot_components(
@@ -51,7 +47,7 @@ def plot_components(
     names : sequence of str, optional
         One per component; default: the homotopy's, or ``y_0``, ``y_1``, ....
     components : iterable of int, optional
-        Default: all, or twelve evenly spaced.
+        Default: all, or seven evenly spaced.
     legend : bool
         Whether to name curves and events and draw arrows.
 
@@ -61,46 +57,37 @@ def plot_components(
         Without matplotlib; for invalid arguments or an empty path.
     """
     check_path(path)
-    drawing = Drawing.of(path)
-    chosen = chosen_components(components, drawing.u[:, :-1])
-    unknowns = int(np.isfinite(drawing.u[:, :-1]).any(axis=0).sum())
-    own = path.labels
+    s, u = sampled(path)
+    chosen, own = chosen_components(components, path.u[:, :-1]), path.labels
     usual = [own.with_unit(own.unknown(i)) if own.unknown(i) else f"$y_{{{i}}}$" for i in chosen]
     labels = usual if names is None else list(names)
     if len(labels) != len(chosen):
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
-    axes = axes_or_new(axes)
-    horizontal = across(against, drawing)
-    parts = by_stability(path, drawing.s)
-    for k, (i, label) in enumerate(zip(chosen, labels)):
-        draw_line(axes, horizontal, drawing.u[:, i], label, line_style(k), drawing.s, parts)
-    places = [(event, event.lam if against == "lam" else event.arclength, event.y[chosen]) for event in path.events]
-    for event, where, heights in places:
-        axes.plot([where] * len(chosen), heights, zorder=3, **sign(event))
-    label_axis(axes, against, [path])
-    if legend:
-        name_events(axes, places)
-        for k, i in enumerate(chosen):
-            arrow(axes, horizontal, drawing.u[:, i], line_style(k)["color"])
-        if parts is not None:
-            axes.set_title("solid: stable, dashed: not", fontsize="x-small", color="0.4", loc="right")
+    parts = stable_parts(path)
+    curves = [
+        Curve(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
+        for k, (i, label) in enumerate(zip(chosen, labels))
+    ]
+    axes = draw(axes, curves, against, legend)
+    unknowns = int(np.isfinite(path.u[:, :-1]).any(axis=0).sum())
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
-    elif legend:
-        some = f"{len(chosen)} of {unknowns} components" if components is None and len(chosen) < unknowns else None
-        axes.legend(title=some, title_fontsize="small", fontsize="small", frameon=False, ncols=1 + len(chosen) // 5)
-    return tidy(axes)
+    elif legend and components is None and len(chosen) < unknowns:
+        axes.get_legend().set_title(f"{len(chosen)} of {unknowns}", prop={"size": "small"})
+    return axes
 
 
-def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PROFILES, x: Array | None = None) -> Axes:
+def plot_profiles(
+    path: Drawn, axes: Axes | None = None, profiles: int = MOST_COMPONENTS, x: Array | None = None
+) -> Axes:
     """Draw all unknowns over position at a few points of the path.
 
     Parameters
     ----------
     path : Path
     axes : matplotlib Axes, optional
-    profiles : int, default 6
-        Evenly spaced in arclength, ends included.
+    profiles : int, default 7
+        At most as many. Evenly spaced in arclength, ends included.
     x : array_like, shape (N,), optional
         Positions; default: numbers of the unknowns.
 
@@ -117,7 +104,7 @@ def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PR
     places = _places(path, x)
     axes = axes_or_new(axes)
     ends = path.arclength[0], path.arclength[-1]
-    for k, s in enumerate(np.linspace(*ends, min(profiles, MOST_PROFILES))):
+    for k, s in enumerate(np.linspace(*ends, min(profiles, MOST_COMPONENTS))):
         u = path(float(s))
         axes.plot(places, u[:-1], label=f"{u[-1]:.4g}", **line_style(k))
     axes.legend(title=path.labels.parameter(r"$\lambda$"), frameon=False, fontsize="small")
@@ -147,8 +134,8 @@ def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> 
     check_path(path)
     places = _places(path, x)
     axes = axes_or_new(axes)
-    drawing = Drawing.of(path)
-    filled = axes.pcolormesh(drawing.s, places, drawing.u[:, :-1].T, shading="nearest", cmap="viridis", rasterized=True)
+    s, u = sampled(path)
+    filled = axes.pcolormesh(s, places, u[:, :-1].T, shading="nearest", cmap="viridis", rasterized=True)
     axes.figure.colorbar(filled, ax=axes)
     for event in path.turning_points:
         axes.axvline(event.arclength, color="white", linewidth=0.8)

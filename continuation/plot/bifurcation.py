@@ -10,20 +10,16 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.plot.drawing import (
     Axes,
-    Drawing,
+    Curve,
     Drawn,
-    across,
-    axes_or_new,
+    Parts,
     check_path,
     chosen_components,
-    height,
-    interpolated,
-    label_axis,
-    line_style,
-    mark_events,
-    tidy,
+    draw,
+    known_along,
+    sampled,
+    stable_parts,
 )
-from continuation.plot.stretches import Stretch, by_stability, draw_line, stretches
 
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
 """Component, name, function of (y, lam), or None (maximum norm)."""
@@ -72,31 +68,17 @@ def plot_bifurcation(
     paths = list(path) if isinstance(path, Iterable) else [path]
     if not paths:
         raise ValueError("path: expected at least one, found none")
-    for one in paths:
-        check_path(one)
     wanted = value if component is None else component
-    axes = axes_or_new(axes)
+    curves = []
     for k, one in enumerate(paths):
-        drawing = Drawing.of(one)
-        horizontal, heights = across(against, drawing), values_along(one, drawing, wanted)
+        check_path(one)
+        s, u = sampled(one)
         label = (names[k] if names is not None else None) or "_"
-        draw_line(axes, horizontal, heights, label, line_style(k), drawing.s, _parts(one, drawing, stable))
-        places = [
-            (event, event.lam if against == "lam" else event.arclength, at_event(event, one, wanted))
-            for event in one.events
-        ]
-        mark_events(axes, places)
-    label_axis(axes, against, paths)
+        heights = [at_event(event, one, wanted) for event in one.events]
+        curves.append(Curve(one, s, u, _along(one, s, u, wanted), heights, label, k, _parts(one, s, u, stable)))
+    axes = draw(axes, curves, against, legend)
     axes.set_ylabel(_named(paths[0], wanted))
-    if legend and axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize="small")
-    return tidy(axes)
-
-
-def values_along(path: Drawn, drawing: Drawing, value: Value) -> Array:
-    """The drawn number at each point."""
-    measured = _measured(path, value)
-    return _observed(path, drawing, str(value)) if measured is None else np.array([*map(measured, drawing.u)])
+    return axes
 
 
 def at_event(event: Any, path: Drawn, value: Value) -> float:
@@ -105,11 +87,19 @@ def at_event(event: Any, path: Drawn, value: Value) -> float:
     return float(event.observed.get(value, np.nan)) if measured is None else measured(event.u)
 
 
+def _along(path: Drawn, s: Array, u: Array, value: Value) -> Array:
+    measured = _measured(path, value)
+    if measured is not None:
+        return np.array([*map(measured, u)])
+    return known_along(path, lambda point: point.observed.get(value, np.nan), s)
+
+
 def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
     """Function of (y, lam), or None for an observed scalar."""
     if value is None:
-        return lambda u: float(height(u[:-1]))
-    if not isinstance(value, int | str):
+        # NaN fills shorter paths in archives.
+        return lambda u: float(np.fmax.reduce(np.abs(u[:-1])))
+    if callable(value):
         function = value
         return lambda u: float(function(u[:-1], float(u[-1])))
     if isinstance(value, str):
@@ -123,23 +113,16 @@ def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
     return lambda u: float(u[component])
 
 
-def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
-    known = [(step.arclength, step.observed[name]) for step in path.steps]
-    known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
-    s, values = np.array(known).T
-    return interpolated(s, values, drawing.s)
-
-
-def _parts(path: Drawn, drawing: Drawing, stable: Stable) -> list[Stretch] | None:
+def _parts(path: Drawn, s: Array, u: Array, stable: Stable) -> Parts:
     if stable is None:
-        return by_stability(path, drawing.s)
+        return stable_parts(path)
     if callable(stable):
-        solid = np.array([bool(stable(u[:-1], float(u[-1]))) for u in drawing.u])
+        solid = np.array([bool(stable(point[:-1], float(point[-1]))) for point in u])
     elif stable in path.steps[0].observed:
-        solid = _observed(path, drawing, stable) > 0.0
+        solid = _along(path, s, u, stable) > 0.0
     else:
         raise ValueError(f"stable: expected one of {', '.join(path.steps[0].observed) or 'nothing'}, found {stable!r}")
-    return stretches(drawing.s, drawing.s[np.flatnonzero(np.diff(solid))], bool(solid[0]))
+    return s[1:][np.diff(solid)].tolist(), bool(solid[0])
 
 
 def _named(path: Drawn, value: Value) -> str:
@@ -147,7 +130,5 @@ def _named(path: Drawn, value: Value) -> str:
         return r"$\max_i |y_i|$"
     if callable(value):
         return str(getattr(value, "__name__", "")).replace("<lambda>", "")
-    if isinstance(value, str):
-        return str(path.labels.with_unit(value))
-    name = path.labels.unknown(value)
+    name = value if isinstance(value, str) else path.labels.unknown(value)
     return str(path.labels.with_unit(name)) if name else f"$y_{{{value}}}$"

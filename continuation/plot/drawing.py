@@ -1,4 +1,4 @@
-"""Parts of every path picture: curve, marks, axes."""
+"""What every picture of a path is made of: curves, solid where stable, with marked and named events, and an arrow."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.status import Kind
+from continuation.status import Kind, Status
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":")
-TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
+TURN = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
 """Mark of turning points."""
 
-KINK = {**TURN, "marker": "D", "markersize": 5.5}
+KINK = {**TURN, "marker": "D", "markersize": 5}
 """Mark of kinks."""
 
 MARKS = {
-    Kind.TURNING_POINT: {},
-    Kind.BRANCH_POINT: {"marker": "s", "markerfacecolor": "black", "markersize": 6},
-    Kind.SINGULAR_POINT: {"marker": "s", "markersize": 6},
-    Kind.KINK: {"marker": "D", "markersize": 5.5},
-    Kind.HOPF: {"marker": "*", "markersize": 10, "markerfacecolor": "black"},
+    Kind.TURNING_POINT: TURN,
+    Kind.BRANCH_POINT: {**TURN, "marker": "s", "markerfacecolor": "black"},
+    Kind.SINGULAR_POINT: {**TURN, "marker": "s"},
+    Kind.KINK: KINK,
+    Kind.HOPF: {**TURN, "marker": "*", "markersize": 10, "markerfacecolor": "black"},
 }
 """Marks by kind: circle, filled square, square, diamond, star."""
 
-OTHER = {"marker": "D", "markersize": 5, "markerfacecolor": "0.6"}
-"""Mark of other events, which show their name."""
+OTHER = {**KINK, "markerfacecolor": "0.6"}
+"""Mark of other events."""
 
 SMOOTHNESS = 12
 """Curve points per step ..."""
@@ -38,78 +38,175 @@ SMOOTHNESS = 12
 SAMPLES = 600
 """... but at most this many: long paths look smooth without."""
 
-MOST_COMPONENTS = 12
+MOST_COMPONENTS = len(COLOURS)
 """Most curves that a reader can tell apart."""
+
+UNSTABLE = "unstable"
+"""Number of unstable eigenvalues, stored by `continuation.Stability`."""
 
 Axes = Any
 
 Drawn: TypeAlias = Any
 """A `continuation.Path`."""
 
+Parts: TypeAlias = tuple[Sequence[float], bool] | None
+"""Arclengths where stability changes, and whether the first part is stable."""
+
 
 @frozen(eq=False)
-class Drawing:
-    """Dense output if stored, else cubics through points."""
+class Curve:
+    """One number along a path.
 
+    Attributes
+    ----------
+    path : Path
+    s, u : ndarray
+        What `sampled` gives.
+    y, at : sequence of float
+        The number, there and at the events.
+    label : str
+    k : int
+        Of colours and dashes.
+    parts : Parts
+    """
+
+    path: Drawn
     s: Array
     u: Array
-
-    @classmethod
-    def of(cls, path: Drawn) -> Drawing:
-        """Sample the curve."""
-        if len(path) < 2:
-            return cls(path.arclength, path.u)
-        if all(step.segment is not None for step in path.steps[1:]):
-            return cls._along(path.steps)
-        return cls._through(path)
-
-    @classmethod
-    def _along(cls, steps: Sequence[Any]) -> Drawing:
-        """Sample segments, with arclength by chords, whose error no picture shows.
-
-        `Path.__call__` integrates instead: 0.5 s of the demo's 4 s.
-        """
-        inner = np.linspace(0.0, 1.0, _count(len(steps)), endpoint=False)[1:]
-        s, u = [], []
-        for before, after in pairwise(steps):
-            assert after.segment is not None
-            # The previous step may have other unknowns (`continuation.renewal`).
-            points = np.array([after.segment.at(0.0), *map(after.segment.at, inner), after.u])
-            weights = np.ones(points.shape[1]) if after.weights is None else after.weights
-            chords = np.sqrt(np.diff(points, axis=0) ** 2 @ weights)
-            behind = np.append(0.0, np.cumsum(chords[:-1])) / max(chords.sum(), np.finfo(float).tiny)
-            s.append(before.arclength + (after.arclength - before.arclength) * behind)
-            u.append(points[:-1])
-        return cls(np.append(np.concatenate(s), steps[-1].arclength), np.vstack([*u, steps[-1].u]))
-
-    @classmethod
-    def _through(cls, path: Drawn) -> Drawing:
-        points = [(s.arclength, *s.u) for s in path.steps] + [(t.arclength, *t.u) for t in path.turning_points]
-        s, u = (part for part in np.split(np.array(points), [1], axis=1))
-        knots = path.arclength
-        inner = np.linspace(0.0, 1.0, _count(len(knots)), endpoint=False)
-        fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inner).ravel(), knots[-1])
-        fine = np.unique(np.append(fine, s))
-        drawn = np.full((fine.size, u.shape[1]), np.nan)
-        known = np.isfinite(u).all(axis=0)
-        drawn[:, known] = interpolated(s[:, 0], u[:, known], fine)
-        return cls(fine, drawn)
+    y: Array
+    at: Sequence[float]
+    label: str
+    k: int
+    parts: Parts
 
 
-def interpolated(s: Array, values: Array, wanted: Array) -> Array:
-    """Interpolate by monotone cubics, which add no extrema; `s` in any order, the first of equal ones counts."""
+def sampled(path: Drawn) -> tuple[Array, Array]:
+    """Arclengths and points of the curve: dense output if stored, else cubics through points and turning points."""
+    knots, steps = path.arclength, path.steps
+    if len(steps) < 2:
+        return knots, path.u
+    inner = np.linspace(0.0, 1.0, int(np.clip(SAMPLES // (len(steps) - 1), 1, SMOOTHNESS)), endpoint=False)
+    if all(step.segment is not None for step in steps[1:]):
+        u = np.array([*(step.segment.at(t) for step in steps[1:] for t in inner), steps[-1].u])
+        # Arclength inside a step goes as its chords: no picture shows the difference. Archives fill with NaN.
+        weights = [np.ones(u.shape[1]) if step.weights is None else step.weights for step in steps[1:]]
+        lengths = np.sqrt(np.nansum(np.diff(u, axis=0) ** 2 * np.repeat(weights, inner.size, axis=0), axis=1))
+        chords = np.append(0.0, np.cumsum(lengths))
+        return np.interp(chords, chords[:: inner.size], knots), u
+    fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inner).ravel(), knots[-1])
+    fine = np.union1d(fine, [event.arclength for event in path.turning_points])
+    return fine, known_along(path, lambda point: point.u, fine)
+
+
+def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
+    """What is known at points and events, between them by monotone cubics, which add no extrema."""
     from scipy.interpolate import PchipInterpolator
 
-    order = np.argsort(s, kind="stable")
-    order = order[np.append(True, np.diff(s[order]) > 1e-9 * s.max())]
-    if order.size < 2:
-        return np.broadcast_to(values[order[0]], (wanted.size, *values.shape[1:]))
-    return np.asarray(PchipInterpolator(s[order], values[order])(wanted))
+    points = sorted([*path.events, *path.steps], key=lambda point: point.arclength)
+    s, values = np.array([point.arclength for point in points]), np.array([number(point) for point in points])
+    apart = np.append(True, np.diff(s) > 1e-9 * s[-1])
+    if apart.sum() < 2:
+        return np.repeat(values[:1], wanted.size, axis=0)
+    # Archives fill shorter paths with NaN.
+    return np.asarray(PchipInterpolator(s[apart], np.nan_to_num(values[apart]))(wanted) + 0.0 * values[0])
 
 
-def _count(points: int) -> int:
-    """Drawn points per step."""
-    return int(np.clip(SAMPLES // (points - 1), 1, SMOOTHNESS))
+def stable_parts(path: Drawn) -> Parts:
+    """From stored stability, or None.
+
+    It changes at the first event between two points, those that users asked for last, else half way.
+    """
+    if not path.steps or UNSTABLE not in path.steps[0].observed:
+        return None
+    stable = np.array([step.observed[UNSTABLE] == 0.0 for step in path.steps])
+    edges = []
+    for k in np.flatnonzero(stable[1:] != stable[:-1]):
+        a, b = path.arclength[k], path.arclength[k + 1]
+        inside = [(event.kind is Kind.EVENT, event.arclength) for event in path.events if a <= event.arclength <= b]
+        edges.append(min(inside, default=(False, 0.5 * (a + b)))[1])
+    return edges, bool(stable[0])
+
+
+def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool) -> Axes:
+    """Draw curves with their events; with `legend` also names and arrows."""
+    if against not in ("lam", "arclength"):
+        raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
+    axes = axes_or_new(axes)
+    lam = against == "lam"
+    flat = True
+    for curve in curves:
+        x, knots, events = curve.u[:, -1] if lam else curve.s, curve.s, curve.path.events
+        looks = line_style(curve.k)
+        edges, solid = curve.parts or ((), True)
+        for k, (a, b) in enumerate(pairwise([knots[0], *edges, knots[-1]])):
+            s = np.unique(np.concatenate(([a, b], knots[(knots > a) & (knots < b)])))
+            # With stability, dashes do not distinguish lines.
+            dashes = {} if curve.parts is None else {"linestyle": "-" if solid != bool(k % 2) else "--"}
+            alone = {"marker": "." if knots.size == 1 else "", "label": "_" if k else curve.label}
+            axes.plot(np.interp(s, knots, x), np.interp(s, knots, curve.y), **{**looks, **dashes, **alone})
+        off = np.abs(np.interp([event.arclength for event in events], knots, curve.y) - curve.at)
+        flat = flat and bool(np.ptp(curve.y) < off.max(initial=0.0))
+    if flat:
+        # Nothing but round-off: as a constant is drawn.
+        middle = float(curves[0].y[0])
+        axes.set_ylim(np.add(middle, np.multiply(abs(middle) or 1.0, (-0.055, 0.055))))
+    label_axis(axes, against, [curve.path for curve in curves])
+    tidy(axes)
+    # This fixes the limits, which names need.
+    axes.get_xlim()
+    _mark(axes, curves, lam, legend)
+    if not legend:
+        return axes
+    for curve in curves:
+        _arrow(axes, curve.u[:, -1] if lam else curve.s, curve.y, line_style(curve.k)["color"])
+    if any(curve.parts for curve in curves):
+        axes.set_title("solid: stable, dashed: not", fontsize="x-small", color="0.4", loc="right")
+    if len(axes.get_legend_handles_labels()[1]) > 1:
+        # Beside the curves, where the layout makes room.
+        room = axes.figure.get_layout_engine() is not None
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if room else {}
+        axes.legend(frameon=False, fontsize="small", **beside)
+    return axes
+
+
+def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
+    """Mark events; name the first of each name, with the number of such on its path, and early ends."""
+    from matplotlib.lines import Line2D
+
+    said = set()
+    for path in {id(curve.path): curve.path for curve in curves}.values():
+        mine = [curve for curve in curves if curve.path is path]
+        for k, event in enumerate(path.events):
+            x, heights = event.lam if lam else event.arclength, [float(curve.at[k]) for curve in mine]
+            # Events' round-off must not set the scale, as it would by `plot`.
+            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **sign(event)))
+            many = sum(other.name == event.name for other in path.events)
+            if named and event.name not in said:
+                _say(axes, f"{event.name} ({many})" if many > 1 else event.name, x, max(heights))
+            said.add(event.name)
+        ended = path.status.name.lower().replace("_", " ")
+        if named and not path.success and path.status is not Status.TRACING and ended not in said:
+            _say(axes, ended, path.lam[-1] if lam else path.arclength[-1], mine[0].y[-1], below=True)
+            said.add(ended)
+
+
+def _say(axes: Axes, text: str, x: float, y: float, below: bool = False) -> None:
+    """Write beside a point, towards the middle of the panel."""
+    right, up = (axes.transData + axes.transAxes.inverted()).transform((x, y))
+    side, above = right < 0.6, up < (0.1 if below else 0.9)
+    looks = {"ha": "left" if side else "right", "va": "bottom" if above else "top", "fontsize": "x-small", "zorder": 4}
+    behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.7}
+    place = (6 if side else -6, 4 if above else -4)
+    axes.annotate(text, (x, y), place, textcoords="offset points", bbox=behind, **looks)
+
+
+def _arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
+    """Draw an arrow head two fifths along a line's moving points."""
+    moves = np.flatnonzero(np.isfinite(y[1:]) & np.isfinite(y[:-1]) & ((np.diff(x) != 0.0) | (np.diff(y) != 0.0)))
+    if moves.size:
+        k = moves[2 * moves.size // 5]
+        head = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 13.0}
+        axes.annotate("", (x[k + 1], y[k + 1]), (x[k], y[k]), arrowprops=head)
 
 
 def require_matplotlib() -> None:
@@ -120,9 +217,6 @@ def require_matplotlib() -> None:
         raise ImportError("pictures need matplotlib: pip install 'pseudoarclength[plot]'") from error
 
 
-AGAINST = ("lam", "arclength")
-
-
 def check_path(path: Drawn) -> None:
     """Raise ValueError for an empty path."""
     if len(path) == 0:
@@ -130,25 +224,18 @@ def check_path(path: Drawn) -> None:
 
 
 def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
-    """Requested components, or twelve evenly spaced."""
+    """Requested components, or some evenly spaced."""
     n = y.shape[1]
     if components is None:
         # Archives fill shorter paths with NaN.
         filled = np.flatnonzero(np.isfinite(y).any(axis=0))
-        if len(filled) > MOST_COMPONENTS:
-            filled = filled[np.linspace(0, len(filled) - 1, MOST_COMPONENTS).round().astype(int)]
-        return [int(i) for i in filled]
+        spaced = np.linspace(0, len(filled) - 1, min(len(filled), MOST_COMPONENTS)).round().astype(int)
+        return [int(i) for i in filled[spaced]]
     chosen = list(components)
     outside = [i for i in chosen if not 0 <= i < n]
     if outside:
         raise ValueError(f"components: expected numbers from 0 to {n - 1}, found {outside[0]}")
     return chosen
-
-
-def height(y: Array) -> Array:
-    """Maximum norm on the last axis, ignoring NaN."""
-    largest: Array = np.fmax.reduce(np.abs(y), axis=-1)
-    return largest
 
 
 def axes_or_new(axes: Axes | None) -> Axes:
@@ -173,14 +260,6 @@ def tidy(axes: Axes) -> Axes:
     return axes
 
 
-def across(against: str, drawing: Drawing) -> Array:
-    """Horizontal coordinates of a drawing."""
-    if against not in AGAINST:
-        raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
-    values: Array = drawing.u[:, -1] if against == "lam" else drawing.s
-    return values
-
-
 def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
     """Label the horizontal axis; invert it for falling parameters."""
     if against == "arclength":
@@ -194,42 +273,4 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
 
 def sign(event: Any) -> dict[str, Any]:
     """Mark of an event."""
-    return {**TURN, **MARKS.get(event.kind, OTHER)}
-
-
-def called(event: Any) -> str:
-    """An event's kind, or its own name if that says more."""
-    known = event.kind in MARKS and event.kind is not Kind.HOPF
-    return str(event.kind.flag.replace("_", " ") if known else event.name)
-
-
-def name_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
-    """Name the first event of each name, with their number."""
-    names = [called(event) for event, _, _ in places]
-    for name in dict.fromkeys(names):
-        _, x, y = places[names.index(name)]
-        text = f"{name} ({names.count(name)})" if names.count(name) > 1 else name
-        # Towards the middle of the panel.
-        right, up = (axes.transData + axes.transAxes.inverted()).transform((x, np.max(y)))
-        looks = {"fontsize": "x-small", "ha": "left" if right < 0.6 else "right", "va": "bottom" if up < 0.9 else "top"}
-        offset = (6 if right < 0.6 else -6, 4 if up < 0.9 else -4)
-        behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.7}
-        axes.annotate(text, (x, np.max(y)), offset, textcoords="offset points", zorder=4, bbox=behind, **looks)
-
-
-def arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
-    """Draw an arrow head two fifths along a line's moving points."""
-    moves = np.flatnonzero(np.isfinite(y[1:]) & np.isfinite(y[:-1]) & ((np.diff(x) != 0.0) | (np.diff(y) != 0.0)))
-    if moves.size:
-        k = moves[2 * moves.size // 5]
-        head = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 11.0}
-        axes.annotate("", (x[k + 1], y[k + 1]), (x[k], y[k]), arrowprops=head)
-
-
-def mark_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
-    """Mark events, each name once in the legend."""
-    named = set(axes.get_legend_handles_labels()[1])
-    for event, x, y in places:
-        heights, name = np.atleast_1d(y), called(event)
-        axes.plot([x] * heights.size, heights, zorder=3, label="_" if name in named else name, **sign(event))
-        named.add(name)
+    return MARKS.get(event.kind, OTHER)

@@ -7,17 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import continuation
-from continuation.chart import (
-    CURVE_DISTANCE,
-    END_POINT,
-    TURNING_POINTS,
-    Lines,
-    Problem,
-    Study,
-    longest_steps,
-    tolerances,
-    traced,
-)
+from continuation.chart import CURVE_DISTANCE, END_POINT, Lines, Problem, Study, longest_steps, tolerances, traced
 from continuation.chart.study import Size
 from continuation.controllers import AllgowerGeorg, Bounds, Fixed, SeriesRange
 from continuation.correctors import BorderedNewton, MoorePenrose, NaturalParameter
@@ -88,23 +78,21 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
         # Users choose among presets: time and compare them, also on a sparse system.
         whole = name == "presets"
-        square = bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size]) if whole else None
-        timed = size == "full" or whole
-        shown = [square.name, problems[-1].name] if square else []
-        # A series hardly depends on the tolerance and is expensive.
-        own = rungs[:: 2 if name == "series" else 1]
+        square = [bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size])] if whole else []
+        shown = [one.name for one in (*square, problems[-1])]
         found.append(
             Study(
                 name=f"engine-{name}",
                 title=f"Tolerance against work: {title}",
-                problems=[*problems, square] if square else problems,
+                problems=[*problems, *square],
                 methods=[*methods, *rivals.curve_followers(compare)] if whole else methods,
-                ladder=tolerances(*own),
-                errors=(END_POINT, TURNING_POINTS),
-                work=(*COUNTED, "seconds") if timed else COUNTED,
-                figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if shown else [],
-                repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
-                notes=rivals.notes(["pysces"], compare and whole),
+                # A series hardly depends on the tolerance and is expensive.
+                ladder=tolerances(*rungs[:: 2 if name == "series" else 1]),
+                errors=(END_POINT,),
+                work=(*COUNTED, "seconds") if whole else COUNTED,
+                figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if whole else [],
+                repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if whole else 0,
+                notes=rivals.notes(["pysces", "bice"], compare and whole),
             )
         )
     return [*found, _steps(problems, size)]

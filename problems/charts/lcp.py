@@ -28,12 +28,7 @@ SOLVED_TO = 1e-6
 RESIDUAL = observed("natural_residual", "natural residual max |min(x, Ax + q)|, over 1 + max |q|")
 
 BUDGET = continuation.Budget(steps=200)
-"""Per path."""
-
-WHOLE_BUDGET = continuation.Budget(steps=400)
-"""For all paths of `lcp.solve`."""
-
-WORK = ("factorizations", "solves", "seconds")
+"""Of a path, or of all paths of `lcp.solve`: those that arrive on these problems take half as many."""
 
 
 def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
@@ -42,12 +37,10 @@ def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
     def run(problem: Problem, rung: Rung) -> Answer:
         x0 = problem.options.get("x0")
         homotopy = make(problem.subject) if x0 is None else make(problem.subject, x0)
-        traced = continuation.trace(homotopy, **rung.apply({"budget": BUDGET, **options}))
-        answer = answer_of(traced)
-        if not traced.steps:
+        answer = answer_of(continuation.trace(homotopy, **{"budget": BUDGET, **options, rung.name: rung.value}))
+        if answer.end is None:
             return answer
-        x = traced.endpoint.y[: problem.n]
-        return judged(problem.subject, x, answer.counts, path=traced, message=answer.message)
+        return judged(problem.subject, answer.end[: problem.n], answer.counts, path=answer.path, message=answer.message)
 
     return Method(name, run)
 
@@ -56,12 +49,12 @@ def solver(name: str, **options: Any) -> Method:
     """`problems.lcp.solve`, with active-set finish."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
-        solution = lcp.solve(problem.subject, x0=problem.options.get("x0"), **{"budget": WHOLE_BUDGET, **options})
+        solution = lcp.solve(problem.subject, x0=problem.options.get("x0"), **{"budget": BUDGET, **options})
         if solution.x is None:
             return Answer(solution.counts, failure=Failure.STOPPED, message=solution.message)
         return judged(problem.subject, solution.x, solution.counts, message=solution.message)
 
-    return Method(name, run, laddered=False)
+    return Method(name, run)
 
 
 def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], Counts]) -> Method:
@@ -74,7 +67,7 @@ def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], 
             return Answer(Counts(), failure=Failure.STOPPED, message=str(error))
         return judged(problem.subject, x, cost(iterations, problem.n))
 
-    return Method(name, run, laddered=False, outside=True)
+    return Method(name, run, outside=True)
 
 
 def pivots(k: int, n: int) -> Counts:
@@ -131,30 +124,32 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """The ten examples, and generated families."""
+    """The ten examples."""
     rungs = {"smoke": (1e-6,), "moderate": (1e-4, 1e-8), "full": (1e-3, 1e-5, 1e-7, 1e-9)}[size]
-    homotopies = [path(one.title, one.make) for one in HOMOTOPIES.values()]
     quick = (HOMOTOPIES["kkt"], HOMOTOPIES["wang"])
-    series = [path(f"{one.title}, series", one.make, preset=continuation.SERIES) for one in quick]
-    whole = [solver("KKT, finish", homotopy="kkt"), solver("solve, auto")]
-    common: dict[str, Any] = {
-        "methods": [*homotopies, *series, *whole, *direct_methods(compare)],
-        "ladder": tolerances(*rungs),
-        "errors": (RESIDUAL,),
-        "work": WORK if size == "full" else WORK[:2],
-        "repeats": 3 if size == "full" else 0,
-        "notes": notes(compare),
-    }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
-    paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]
-    orders = {"smoke": (5,), "moderate": (10, 100), "full": (5, 10, 50, 100, 200, 500, 1000)}[size]
-    families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "copositive")
-    generated = [problem(family, n, 0) for family in families for n in orders]
     return [
-        Study(name="lcp-paper", title="The ten examples of Dutta, Das and Jana", problems=paper,
-              figures=[Profile("factorizations")], **common),
-        Study(name="lcp-generated", title="Generated problems", problems=generated, give_up=True, **common),
-    ]  # fmt: skip
+        Study(
+            name="lcp-paper",
+            title="The ten examples of Dutta, Das and Jana",
+            problems=[
+                Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples
+            ],
+            methods=[
+                *(path(one.title, one.make) for one in HOMOTOPIES.values()),
+                *(path(f"{one.title}, series", one.make, preset=continuation.SERIES) for one in quick),
+                solver("KKT, finish", homotopy="kkt"),
+                solver("solve, auto"),
+                *direct_methods(compare),
+            ],
+            ladder=tolerances(*rungs),
+            errors=(RESIDUAL,),
+            work=("factorizations", "solves"),
+            figures=[Profile("factorizations")],
+            repeats=0,
+            notes=notes(compare),
+        )
+    ]
 
 
 def problem(family: str, n: int, seed: int) -> Problem:

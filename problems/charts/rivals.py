@@ -1,9 +1,13 @@
-"""Adapters to outside solvers, used if installed."""
+"""Other ways to follow a curve: a plain loop, and packages where they are installed."""
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable, Iterable
+from contextlib import redirect_stdout
+from functools import partial
+from importlib import import_module
 from importlib.machinery import PathFinder
 from importlib.metadata import packages_distributions, version
 from importlib.util import find_spec, module_from_spec
@@ -18,108 +22,112 @@ from continuation.arrays import Array
 from continuation.chart import Answer, Method, Problem, Rung
 from continuation.counts import Counts
 
-PITCON = "PITCON (dense)"
-
 STEPS = 1000
 """Limit per path; a successful plain loop needs some hundred."""
 
-
-@frozen
-class _Aim:
-    value: float
-    direction: float
-
-    @classmethod
-    def of(cls, problem: Problem) -> _Aim:
-        for event in problem.options.get("events", ()):
-            return cls(event.value, event.direction)
-        target = problem.subject.target
-        return cls(target, math.copysign(1.0, target - problem.subject.start()[1]))
-
-    def crossed(self, before: float, after: float) -> bool:
-        return self.direction * (before - self.value) < 0.0 <= self.direction * (after - self.value)
+LONGEST = 30.0
+"""Longest step of PITCON and bice: no shorter than the longest of ours on these paths."""
 
 
 @frozen
-class _Counted:
-    homotopy: Any
+class _Curve:
+    """A problem's equations, counted, and where its path ends."""
+
+    problem: Problem
     counts: Counts = field(factory=Counts)
 
     @property
     def start(self) -> Array:
-        y, lam = self.homotopy.start()
+        y, lam = self.problem.subject.start()
         return np.append(y, lam)
+
+    @property
+    def aim(self) -> float:
+        end: Array = self.problem.truth.end  # type: ignore[assignment]
+        return float(end[-1])
+
+    @property
+    def direction(self) -> float:
+        """Of lam at the start."""
+        return math.copysign(1.0, self.aim - self.start[-1])
+
+    def arrived(self, before: float, after: float) -> bool:
+        """Whether lam passes the target as at the end of the path: each turning point turns it round."""
+        last = self.direction * (-1.0) ** (self.problem.truth.turns or 0)
+        return last * (before - self.aim) < 0.0 <= last * (after - self.aim)
 
     def residual(self, u: Array) -> Array:
         self.counts.residuals += 1
-        return np.asarray(self.homotopy.residual(u[:-1], float(u[-1])))
+        return np.asarray(self.problem.subject.residual(u[:-1], float(u[-1])))
 
     def jacobian(self, u: Array) -> tuple[Any, Array]:
+        """H_y, a numpy or scipy matrix, and H_lam."""
         self.counts.factorizations += 1
-        return self.homotopy.jacobian(u[:-1], float(u[-1]))  # type: ignore[no-any-return]
+        H_y, H_lam = self.problem.subject.jacobian(u[:-1], float(u[-1]))
+        return H_y.tosparse() if hasattr(H_y, "tosparse") else H_y, H_lam
 
-    def solve(self, u: Array, row: Array, r: Array, rho: float) -> Array:
-        """Solve H' x = r, row x = rho; a sparse H_y by block elimination."""
+    def solve(self, u: Array, row: Array, right: Array) -> Array:
+        """Solve H' x = right[:-1], row x = right[-1]."""
         self.counts.solves += 1
         H_y, H_lam = self.jacobian(u)
-        if not sp.issparse(H_y):
-            whole = np.block([[np.asarray(H_y), H_lam[:, None]], [row[None, :]]])
-            return np.linalg.solve(whole, np.append(r, rho))
-        w, x = splu(sp.csc_array(H_y)).solve(np.column_stack((H_lam, r))).T
-        lam = (rho - row[:-1] @ x) / (row[-1] - row[:-1] @ w)
-        return np.append(x - lam * w, lam)
+        if sp.issparse(H_y):
+            whole = sp.block_array([[H_y, H_lam[:, None]], [row[None, :-1], row[None, -1:]]], format="csc")
+            return np.asarray(splu(whole).solve(right))
+        return np.linalg.solve(np.vstack([np.column_stack((H_y, H_lam)), row]), right)
 
     def newton(self, u: Array, row: Array, tolerance: float) -> tuple[Array | None, int]:
         """Newton in the plane normal to `row`; returns (point, iterations)."""
         for k in range(8):
-            step = self.solve(u, row, -self.residual(u), 0.0)
+            step = self.solve(u, row, np.append(-self.residual(u), 0.0))
             u = u + step
             if np.linalg.norm(step) <= tolerance * (1.0 + np.linalg.norm(u)):
                 return u, k + 1
         return None, 8
 
-    def land(self, before: Array, after: Array, value: float, tolerance: float) -> Answer:
-        guess = before + (value - before[-1]) / (after[-1] - before[-1]) * (after - before)
-        end, _ = self.newton(guess, np.eye(1, guess.size, guess.size - 1)[0], tolerance)
+    def land(self, before: Array, after: Array, tolerance: float) -> Answer:
+        guess = before + (self.aim - before[-1]) / (after[-1] - before[-1]) * (after - before)
+        end, _ = self.newton(guess, np.eye(guess.size)[-1], tolerance)
         return Answer(self.counts, end=end)
 
 
-def _loop(problem: Problem, rung: Rung) -> Answer:
+def _loop(curve: _Curve, tolerance: float) -> Answer:
     """Plain Keller continuation, without turning points."""
-    aim, ours = _Aim.of(problem), _Counted(problem.subject)
-    u, counts = ours.start, ours.counts
-    zero, h = np.zeros(u.size - 1), 0.1
-    v = np.append(zero, 1.0 if aim.value > u[-1] else -1.0)
-    v = ours.solve(u, v, zero, 1.0)
-    v /= np.linalg.norm(v)
+    u, counts, h = curve.start, curve.counts, 0.1
+    last = np.eye(u.size)[-1]
+    v = curve.direction * last
     while counts.accepted < STEPS and h > 1e-9:
-        following, iterations = ours.newton(u + h * v, v, rung.value)
-        if following is not None and aim.crossed(u[-1], following[-1]):
-            answer = ours.land(u, following, aim.value, rung.value)
-            if answer.end is not None:
-                return answer
-            following = None
-        if following is None:
-            h, counts.rejected = h / 2.0, counts.rejected + 1
-            continue
-        counts.accepted += 1
-        t = ours.solve(following, v, zero, 1.0)
-        u, v = following, t / np.linalg.norm(t)
-        h *= 2.0 if iterations <= 3 else 1.0 if iterations <= 5 else 0.5
+        v = curve.solve(u, v, last)
+        v /= np.linalg.norm(v)
+        following = None
+        while following is None and h > 1e-9:
+            following, iterations = curve.newton(u + h * v, v, tolerance)
+            if following is not None and curve.arrived(u[-1], following[-1]):
+                answer = curve.land(u, following, tolerance)
+                if answer.end is not None:
+                    return answer
+                following = None
+            if following is None:
+                h, counts.rejected = h / 2.0, counts.rejected + 1
+            else:
+                h *= 2.0 if iterations <= 3 else 1.0 if iterations <= 5 else 0.5
+                u, counts.accepted = following, counts.accepted + 1
     raise ArithmeticError(f"the plain loop did not arrive in {counts.accepted} steps")
 
 
-def _pitcon(problem: Problem, rung: Rung) -> Answer:
-    """Dense PITCON 6.1 (pysces)."""
-    library, aim, ours = _pitcon_library(), _Aim.of(problem), _Counted(problem.subject)
-    x = ours.start
+def _pitcon(curve: _Curve, tolerance: float) -> Answer:
+    """Dense PITCON 6.1, of pysces."""
+    # Importing pysces prints a page and makes folders: load the compiled routine only.
+    (place,) = find_spec("pysces").submodule_search_locations  # type: ignore[union-attr, misc]
+    spec: Any = PathFinder.find_spec("pitcon", [f"{place}/pitcon"])
+    spec.loader.exec_module(library := module_from_spec(spec))
+    x = curve.start
     N = x.size
 
     def residual(x: Array) -> tuple[Array, int]:
-        return np.append(ours.residual(x), 0.0), 0
+        return np.append(curve.residual(x), 0.0), 0
 
     def jacobian(x: Array) -> tuple[Array, int]:
-        H_y, H_lam = ours.jacobian(x)
+        H_y, H_lam = curve.jacobian(x)
         whole = np.zeros((N, N))
         whole[:-1] = np.column_stack((H_y.toarray() if sp.issparse(H_y) else H_y, H_lam))
         return whole, 0
@@ -128,71 +136,72 @@ def _pitcon(problem: Problem, rung: Rung) -> Answer:
     # N, start and target on lam, full Newton with this Jacobian, work-space offsets.
     iwork[[1, 4, 7, 12, 13, 14, 15, 16]] = N, N, 6, 30, iwork.size, 30, rwork.size, 10
     # Tolerances; least, largest, first step; direction; target.
-    rwork[:7] = rung.value, rung.value, 1e-6, 30.0, 0.1, 1.0 if aim.value > x[-1] else -1.0, aim.value
+    rwork[:7] = tolerance, tolerance, 1e-6, LONGEST, 0.1, curve.direction, curve.aim
     # PITCON returns a target after the two points around it.
     none, before, after = np.zeros(1, dtype=np.int32), float(x[-1]), float(x[-1])
     for _ in range(STEPS):
         error, iwork, rwork, x = library.pitcon1(jacobian, np.zeros(1), residual, none, iwork, rwork, x)
         if error:
             raise ArithmeticError(f"PITCON ended with error {error}")
-        if iwork[0] == 3 and aim.crossed(before, after):
-            return Answer(ours.counts, end=x.copy())
+        if iwork[0] == 3 and curve.arrived(before, after):
+            return Answer(curve.counts, end=x.copy())
         if iwork[0] == 2:
-            before, after, ours.counts.accepted = after, float(x[-1]), ours.counts.accepted + 1
+            before, after, curve.counts.accepted = after, float(x[-1]), curve.counts.accepted + 1
     raise ArithmeticError(f"PITCON did not arrive in {STEPS} calls")
 
 
-def _pitcon_library() -> Any:
-    """Load the compiled routine only: importing pysces prints a page and makes folders."""
-    package = find_spec("pysces")
-    if package is None or package.submodule_search_locations is None:
-        raise ImportError("pysces is not installed")
-    places = [f"{place}/pitcon" for place in package.submodule_search_locations]
-    spec = PathFinder.find_spec("pitcon", places)
-    if spec is None or spec.loader is None:
-        raise ImportError("this pysces has no PITCON")
-    library = module_from_spec(spec)
-    spec.loader.exec_module(library)
-    return library
+def _bice(curve: _Curve, tolerance: float) -> Answer:
+    """The package's arclength stepper with its sparse Newton solver; steps may be longer than by default."""
+    bice = import_module("bice")
+    model, equation, u = bice.Problem(), bice.Equation(shape=(curve.start.size - 1,)), curve.start
+    equation.u, equation.lam = u[:-1], u[-1]
+    equation.rhs = lambda y: curve.residual(np.append(y, equation.lam))
+    equation.jacobian = lambda y: sp.csr_matrix(curve.jacobian(np.append(y, equation.lam))[0])
+    model.add_equation(equation)
+    model.continuation_parameter = (equation, "lam")
+    model.settings.neigs = 0
+    stepper = model.continuation_stepper
+    stepper.ds, stepper.ds_max, stepper.ds_increase_factor, stepper.ndesired_newton_steps = 0.1, LONGEST, 2.0, 4
+    stepper.convergence_tolerance = tolerance
+    with redirect_stdout(io.StringIO()):
+        for _ in range(STEPS):
+            before = u
+            model.continuation_step()
+            u, curve.counts.accepted = np.append(equation.u, equation.lam), curve.counts.accepted + 1
+            if curve.arrived(before[-1], u[-1]):
+                return curve.land(before, u, tolerance)
+    raise ArithmeticError(f"bice did not arrive in {STEPS} steps")
+
+
+Follow = Callable[[_Curve, float], Answer]
+
+FOLLOWERS: dict[str, tuple[str, Follow]] = {
+    "plain scipy loop": ("", _loop),
+    "PITCON (dense)": ("pysces", _pitcon),
+    "bice": ("bice", _bice),
+}
+"""Module and adapter."""
 
 
 def curve_followers(compare: bool) -> list[Method]:
-    """The plain loop, and PITCON if requested and installed."""
-    found = {"plain scipy loop": _loop, **({PITCON: _pitcon} if compare and installed("pysces") else {})}
-    return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
+    """The plain loop, and the packages that are installed if `compare`."""
+    taken = {name: one for name, one in FOLLOWERS.items() if not one[0] or (compare and installed(one[0]))}
+    return [Method(name, partial(_follow, follow), outside=True) for name, (_, follow) in taken.items()]
 
 
-def _is_matrix(problem: Problem) -> bool:
-    """Whether H_y is a numpy or scipy matrix."""
-    y, lam = problem.subject.start()
-    H_y, _ = problem.subject.jacobian(y, lam)
-    return isinstance(H_y, np.ndarray) or bool(sp.issparse(H_y))
-
-
-def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung], Answer]:
-    def run(problem: Problem, rung: Rung) -> Answer:
-        with np.errstate(all="ignore"):
-            return follow(problem, rung)
-
-    return run
+@np.errstate(all="ignore")
+def _follow(follow: Follow, problem: Problem, rung: Rung) -> Answer:
+    return follow(_Curve(problem), rung.value)
 
 
 def notes(modules: Iterable[str], compare: bool) -> list[str]:
-    """Versions of packages that take part; names of missing ones."""
-    if not compare:
-        return []
-    modules = list(dict.fromkeys(modules))
-    there = [_versioned(module) for module in modules if installed(module)]
-    absent = [module for module in modules if not installed(module)]
-    return [
-        *([f"outside solvers: {', '.join(there)}"] if there else []),
-        *([f"outside solvers left out, not installed: {', '.join(absent)}"] if absent else []),
-    ]
+    """One remark on which packages take part, in which version, and which are missing."""
+    said = [f"{module} {_version(module) if installed(module) else 'is not installed'}" for module in modules]
+    return [f"outside solvers: {', '.join(dict.fromkeys(said))}"] if compare else []
 
 
-def _versioned(module: str) -> str:
-    distributions = packages_distributions().get(module, [])
-    return " ".join([*distributions[:1], *(version(name) for name in distributions[:1])]) or module
+def _version(module: str) -> str:
+    return ", ".join(map(version, packages_distributions().get(module, [])[:1]))
 
 
 def installed(module: str) -> bool:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import continuation
-from continuation.chart import Profile, Study, profile, tolerances
+from continuation.chart import Profile, Study, tolerances
 from continuation.chart.study import Size
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import RESIDUAL, WORK, direct_methods, notes, path, problem, solver
+from problems.charts.lcp import RESIDUAL, direct_methods, notes, path, problem, solver
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
@@ -32,9 +32,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             methods=methods,
             ladder=tolerances(1e-8),
             errors=(RESIDUAL,),
-            work=WORK,
+            work=("factorizations", "solves", "seconds"),
             figures=[Profile("factorizations")],
-            tables={"By family": profile},
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
             notes=notes(compare),
         )

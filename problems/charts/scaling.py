@@ -1,4 +1,4 @@
-"""Cost against problem size, with fitted exponents."""
+"""Cost against problem size."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import continuation
 from continuation.chart import END_POINT, Lines, Problem, Study, tolerances, traced
-from continuation.chart import scaling as table
 from continuation.chart.study import Size
 from problems import lcp
 from problems.charts.lcp import RESIDUAL, direct_methods, notes, path, problem, solver
@@ -25,10 +24,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         ladder=tolerances(1e-8),
         errors=(END_POINT,),
         work=("seconds", "factorizations"),
-        figures=[Lines("n", "seconds")],
-        tables={"Factorisations": table},
+        figures=[Lines("n", ("seconds", "factorizations"))],
         repeats=repeats,
-        patience=2.0,
     )
     sizes = {"smoke": (5, 10), "moderate": (10, 30, 100, 300), "full": (5, 10, 20, 50, 100, 200, 500, 1000)}[size]
     families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "obstacle")
@@ -49,10 +46,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         ladder=tolerances(1e-8),
         errors=(RESIDUAL,),
         work=("seconds", "factorizations"),
-        figures=[Lines("n", "seconds")],
-        tables={"Factorisations": table},
+        figures=[Lines("n", ("seconds", "factorizations"))],
         repeats=repeats,
-        give_up=True,
         notes=notes(compare),
     )
     return [curves, complementarity]

@@ -8,23 +8,13 @@ from typing import Any
 
 from attrs import asdict
 
-from continuation.chart import Answer, Dumbbell, Error, Failure, Method, Problem, Rung, Study, observed
-from continuation.chart.study import Size
+from continuation.chart import Answer, Dumbbell, Failure, Method, Problem, Rung, Study, observed
+from continuation.chart.study import WRONG, Size
 from continuation.counts import Counts
 from problems.charts.rivals import notes
-from problems.scenes import Rival, available, error, make, order, solve
-
-WRONG = 1e-2
-"""Larger relative errors fail."""
-
-
-COMPILING = 30.0
-"""Seconds of a first run still repeated: quantecon and numba compile in it."""
+from problems.scenes import available, error, make, order, solve
 
 ERROR = observed("answer", "error of the answer, relative")
-# Recreated outside of the timed run.
-ORDER = Error("unknowns", "unknowns of the model", lambda problem, answer: float(
-    order(_refined(problem, answer.observed.get("factor", 1.0)).problem())))  # fmt: skip
 
 OURS = "ours"
 
@@ -53,24 +43,27 @@ LARGER: dict[str, dict[str, Any]] = {
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """Scenes with a refined mesh, and scenes exact to round-off."""
-    factors = {"smoke": (0.2,), "moderate": (0.5, 1.0, 2.0), "full": (0.5, 1.0, 2.0, 4.0, 8.0)}[size]
+    """All scenes, those with a mesh on several."""
     names = ("string", "cournot") if size == "smoke" else tuple(available())
     larger: dict[str, dict[str, Any]] = {} if size == "smoke" else LARGER
-    meshes = [_problem(name, make(name, larger.get(name))) for name in names if name in MESHES]
-    exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
-    common: dict[str, Any] = {
-        "errors": (ERROR, ORDER), "work": ("seconds",),
-        "figures": [Dumbbell("answer", "seconds", every=every) for every in (False, True)],
-        "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
-    }  # fmt: skip
-    ladder = tuple(Rung("mesh", factor) for factor in factors)
+    factors = {"smoke": (0.2,), "moderate": (0.5, 1.0, 2.0), "full": (0.5, 1.0, 2.0, 4.0, 8.0)}[size]
+    problems = [_problem(name, make(name, larger.get(name))) for name in names]
+    rivals = {rival.name: rival for problem in problems for rival in problem.subject.rivals}
+    taken = [name for name, rival in rivals.items() if not rival.module or (compare and rival.installed)]
     return [
-        Study(name="scenes-meshes", title="Scenes with a mesh", problems=meshes, ladder=ladder,
-              methods=_methods(meshes, True, compare), notes=_notes(meshes, compare), **common),
-        Study(name="scenes-exact", title="Scenes without a mesh", problems=exact,
-              methods=_methods(exact, False, compare), notes=_notes(exact, compare), **common),
-    ]  # fmt: skip
+        Study(
+            name="scenes",
+            title="Scenes: time to the answer",
+            problems=problems,
+            methods=[_method(OURS, lambda scene: scene.answer(solve(scene))), *map(_rival, taken)],
+            ladder=[Rung("mesh", factor) for factor in factors],
+            errors=(ERROR,),
+            work=("seconds",),
+            figures=[Dumbbell("answer", "seconds", every=every) for every in (False, True)],
+            repeats={"smoke": 0, "moderate": 1, "full": 3}[size],
+            notes=notes([rival.module for rival in rivals.values() if rival.module], compare),
+        )
+    ]
 
 
 def _problem(name: str, scene: Any) -> Problem:
@@ -82,20 +75,6 @@ def _problem(name: str, scene: Any) -> Problem:
     return Problem(name, scene, options={"true": known}, n=order(scene.problem()), family=name)
 
 
-def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Method]:
-    """Ours, each rival once, outside packages if requested."""
-    rivals: dict[str, Rival] = {}
-    for problem in problems:
-        rivals.update({rival.name: rival for rival in problem.subject.rivals})
-    taken = [rival for rival in rivals.values() if not rival.module or (compare and rival.installed)]
-    ours = _method(OURS, mesh, lambda scene: scene.answer(solve(scene)))
-    return [ours, *(_rival(rival.name, mesh) for rival in taken)]
-
-
-def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
-    return notes([rival.module for problem in problems for rival in problem.subject.rivals if rival.module], compare)
-
-
 def _refined(problem: Problem, factor: float) -> Any:
     if problem.name not in MESHES:
         return problem.subject
@@ -105,25 +84,21 @@ def _refined(problem: Problem, factor: float) -> Any:
     return make(problem.name, {**values, **finer})
 
 
-def _method(
-    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None
-) -> Method:
-    """A method for scenes, or for those that `applies` selects."""
+def _method(name: str, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None) -> Method:
+    """A method for scenes, or an outside one for those that `applies` selects."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
-        factor = rung.value if mesh else 1.0
-        found = ask(_refined(problem, factor))
-        off = error(found, problem.options["true"])
+        off = error(ask(_refined(problem, rung.value)), problem.options["true"])
         well = math.isfinite(off) and off <= WRONG
         message = "" if well else f"the answer is off by {off:.1e}"
         failure = Failure.NONE if well else Failure.WRONG_END
-        return Answer(Counts(), observed={"answer": off, "factor": factor}, failure=failure, message=message)
+        return Answer(Counts(), observed={"answer": off}, failure=failure, message=message)
 
-    return Method(name, run, mesh, applies or (lambda problem: True), outside=applies is not None)
+    return Method(name, run, applies or (lambda problem: True), outside=applies is not None)
 
 
-def _rival(name: str, mesh: bool) -> Method:
+def _rival(name: str) -> Method:
     def ask(scene: Any) -> Any:
         return next(rival for rival in scene.rivals if rival.name == name).run(scene)
 
-    return _method(name, mesh, ask, lambda problem: any(rival.name == name for rival in problem.subject.rivals))
+    return _method(name, ask, lambda problem: any(rival.name == name for rival in problem.subject.rivals))

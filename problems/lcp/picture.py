@@ -21,7 +21,7 @@ def draw_solution(solution: Solution) -> Any:
 
     traced = solution.paths[solution.best] if solution.paths else None
     figure = pyplot.figure(figsize=(9.0 if traced else 6.5, 4.2), layout="constrained")
-    figure.suptitle(fill(solution.message, 110 if traced else 80), fontsize="x-small")
+    figure.suptitle(fill(solution.message, 95 if traced else 68), fontsize="small")
     panels = figure.subplots(1, 2 if traced else 1, squeeze=False)[0]
     draw_face(solution, panels[-1])
     if traced is not None:

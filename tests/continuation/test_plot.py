@@ -81,6 +81,24 @@ def test_of_events_of_one_name_the_first_is_named_with_their_number(axes):
     assert [text.get_text() for text in axes.texts if text.get_text()] == ["turning point (2)"]
 
 
+def test_round_off_at_events_does_not_set_the_scale(axes):
+    """A trivial branch is a straight line, and its branch points lie on it."""
+    path = continuation.trace(continuation.from_functions(lambda y, lam: y * lam, start=([0.0], -1.0), target=1.0))
+    path = continuation.Path(path.steps, [evolve(event, u=event.u + np.array([1e-16, 0.0])) for event in path.events])
+    assert path.events
+    path.plot(axes)
+    low, high = axes.get_ylim()
+    assert high - low > 0.1
+    assert low < 0.0 < high
+
+
+def test_why_a_path_ended_before_its_end_is_said_where_it_ends(axes):
+    path = continuation.trace(Circle(), budget=continuation.Budget(steps=3))
+    path.plot(axes)
+    (said,) = [text for text in axes.texts if text.get_text() == "budget exhausted"]
+    assert said.xy == (path.endpoint.lam, path.endpoint.y[0])
+
+
 def test_stability_is_said(axes):
     path = continuation.trace(Pitchfork(), observers=[continuation.Stability()])
     path.plot(axes)
@@ -104,18 +122,18 @@ def test_colours_and_styles_both_tell_curves_apart(axes):
     n = 12
     slopes = np.arange(1.0, n + 1)
     homotopy = continuation.from_functions(lambda y, lam: y - slopes * lam, start=(slopes, 1.0))
-    plot_components(continuation.trace(homotopy), axes)
+    plot_components(continuation.trace(homotopy), axes, components=range(n))
     looks = [(line.get_color(), line.get_linestyle()) for line in lines(axes)]
     assert len(set(looks)) == n
     assert all(a[0] != b[0] and a[1] != b[1] for a, b in pairwise(looks))
 
 
-def test_at_most_twelve_components_unless_asked(axes):
+def test_at_most_seven_components_unless_asked(axes):
     homotopy = continuation.from_functions(lambda y, lam: y - lam, start=(np.ones(15), 1.0))
     path = continuation.trace(homotopy)
     plot_components(path, axes)
-    assert len(lines(axes)) == 12
-    assert axes.get_legend().get_title().get_text() == "12 of 15 components"
+    assert len(lines(axes)) == 7
+    assert axes.get_legend().get_title().get_text() == "7 of 15"
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert (names[0], names[-1]) == ("$y_{0}$", "$y_{14}$")
 
@@ -165,6 +183,21 @@ def test_components_that_are_nan_throughout_are_left_out(path, axes):
     assert len(lines(axes)) == 1
     plot_bifurcation(stored, axes)
     assert np.isfinite(lines(axes)[-1].get_ydata()).all()
+
+
+def test_dense_output_with_nan_of_an_archive_is_drawn(path, axes):
+    class Padded:
+        def __init__(self, segment):
+            self.segment = segment
+
+        def at(self, t):
+            return np.where([False, True, False], np.nan, self.segment.at(t))
+
+    steps = [evolve(step, segment=step.segment and Padded(step.segment)) for step in path.steps]
+    plot_components(continuation.Path(steps), axes, components=[0], against="arclength")
+    (line,) = lines(axes)
+    assert np.isfinite(line.get_xydata()).all()
+    assert len(line.get_xdata()) > 3 * len(path)
 
 
 def padded_event(event):
@@ -229,7 +262,8 @@ def test_several_branches_with_their_stability_and_their_points(branches, axes):
     assert {style for _, style in styles} == {"-", "--"}
     assert {style for color, style in styles if color != lines(axes)[0].get_color()} == {"-"}
     texts = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert texts == ["0", "branch point", "x"]
+    assert texts == ["0", "x"]
+    assert [text.get_text() for text in axes.texts if text.get_text()] == ["branch point"]
     assert axes.get_ylabel() == "amplitude"
     (mark,) = marks(axes)
     assert mark.get_marker() == "s"
@@ -257,7 +291,7 @@ def test_an_axis_runs_as_the_path_runs(axes):
 def test_profiles_and_heat(axes):
     path, x = continuation.trace(Bratu1D(9)), np.linspace(0.1, 0.9, 9)
     plot_profiles(path, axes, profiles=40, x=x)
-    assert len(lines(axes)) == 6
+    assert len(lines(axes)) == 7
     other = Figure().subplots()
     plot_heat(path, other, x)
     assert other.get_ylabel() == "$x$"

@@ -12,6 +12,7 @@ from problems.charts import engine, families, rivals, robustness, scaling, scene
 from problems.charts import lcp as lcp_charts
 from problems.charts.chandrasekhar import Chandrasekhar
 from problems.lcp.classes.exact import principal_minors
+from problems.scenes import Rival
 
 MODULES = (engine, lcp_charts, scaling, robustness, scenes)
 
@@ -77,7 +78,8 @@ def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
     for module in (lcp_charts, robustness, scaling):
         study = module.studies("smoke", True)[-1]
         assert "Lemke" in [method.name for method in study.methods]
-        assert study.notes == ["outside solvers left out, not installed: quantecon, piqp, clarabel"]
+        missing = ("quantecon", "piqp", "clarabel")
+        assert study.notes == [f"outside solvers: {', '.join(f'{name} is not installed' for name in missing)}"]
     assert module.studies("smoke", False)[-1].notes == []
 
 
@@ -97,6 +99,7 @@ def test_a_direct_solver_is_judged_by_the_certificate_unless_it_says_itself_that
         name="outside",
         problems=[chart.Problem("one", lcp.LCP(np.eye(5), -np.ones(5)))],
         methods=lcp_charts.direct_methods(True),
+        ladder=chart.tolerances(1e-8),
         errors=[lcp_charts.RESIDUAL],
         repeats=0,
     )
@@ -138,35 +141,33 @@ def test_methods_for_the_lcp_are_judged_by_the_certificate():
 
 
 def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
-    meshes, exact = (chart.run(study) for study in scenes.studies("smoke", False))
-    assert [(row.problem, row.method, row.failure) for row in meshes.rows] == [
-        ("string", "ours", ""), ("string", "L-BFGS-B (scipy)", "")
+    (study,) = scenes.studies("smoke", False)
+    rows = chart.run(study).rows
+    assert [(row.problem, row.method, row.failure) for row in rows] == [
+        ("string", "ours", ""), ("string", "L-BFGS-B (scipy)", ""),
+        ("cournot", "ours", ""), ("cournot", "L-BFGS-B (scipy)", ""),
     ]  # fmt: skip
-    assert [row.errors["unknowns"] for row in meshes.rows] == [10.0, 10.0]
-    assert [row.method for row in exact.rows] == ["ours", "L-BFGS-B (scipy)"]
-    ours = exact.rows[0]
-    assert ours.errors["answer"] <= 1e-15
+    assert rows[2].errors["answer"] <= 1e-15
     problem = chart.Problem("cournot", scenes.make("cournot"), options={"true": {"price": 50.0}})
-    wrong = scenes._method("wrong", False, lambda scene: {"price": 40.0})
-    answer = wrong.run(problem, chart.tolerances(1.0)[0])
+    answer = scenes._method("wrong", lambda scene: {"price": 40.0}).run(problem, chart.tolerances(1.0)[0])
     assert (answer.failure, answer.message) == ("wrong end", "the answer is off by 2.0e-01")
 
 
-def test_absent_rivals_of_scenes_are_named(monkeypatch):
+def test_absent_rivals_of_scenes_and_of_the_engine_are_named(monkeypatch):
     monkeypatch.setattr(rivals, "installed", lambda module: False)
-    monkeypatch.setattr(scenes.Rival, "installed", property(lambda rival: not rival.module))
-    (meshes, _) = scenes.studies("smoke", True)
-    assert "not installed: " in meshes.notes[0]
-    assert "piqp" in meshes.notes[0]
-    assert engine.studies("smoke", True)[0].notes == ["outside solvers left out, not installed: pysces"]
+    monkeypatch.setattr(Rival, "installed", property(lambda rival: not rival.module))
+    (study,) = scenes.studies("smoke", True)
+    assert "piqp is not installed" in study.notes[0]
+    assert engine.studies("smoke", True)[0].notes == ["outside solvers: pysces is not installed, bice is not installed"]
 
 
-def test_pitcon_comes_to_the_end_of_a_path():
-    pytest.importorskip("pysces")
+@pytest.mark.parametrize("name", ["PITCON (dense)", "bice"])
+def test_other_packages_come_to_the_end_of_a_path(name):
+    pytest.importorskip(rivals.FOLLOWERS[name][0])
     study = chart.Study(
         name="followers",
         problems=[subjects.bratu_square(5)],
-        methods=[method for method in rivals.curve_followers(True) if method.name == rivals.PITCON],
+        methods=[method for method in rivals.curve_followers(True) if method.name == name],
         ladder=chart.tolerances(1e-8),
         errors=[chart.END_POINT],
         repeats=0,

@@ -1,8 +1,7 @@
-"""What is read off results: the front, profiles, exponents, as tables."""
+"""What is read off results: the front, profiles, tables."""
 
 import math
 
-import pytest
 from attrs import evolve
 
 from continuation import chart
@@ -10,12 +9,12 @@ from continuation.chart.results import ERROR_FLOOR
 from continuation.counts import Counts
 
 
-def test_profiles_reach_as_far_as_anything_is_solved():
-    results = made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump"))
+def test_a_profile_has_a_row_for_each_method_and_those_that_solve_most_stand_above():
+    results = made(("slow", 1.0, 700, ""), ("lost", 1.0, 1, "jump"), ("quick", 1.0, 7, ""))
     (panel,) = chart.Profile("factorizations").draw(results).axes
-    assert panel.get_xlim() == (1.0, 1000.0)
-    assert [line.get_ydata()[-1] for line in panel.get_lines()] == [1.0, 1.0, 0.0]
-    assert {text.get_text() for text in panel.texts} == {"a  100 %", "b  100 %", "c  0 %"}
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["quick", "slow", "lost"]
+    assert [text.get_text() for text in panel.texts] == ["100% solved", "100% solved", "0% solved"]
+    assert {tuple(line.get_xdata()) for line in panel.get_lines()} == {(), (1.0,), (1.0, 1.0), (100.0,), (100.0, 100.0)}
 
 
 def made(*points):
@@ -43,32 +42,24 @@ def test_the_front_is_what_nothing_beats():
     }  # fmt: skip
     table = chart.summary(results)
     lines = {line[0]: line for line in table.rows}
-    assert lines["beaten"][-2:] == (1.5, 1.5)
-    assert lines["failed"][1:4] == (1, 0, "1 jump")
+    assert lines["beaten"] == ("beaten", "1 of 1", "", 1.5)
+    assert lines["failed"][:3] == ("failed", "0 of 1", "1 jump")
 
 
-def test_profiles_count_failures_as_unsolved():
-    results = made(("a", 1.0, 10, ""), ("b", 1.0, 15, ""), ("c", 1.0, 1, "jump"))
-    assert {name: values.tolist() for name, values in chart.ratios(results, "factorizations").items()} == {
-        "a": [1.0], "b": [1.5], "c": [math.inf]
-    }  # fmt: skip
-    assert chart.profile(results, "factorizations").rows == [
-        ("p", "a", 1, 1.0, 1.0, 1.0, 1.0),
-        ("p", "b", 1, 0.0, 1.0, 1.0, 1.0),
-        ("p", "c", 1, 0.0, 0.0, 0.0, 0.0),
+def test_what_is_solved_is_counted_by_family():
+    rows = [
+        evolve(row, family=family) for family in "ab" for row in made(("x", 1.0, 1, ""), ("y", 1.0, 1, "jump")).rows
     ]
+    results = evolve(made(), rows=[*rows, rows[1], evolve(rows[0], method="y")])
+    assert chart.solved(results) == chart.Table(("% solved", "a", "b"), [("x", 100, 100), ("y", 33, 0)])
 
 
-def test_exponents_are_fitted_to_the_larger_sizes():
+def test_work_is_drawn_against_the_size_as_the_mean_of_what_succeeded():
     one = made(("a", 1.0, 1, "")).rows[0]
-    sizes = [1, 2, 10, 20, 40]
-    rows = tuple(
-        evolve(one, problem=str(n), n=n, counts=Counts(factorizations=1000 if n < 10 else n**3)) for n in sizes
-    )
-    results = evolve(made(), rows=rows)
-    assert chart.exponents(results, "factorizations")["p", "a"] == pytest.approx(3.0)
-    assert chart.scaling(results, "factorizations").rows[0][-1] == 3.0
-    assert math.isnan(chart.exponents(evolve(results, rows=rows[:2]), "factorizations")["p", "a"])
+    runs = [(4, 10, ""), (2, 3, ""), (2, 5, ""), (2, 99, "jump"), (8, 99, "jump")]
+    rows = [evolve(one, n=n, counts=Counts(factorizations=work), failure=failure) for n, work, failure in runs]
+    (panel,) = chart.Lines("n", "factorizations").draw(evolve(made(), rows=rows)).axes
+    assert panel.get_lines()[0].get_xydata().tolist() == [[2.0, 4.0], [4.0, 10.0]]
 
 
 def test_tables_as_text_and_markdown():
@@ -80,4 +71,3 @@ def test_tables_as_text_and_markdown():
 def test_errors_that_agree_to_three_digits_are_equal():
     results = made(("cheap", 1.0004e-3, 10, ""), ("dear", 1.0e-3, 20, ""), ("better", 0.9e-3, 30, ""))
     assert chart.excess(results, "e", "factorizations").tolist() == [1.0, 2.0, 1.0]
-    assert [line[4] for line in chart.runs(results).rows] == ["*", "", "*"]
