@@ -159,15 +159,48 @@ class Path:
                 raise ValueError(f"t: expected a value that the parameter takes on the path, found {t:g}")
             first: Array = there[0]
             return first
-        wanted = real_vector("s", s) if s is not None and np.size(s) else np.zeros(0)
+        wanted, knots = self._places(s)
+        points = [self._at(float(value), knots) for value in np.atleast_1d(wanted)]
+        return np.array(points) if wanted.ndim else points[0]
+
+    def error_bound(self, homotopy: Any, s: float | Array) -> Array:
+        """How far ``path(s)`` is from the path, by component, in the plane across its arc; one factorisation a point.
+
+        The first chord step, and what the next ones can add if they shrink as these two do; infinite where they do not
+        halve. A number for what is printed or drawn; for proofs see `continuation.certify`.
+
+        Parameters
+        ----------
+        homotopy : Homotopy
+        s : float or ndarray, shape (k,)
+            Arclengths.
+
+        Returns
+        -------
+        ndarray, shape (N + 1,) or (k, N + 1)
+        """
+        from continuation.path.refining import error_bound
+
+        wanted, knots = self._places(s)
+        values = np.atleast_1d(wanted)
+        ends = [self._end(float(value), knots) for value in values]
+        bounds = error_bound(homotopy, self.steps, self(values), ends)
+        return bounds if wanted.ndim else bounds[0]
+
+    def _places(self, s: Any) -> tuple[Array, list[float]]:
+        """Arclengths asked for, and those of the steps."""
+        wanted = real_vector("s", s) if np.size(s) else np.zeros(0)
         knots = self.arclength.tolist()
         if not knots:
             raise IndexError("s: expected a path with points, found one without")
         if wanted.size and not (wanted.min() >= knots[0] and wanted.max() <= knots[-1] * (1 + 1e-15)):
             found = f"{wanted.min():g} .. {wanted.max():g}"
             raise ValueError(f"s: expected values in [{knots[0]:g}, {knots[-1]:g}], found {found}")
-        points = [self._at(float(value), knots) for value in np.atleast_1d(wanted)]
-        return np.array(points) if wanted.ndim else points[0]
+        return wanted, knots
+
+    def _end(self, s: float, knots: list[float]) -> int:
+        """Index of the step at the end of the arc at s."""
+        return min(max(bisect_right(knots, s), 1), len(knots) - 1)
 
     def crossings(self, t: float) -> Array:
         """All points with parameter t, in order, shape (k, N + 1).
@@ -198,7 +231,7 @@ class Path:
         return np.array(found).reshape(-1, size)
 
     def _at(self, s: float, knots: list[float]) -> Array:
-        i = min(max(bisect_right(knots, s), 1), len(knots) - 1)
+        i = self._end(s, knots)
         if len(knots) == 1:
             return self.steps[0].u
         segment, weights = self.steps[i].segment, self.steps[i].weights

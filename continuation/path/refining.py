@@ -12,6 +12,7 @@ from attrs import evolve
 
 from continuation.arguments.checks import complain, is_number
 from continuation.arrays import Array
+from continuation.contraction import HALVING
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
@@ -54,6 +55,39 @@ def refined_path(
     after = np.maximum(np.searchsorted(arclengths, [event.arclength for event in events]), 1).tolist()
     moved = [evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(events, after)]
     return steps, moved
+
+
+def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Sequence[int]) -> Array:
+    """How far points of a path's dense output are off, shape (k, N + 1).
+
+    Chord steps in the plane across the arc lead from a point onto the path. Those after the first are bounded by the
+    second and the ratio q of these two (Banach's theorem); infinite where they do not halve.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    path : sequence of Step
+    points : ndarray, shape (k, N + 1)
+    indices : sequence of int
+        The step at the end of each point's arc.
+    """
+    solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
+    bounds = np.full_like(points, np.inf)
+    for bound, u, i in zip(bounds, points, indices):
+        weights = np.ones_like(u) if path[i].weights is None else np.asarray(path[i].weights)
+        across = weights * (path[i].tangent + path[i - 1].tangent)
+        try:
+            near = linearize(solver.evaluator, u, weights, across / norm(1.0 / weights, across))
+            noise = solver.noise_by_component(near)
+            first = near.approximate(solver.evaluator.residual(u))
+            second = near.approximate(solver.evaluator.residual(u - first))
+        except EvaluationError:
+            continue
+        sizes = [norm(weights, increment) for increment in (first, second, noise)]
+        q = sizes[1] / sizes[0] if sizes[1] > sizes[2] else 0.0
+        if q <= HALVING:
+            bound[:] = np.abs(first) + np.abs(second) + noise + q / (1.0 - q) * sizes[1] / np.sqrt(weights)
+    return bounds
 
 
 def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:

@@ -10,6 +10,8 @@ from continuation.arguments import plugins
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
+from ..util import every_preset
+
 BOX = {"lam": (-3.0, 3.0)}
 HIGH = 4.0 * np.sin(np.pi * np.arange(1, 21) / 21.0)
 
@@ -143,6 +145,26 @@ def test_refined_until_it_is_as_accurate_as_asked():
         assert fine.steps[event.step - 1].arclength <= event.arclength <= fine.steps[event.step].arclength
     with pytest.raises(ValueError, match="accuracy: expected a positive number"):
         path.refined(homotopy, 0.0)
+
+
+class Empty(Circle):
+    """No point solves it, and chord steps from the circle do not halve."""
+
+    def residual(self, y, lam):
+        return y**2 + lam**2 + 3.0
+
+
+@every_preset
+def test_dense_output_is_no_farther_off_than_its_bound(preset):
+    path = continuation.trace(Circle(), target=-0.9999, preset=preset)
+    s = np.linspace(0.0, path.arclength[-1], 41)
+    bound, found = path.error_bound(Circle(), s), path(s)
+    off = np.abs(np.hypot(*found.T) - 1.0)
+    size = np.hypot(*bound.T)
+    assert (off <= size).all()
+    assert (size <= 2.5 * off + 1e-12).all()
+    np.testing.assert_array_equal(path.error_bound(Circle(), s[3]), bound[3])
+    assert not np.isfinite(path.error_bound(Empty(), s[3])).any()
 
 
 def test_a_point_at_a_parameter_value():
