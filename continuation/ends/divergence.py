@@ -40,9 +40,6 @@ HIGHEST_POLE = 12.0
 """No pole has a higher order p, nor its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
 p + 1 is at most 1/2.)"""
 
-ABOUT = 0.02
-"""An order so near an integer or its inverse is that: three points give two digits."""
-
 Monitor = tuple[float, ...]
 
 
@@ -93,7 +90,7 @@ def _met_further(
         while (left := limit - at.lam) and abs(left) > enough:
             nearer = left / DECADE
             # Integral of a slope proportional to the power -(p + 1) of the distance.
-            grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
+            grown = math.expm1(power * math.log(DECADE)) / power if power else math.log(DECADE)
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
             for _ in range(QUADRATIC_STEPS):
@@ -126,8 +123,9 @@ def words(monitor: Monitor) -> str:
     p = order - 1.0
     if order <= 1.0 + 1.0 / HIGHEST_POLE:
         return f"An asymptote: the parameter tends to {lam} and stands still while the unknowns grow, like a logarithm."
+    # Three points give two digits of the order.
     whole = round(p) if p >= 1.0 else 1.0 / round(1.0 / p)
-    return f"A pole: the unknowns grow like |lam - {lam}|^-{whole if abs(p / whole - 1.0) <= ABOUT else p:.2g}."
+    return f"A pole: the unknowns grow like |lam - {lam}|^-{whole if abs(p / whole - 1.0) <= 0.02 else p:.2g}."
 
 
 def _fitted(marks: list[float]) -> tuple[float, float] | None:

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve, field, frozen
 from scipy.linalg.blas import dscal
 
-from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector, largest
+from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
@@ -26,7 +26,7 @@ SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 """Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
 at half its range."""
 
-NEAR_SINGULAR = 1e10
+NEAR_SINGULAR = SIX_DIGITS / EPS
 """Growth of a solution that means a singular matrix; six digits remain."""
 
 TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)
