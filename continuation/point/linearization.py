@@ -20,7 +20,8 @@ REFINED = 1e-14
 """Relative last increment of a fully refined tangent: 50 units of round-off."""
 
 ROUND_OFF_LEFT = 1e3
-"""A last increment within this factor is accepted if round-off ends the contraction."""
+"""A last increment within this factor is accepted if round-off ends the contraction: conditions of a thousand are
+ordinary."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 """Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
