@@ -19,7 +19,10 @@ Matrix: TypeAlias = Any
 """Dense (N, N) array, scipy sparse array, `continuation.linear.Banded`, or LinearOperator."""
 
 
-ROOT_OF_ROUND_OFF = float(np.sqrt(np.finfo(float).eps))
+EPS = float(np.finfo(float).eps)
+"""Round-off of a number, relative to it."""
+
+ROOT_OF_ROUND_OFF = float(np.sqrt(EPS))
 """Half of the digits: what the square root leaves of round-off."""
 
 SIX_DIGITS = 1e-6

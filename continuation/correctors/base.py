@@ -97,7 +97,7 @@ RESIDUAL_NOISE = 32.0
 """Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
 
 
-FAR_FROM_ROUND_OFF = RESIDUAL_NOISE**2
+FAR_FROM_ROUND_OFF = RESIDUAL_NOISE * RESIDUAL_NOISE
 """Such a residual after polishing deserves a factorisation."""
 
 

@@ -8,11 +8,11 @@ from continuation.arrays import SIX_DIGITS
 from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
-from continuation.point.linearization import Linearization
+from continuation.point.linearization import ROUND_OFF_LEFT, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
-SAME_POINT = 1e3
+SAME_POINT = ROUND_OFF_LEFT
 """Distance, in tolerances, of equal points: their planes and metrics differ, and condition numbers of a thousand are
 ordinary."""
 

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from continuation.arrays import Array, largest
 from continuation.evaluation.errors import EvaluationError
-from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
@@ -23,8 +23,8 @@ DECADE = 10.0
 """Least growth of the slope between marks. A prediction may err by the inverse part of the change, and the model is
 tried further once the distance to the limit fell by two decades with all predictions met."""
 
-ARRIVED, LAST_PLACES = 1e-11, 8.0
-"""The model is followed to this distance from the limit, relative to the parameter's way or in units in the last place.
+ARRIVED = 1e-11
+"""The model is followed to this distance from the limit, relative to the parameter's way, or to twice its round-off.
 Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
 
 QUADRATIC_STEPS = 4
@@ -39,9 +39,6 @@ HORIZON = 1e100
 HIGHEST_POLE = 12.0
 """No pole has a higher order p, nor its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
 p + 1 is at most 1/2.)"""
-
-ABOUT = 0.02
-"""An order so near an integer or its inverse is that: three points give two digits."""
 
 Monitor = tuple[float, ...]
 
@@ -68,7 +65,7 @@ def divergence(
     if model is not None:
         limit, order = model
         ahead = (limit - marks[-2]) * (1.0 - (marks[-1] / slope) ** (1.0 / order))
-        met = abs(lam - marks[-2] - ahead) <= abs(ahead) / DECADE + LAST_PLACES * float(np.spacing(abs(lam)))
+        met = abs(lam - marks[-2] - ahead) <= abs(ahead) / DECADE + 2.0 * POINT_ULPS * float(np.spacing(abs(lam)))
         began = (began or abs(limit - marks[-2])) if met else 0.0
     marks = [*marks, lam, slope][-6:]
     known, model = (way, began, *marks), _fitted(marks) or model
@@ -87,13 +84,13 @@ def _met_further(
     stops: Sequence[tuple[int, float]],
 ) -> bool:
     """Whether Newton's method finds the path at the model's predictions, decade by decade, up to the limit."""
-    enough = ARRIVED * way + LAST_PLACES * float(np.spacing(abs(limit)))
+    enough = ARRIVED * way + 2.0 * POINT_ULPS * float(np.spacing(abs(limit)))
     power, at = order - 1.0, point
     try:
         while (left := limit - at.lam) and abs(left) > enough:
             nearer = left / DECADE
             # Integral of a slope proportional to the power -(p + 1) of the distance.
-            grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
+            grown = math.expm1(power * math.log(DECADE)) / power if power else math.log(DECADE)
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
             for _ in range(QUADRATIC_STEPS):
@@ -126,8 +123,9 @@ def words(monitor: Monitor) -> str:
     p = order - 1.0
     if order <= 1.0 + 1.0 / HIGHEST_POLE:
         return f"An asymptote: the parameter tends to {lam} and stands still while the unknowns grow, like a logarithm."
+    # Three points give two digits of the order.
     whole = round(p) if p >= 1.0 else 1.0 / round(1.0 / p)
-    return f"A pole: the unknowns grow like |lam - {lam}|^-{whole if abs(p / whole - 1.0) <= ABOUT else p:.2g}."
+    return f"A pole: the unknowns grow like |lam - {lam}|^-{whole if abs(p / whole - 1.0) <= 0.02 else p:.2g}."
 
 
 def _fitted(marks: list[float]) -> tuple[float, float] | None:

@@ -42,7 +42,7 @@ A_DIGIT = 10.0
 """The smallest winding number within this factor of the best error wins: multiples fit as well, later. Round-off in H
 may grow so much from the last sample to the limit."""
 
-AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
+AT_PARAMETER = BorderedNewton(max_contraction=MONOTONE)
 """Newton's method converges linearly near a singular end."""
 
 

@@ -22,8 +22,8 @@ from continuation.step.stepper import Attempt, Stepper
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
-DISTANCE, ANGLE = 0.3, 1.0
-"""A larger correction, in steps, or angle (radians) means another branch."""
+ANGLE = 1.0
+"""A larger angle (radians), or a correction by more than RELIABLE steps, means another branch."""
 
 RETRY, LEAP = 0.3, 10.0
 """Paths creep towards a boundary: landing is tried from so many steps away, and again when this share of the way is
@@ -104,7 +104,7 @@ class Landing:
             return rejected
         border = point.border
         along = dot(border, correction.u - point.u)
-        if along <= 0.0 or correction.distance > DISTANCE * h:
+        if along <= 0.0 or correction.distance > RELIABLE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end itself may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array
+from continuation.arrays import EPS, ROOT_OF_ROUND_OFF, Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 from continuation.evaluation.pattern import generic
 
@@ -86,7 +86,7 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
     return Exact("differential", function)
 
 
-USUAL_STEP = float(np.cbrt(np.finfo(float).eps))
+USUAL_STEP = float(np.cbrt(EPS))
 """Step relative to a component's size (or 1) that is usually best, and the accuracy of a difference squared."""
 
 DIFFERENCE_STEPS = USUAL_STEP * 100.0 ** np.arange(2, -5, -1)

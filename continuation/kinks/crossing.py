@@ -13,7 +13,7 @@ from continuation.metric import inner, norm, share
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
-STILL = 1e-12
+STILL = SIX_DIGITS * SIX_DIGITS
 """Smaller parameter shares of a tangent are round-off: no turning kink."""
 
 

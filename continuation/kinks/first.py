@@ -17,7 +17,7 @@ from continuation.point.projection import PathSolver
 DIP = 0.25
 """A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
 
-TIED = NOISE_LOOKS**2
+TIED = NOISE_LOOKS * NOISE_LOOKS
 """Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
 switches this near to zero vanish together."""
 

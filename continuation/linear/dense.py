@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dasum, dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, SIX_DIGITS, Array
 from continuation.contraction import HALVING
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
@@ -33,7 +33,7 @@ def _rows(n: int) -> NDArray[np.int32]:
     return np.arange(n, dtype=np.int32)
 
 
-HIDDEN = 1e-10
+HIDDEN = EPS / SIX_DIGITS
 """A scaled entry below this, relative to the largest, may decide its row; LU leaves six of its digits, so solutions are
 corrected."""
 

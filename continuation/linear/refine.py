@@ -8,14 +8,14 @@ from typing import Protocol
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import SIX_DIGITS, Array, Matrix
+from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix
 from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
 """Limit per solve: each correction gains the digits of TRUSTED."""
 
-BACKWARD_ERROR = 16 * float(np.finfo(float).eps)
+BACKWARD_ERROR = 16 * EPS
 """Row-wise backward error of round-off."""
 
 TRUSTED = SIX_DIGITS

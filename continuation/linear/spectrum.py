@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from scipy.linalg import eigvals
 from scipy.sparse import csc_array, eye_array, issparse
 
-from continuation.arrays import SIX_DIGITS, Array, Matrix, generic_vector
+from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
 from continuation.linear.dense import factor_lu
 from continuation.linear.refine import BACKWARD_ERROR, Factored
@@ -23,14 +23,11 @@ ALL_OF_DENSE = 100
 WANTED = 6
 """Default number of eigenvalues beyond that."""
 
-OFF_AXIS = 1e-10
+OFF_AXIS = EPS / SIX_DIGITS
 """Least real part of an unstable eigenvalue, relative to the largest modulus; events are located to that."""
 
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
-
-DIGITS, LAST_DIGITS = 1e-4, 1e-12
-"""Relative errors of real parts, and of eigenvalues that suffice, as events are located to 1e-10."""
 
 DIMENSIONS, LOOK_EVERY = 40, 6
 """Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
@@ -108,14 +105,14 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
 
 
 def nearest_zero(matrix: Matrix, k: int) -> Any:
-    """All eigenvalues of a small matrix, or the k nearest to zero to four digits."""
+    """All eigenvalues of a small matrix, or the k nearest to zero to six digits."""
     n = matrix.shape[0]
     if n <= ALL_OF_DENSE:
         return _all(matrix)
     shift = SIX_DIGITS * float(np.abs(matrix.diagonal()).max())
 
     def known(theta: Any, error: Array) -> bool:
-        return bool((error <= DIGITS * np.abs(theta)).all())
+        return bool((error <= SIX_DIGITS * np.abs(theta)).all())
 
     return shift + 1.0 / dominant(_solver(matrix, shift), generic_vector(n), min(k, n), known)[0]
 
@@ -157,7 +154,8 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        return bool(((off <= DIGITS) | (error <= LAST_DIGITS * np.abs(theta))).all())
+        # The square is enough for an eigenvalue on the axis, as events are located to OFF_AXIS.
+        return bool(((off <= SIX_DIGITS) | (error <= SIX_DIGITS**2 * np.abs(theta))).all())
 
     while True:
         theta, more = dominant(inverse, generic_vector(n), wanted, known)

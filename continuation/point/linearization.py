@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve, field, frozen
 from scipy.linalg.blas import dscal
 
-from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector, largest
+from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
@@ -20,13 +20,14 @@ REFINED = 1e-14
 """Relative last increment of a fully refined tangent: 50 units of round-off."""
 
 ROUND_OFF_LEFT = 1e3
-"""A last increment within this factor is accepted if round-off ends the contraction."""
+"""A last increment within this factor is accepted if round-off ends the contraction: conditions of a thousand are
+ordinary."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 """Relative last increment of a refined solve, and an accepted one at round-off: a series of order 30 keeps nine digits
 at half its range."""
 
-NEAR_SINGULAR = 1e10
+NEAR_SINGULAR = SIX_DIGITS / EPS
 """Growth of a solution that means a singular matrix; six digits remain."""
 
 TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from attrs import Factory, define, evolve, field
 
-from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector
+from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
@@ -147,7 +147,7 @@ class PathSolver:
         moving it back is round-off.
         """
         evaluator, u = self.evaluator, near.u
-        last_place = np.maximum(np.spacing(np.abs(u)), np.finfo(float).eps / np.sqrt(near.weights * u.size))
+        last_place = np.maximum(np.spacing(np.abs(u)), EPS / np.sqrt(near.weights * u.size))
         moved = POINT_ULPS * last_place * np.sign(generic_vector(u.size))
         try:
             back = near.solve(evaluator.residual(u + moved) - evaluator.residual(u))
