@@ -1,14 +1,10 @@
 """One registry of homotopies: what it names is what every other place offers."""
 
-import argparse
-
 import numpy as np
 import pytest
 
 from continuation.arguments.plugins import available, describe
 from problems import lcp, plugins
-from problems.charts import lcp as lcp_charts
-from problems.commands import solve as command
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.paper import EXAMPLES
 
@@ -21,15 +17,6 @@ def test_the_entry_points_are_those_of_the_registry():
         assert factory is getattr(plugins, name)
         assert describe(factory).summary == homotopy.sentence
         assert describe(factory).references
-
-
-def test_the_shell_and_the_charts_offer_them_all():
-    parser = argparse.ArgumentParser()
-    command.register(parser.add_subparsers())
-    for name in ("auto", *HOMOTOPIES):
-        assert parser.parse_args(["solve", "file", "--homotopy", name]).homotopy == name
-    methods = {method.name for method in lcp_charts.studies("smoke", False)[0].methods}
-    assert {homotopy.title for homotopy in HOMOTOPIES.values()} <= methods
 
 
 @pytest.mark.parametrize("name", HOMOTOPIES)
