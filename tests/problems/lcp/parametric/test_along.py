@@ -27,13 +27,9 @@ def test_murtys_example_has_all_its_kinks(n):
     assert np.array_equal(path(t=0.0)[:n], np.append(2.0 ** (n - 1), np.zeros(n - 1)))
 
 
-@pytest.mark.parametrize("p", [1, 3, 5, 6])
+@pytest.mark.parametrize("p", [1, 3, 5, 7])
 def test_the_lasso_path_of_mairal_and_yu_has_all_its_kinks(p):
     assert len(lasso(*known.mairal_yu(p)).kinks) == (3**p - 1) // 2
-
-
-def test_a_thousand_kinks_down_to_rounding():
-    assert len(lasso(*known.mairal_yu(7)).kinks) == 1093
 
 
 def test_random_paths_with_ties_are_those_of_all_pieces():
@@ -56,17 +52,6 @@ def test_random_paths_with_ties_are_those_of_all_pieces():
     assert kinks > 400
     assert degenerate > 40
     assert branching > 10
-
-
-def test_ends_agree_with_solutions():
-    random = np.random.default_rng(5)
-    for _ in range(20):
-        n = int(random.integers(2, 12))
-        A = random.normal(size=(n, n))
-        problem = LCP(A @ A.T + np.eye(n), random.normal(size=n))
-        path = along(problem, np.ones(n), (np.inf, 0.0))
-        assert path.success
-        assert path.endpoint.y == pytest.approx(solve(problem).x, abs=1e-11)
 
 
 def test_bounds_of_all_kinds():
@@ -92,14 +77,6 @@ def test_t_stands_still_where_a_block_is_singular():
     assert path.u[1:] == pytest.approx(np.array([[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 0.0]]), abs=1e-15)
 
 
-def test_two_correlations_that_tie_all_the_way():
-    # Issue 2746 of scikit-learn, whose 1.9.1 gives 4.998 for the first.
-    X = np.array([[0.0, 0.0, 0.0, -1.0, 0.0], [0.0, -1.0, 0.0, 0.0, 0.0]])
-    path = lasso(X, np.array([-2.5, -2.5]))
-    assert path(t=0.002) == pytest.approx([0.0, 2.498, 0.0, 2.498, 0.0, 0.002], rel=1e-15)
-    assert [kink.switches for kink in path.kinks] == [(1, 3)]
-
-
 def test_integer_designs_with_ties_and_columns_that_are_alike():
     for seed in (*range(40), 75, 152, 191, 244, 472, 823):
         X, y = known.integer_design(seed)
@@ -111,47 +88,26 @@ def test_integer_designs_with_ties_and_columns_that_are_alike():
             assert off.max() <= 1e-12 * (1.0 + np.abs(X.T @ y).max()), seed
 
 
-def test_columns_that_are_alike():
-    random = np.random.default_rng(3)
-    X = random.integers(-2, 3, (12, 4)).astype(float)
-    X, y = np.column_stack([X, X[:, 0], -X[:, 2]]), random.integers(-3, 4, 12).astype(float)
-    path = lasso(X, y)
-    assert path.success
-    for u in path.u[1:]:
-        slope = X.T @ (X @ u[:-1] - y)
-        assert np.abs(slope + np.clip(-slope, -u[-1], u[-1])).max() <= 1e-13
-        assert np.abs(slope[u[:-1] != 0.0]) == pytest.approx(u[-1], abs=1e-13)
-    assert np.linalg.norm(X @ path.endpoint.y - y) == pytest.approx(
-        np.sqrt(np.linalg.lstsq(X[:, :4], y, rcond=None)[1][0]), rel=1e-13
-    )
-
-
 def test_a_closed_curve_closes():
     # Between the faces of w_0 x_0 = 0 and x_1 w_1 = 0 the solutions go round.
-    found = [along(*_loop(seed), (0.0, 50.0)) for seed in range(200)]
-    closed = [path for path in found if path.status is Status.CLOSED]
+    closed = []
+    for seed in range(200):
+        random = np.random.default_rng(seed)
+        A, x = random.normal(size=(3, 3)), np.maximum(random.normal(size=3), 0.0)
+        problem = LCP(A, np.where(x > 0.0, 0.0, random.random(3)) - A @ x)
+        path = along(problem, random.normal(size=3), (0.0, 50.0))
+        closed += [path] if path.status is Status.CLOSED else []
     assert closed
     for path in closed:
         assert path.u[-1] == pytest.approx(path.u[0], abs=1e-12)
 
 
-def _loop(seed):
-    random = np.random.default_rng(seed)
-    A = random.normal(size=(3, 3))
-    x = np.maximum(random.normal(size=3), 0.0)
-    w = np.where(x > 0.0, 0.0, random.random(3))
-    return LCP(A, w - A @ x), random.normal(size=3)
-
-
 def test_crossings_of_a_value():
     path = along(murty(3), [1.0, 1.0, 1.0], (np.inf, -np.inf))
-    assert path.success
     for t in (0.0, 1.5, 3.0):
         there = path.crossings(t)
-        assert len(there) >= 1
         assert np.array_equal(path(t=t), there[0])
-        problem = LCP(murty(3).A, murty(3).q + t)
-        assert max(problem.natural_residual(u[:3]) for u in there) <= 1e-14
+        assert max(LCP(murty(3).A, murty(3).q + t).natural_residual(u[:3]) for u in there) <= 1e-14
     assert path.crossings(1e6).shape == (0, 4)
     with pytest.raises(ValueError, match=r"t: expected a value that the parameter takes"):
         path(t=1e6)

@@ -23,16 +23,6 @@ def test_murtys_path_is_proved_and_is_the_only_one():
     assert np.array_equal(exact.u, path.u)
 
 
-def test_a_penalised_regression_is_proved():
-    X, y = known.mairal_yu(4)
-    problem = MixedLCP(X.T @ X, -X.T @ y)
-    path = along(problem, np.zeros(4), (np.inf, 0.0), level=1.0)
-    exact = prove_path(problem, np.zeros(4), path, level=1.0)
-    assert exact.single
-    assert len(exact.points) == 42
-    assert exact.u == pytest.approx(path.u, rel=1e-13)
-
-
 def test_paths_with_ties_and_paths_between_bounds_are_proved():
     ties = 0
     for seed in range(60):
