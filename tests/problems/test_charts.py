@@ -27,8 +27,7 @@ def test_every_study_can_be_made(module):
 def test_the_h_equation_turns_where_it_should(n):
     homotopy = Chandrasekhar(n)
     assert check_jacobian(homotopy, np.append(np.linspace(1.0, 2.0, n), 0.7)).correct
-    end = continuation.TargetValue(0.5, direction=-1)
-    path = continuation.trace(homotopy, direction=1, events=[end])
+    path = continuation.trace(homotopy, direction=1, events=[continuation.TargetValue(0.5, direction=-1)])
     (fold,) = path.turning_points
     assert fold.lam == pytest.approx(1.0, abs=1e-12)
     assert fold.y.mean() == pytest.approx(2.0, abs=1e-6)
@@ -150,15 +149,6 @@ def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
     wrong = scenes._method("wrong", False, lambda scene: {"price": 40.0})
     answer = wrong.run(problem, chart.tolerances(1.0)[0])
     assert (answer.failure, answer.message) == ("wrong end", "the answer is off by 2.0e-01")
-
-
-def test_absent_rivals_of_scenes_are_named(monkeypatch):
-    monkeypatch.setattr(rivals, "installed", lambda module: False)
-    monkeypatch.setattr(scenes.Rival, "installed", property(lambda rival: not rival.module))
-    (meshes, _) = scenes.studies("smoke", True)
-    assert "not installed: " in meshes.notes[0]
-    assert "piqp" in meshes.notes[0]
-    assert engine.studies("smoke", True)[0].notes == ["outside solvers left out, not installed: pysces"]
 
 
 def test_pitcon_comes_to_the_end_of_a_path():
