@@ -33,16 +33,6 @@ def test_bratu_under_an_obstacle_turns_in_a_kink(bratu):
     assert max(errors.values()) / min(errors.values()) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_the_contact_is_where_the_exact_solution_has_it(bratu):
-    for n, path in bratu.items():
-        h = 1.0 / (n + 1)
-        for kink in path.kinks[1:]:
-            a = np.sqrt(2.0 / kink.lam) * np.exp(-PSI / 2.0) * np.arccosh(np.exp(PSI / 2.0))
-            left, right = (h * (i + 1) for i in kink.switches)
-            assert left == pytest.approx(1.0 - right, abs=1e-14)
-            assert 0.0 < a - left < h
-
-
 def kojima_shindo(x):
     """The four functions."""
     a, b, c, d = x[0], x[1], x[2], x[3]

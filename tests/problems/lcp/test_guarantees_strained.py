@@ -88,19 +88,6 @@ def test_near_singular_matrices_stop_near_the_end_if_at_all(pair):
 
 
 @share(40)
-@given(near_singular_lcps(st.integers(1, 3)))
-def test_near_singular_problems_are_called_solved_only_when_they_are(pair):
-    """To the tolerance of the certificate, whatever way the solver took."""
-    problem, x0 = pair
-    solution = solve(problem, "kkt", x0=x0)
-    if solution.outcome is Outcome.SOLVED:
-        assert certify(problem, solution.x).solves(1e-10)
-    else:
-        assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
-        assert not certify(problem, solution.x).solves(1e-10)
-
-
-@share(40)
 @given(badly_scaled_lcps("P"))
 def test_badly_scaled_problems_are_solved(pair):
     """Units between 2^-26 and 2^26, ratios beyond 1e15: the certificate's residual, in the units of q."""

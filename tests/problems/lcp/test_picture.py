@@ -36,16 +36,6 @@ def test_a_face_has_one_bar_for_each_pair_and_a_ring_where_both_are_zero():
     assert axes.get_xlabel() == "i: 1 of 3 off their bounds"
 
 
-@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
-def test_bars_are_those_of_the_solution_in_any_units(unit):
-    random = np.random.default_rng(5)
-    A, q = random.standard_normal((12, 12)), random.standard_normal(12)
-    solution = lcp.solve(lcp.LCP((A @ A.T + np.eye(12)) * unit, q * unit**2))
-    up, down = bars(solution.plot(mpl.figure.Figure().subplots()))
-    assert sorted(up) == np.flatnonzero(solution.x > 0).tolist()
-    assert sorted([*up, *down]) == list(range(12))
-
-
 def test_a_traced_path_stands_beside_the_face_and_the_message_above():
     random = np.random.default_rng(1)
     A = random.standard_normal((6, 6))

@@ -3,13 +3,12 @@
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from attrs import frozen
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from continuation import Kind, trace
-from problems.lcp import LCP, KKTHomotopy, KojimaMegiddoMizunoHomotopy, WangHomotopy, XuHomotopy, YuHomotopy
+from problems.lcp import KKTHomotopy
 from problems.lcp.strategies import feasible_lcps
 from problems.paper import EXAMPLES
 
@@ -114,12 +113,3 @@ def test_reduced_and_full_steps_agree(pair):
     """The path with n + 1 unknowns a solve is, step by step, that with 3n + 1."""
     problem, x0 = pair
     assert_same_path(KKTHomotopy(problem, x0))
-
-
-@pytest.mark.parametrize("make", [YuHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy])
-@share(8)
-@given(pair=feasible_lcps("PSD", st.integers(1, 3)))
-def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make, pair):
-    """The same with n + 1 and 2n + 1, on positive definite matrices, where all of them arrive."""
-    problem, x0 = pair
-    assert_same_path(make(LCP(problem.A + np.eye(problem.n), problem.q), x0))

@@ -5,7 +5,7 @@ import pytest
 
 import continuation
 from continuation import Budget, TargetValue
-from continuation.archive import open_archive, resume
+from continuation.archive import open_archive
 from problems.orbits import PeriodicOrbit, from_model
 from problems.orbits.models import lorenz, normal_form
 
@@ -38,16 +38,6 @@ def test_a_point_of_a_file_says_its_orbit(tmp_path):
         assert np.array_equal(again.mesh, homotopy.mesh)
         assert np.array_equal(again.at(last.y, [0.1, 0.7]), homotopy.at(last.y, [0.1, 0.7]))
         assert np.abs(again.residual(last.y, last.lam)[:-8]).max() < 1e-7
-
-
-def test_a_part_is_resumed_on_its_own_mesh(tmp_path):
-    orbit = from_model("brusselator", intervals=8)
-    renewed, u, v = orbit.renewed(*orbit.leaving)
-    whole = continuation.trace(renewed, start=(u, v), budget=Budget(steps=6))
-    file = tmp_path / "part.h5"
-    continuation.trace(renewed, start=(u, v), budget=Budget(steps=3), archive=file)
-    found = resume(file, budget=Budget(steps=6))
-    assert np.array_equal(found.u, whole.u)
 
 
 def test_a_path_on_which_the_phase_condition_fails_says_so():

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 
 from continuation.testing import check_homotopy
 from problems.charts.scenes import COUNTS
-from problems.lcp import LCP, MixedLCP
-from problems.scenes import Point, Unknown, available, error, find, make, order, solve
-from problems.scenes.cournot import Cournot
+from problems.lcp import MixedLCP
+from problems.scenes import available, error, find, make, order, solve
 from problems.scenes.scene import conditions
 
 from .util import EXACT_TO, FREE, MINIMAL, TAKE_POINTS, needless, small
@@ -74,32 +73,6 @@ def test_no_scene_has_an_unknown_that_its_answer_does_not_need(name):
     if isinstance(problem, MixedLCP):
         free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
         assert int(free.sum()) == FREE.get(name, (0, ""))[0]
-
-
-def worse(kind):
-    """The same with a larger model."""
-    scene = Cournot()
-    A, q = scene.problem().A, scene.problem().q
-    n, one = q.size, np.eye(q.size)
-    larger = {
-        "idle": (np.block([[A, np.zeros((n, 1))], [np.ones((1, n)), np.eye(1)]]), np.append(q, 1.0)),
-        "split": (np.block([[A, -A], [-A, A]]), np.append(q, -q)),
-        "bound": (np.block([[A, one], [-one, 0.0 * one]]), np.append(q, np.full(n, 50.0))),
-    }
-    problem = LCP(*larger[kind])
-    return attrs.evolve(
-        scene, problem=lambda: problem, unknowns=(Unknown("quantities and what is not needed", problem.n, "none"),),
-        answer=lambda solution: scene.answer(Point(solution.x[:4])),
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("kind", "complaint"),
-    [("idle", "in no equation that the answer needs"), ("split", "one without a sign"), ("bound", "multiplier of a")],
-)
-def test_a_larger_model_is_noticed(kind, complaint):
-    assert any(complaint in found for found in needless(worse(kind)))
-    assert needless(Cournot()) == []
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,32 +1,17 @@
 """The augmented Lagrangian of a program: what it is made of, and programs on which active sets alone cycle."""
 
-from itertools import islice
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.optimize import linprog
 
-from continuation.counts import Counts
 from problems import lcp
 from problems.lcp import Outcome
-from problems.lcp.active_set.augmented import Saddle, guesses
-from problems.lcp.active_set.face import exchanging
+from problems.lcp.active_set.augmented import Saddle
 from problems.lcp.proof.verdict import to_precision
 
 INF = np.inf
-
-
-def program(rng, n=6, convex=True, sparse=False):
-    """Rows of every kind around a point in the box."""
-    P = rng.integers(-3, 4, (n, n)).astype(float)
-    P = P @ P.T if convex else P + P.T
-    G, B = rng.integers(-3, 4, (5, n)).astype(float), rng.integers(-3, 4, (1, n)).astype(float)
-    x = rng.random(n)
-    low, high = G @ x - [1.0, INF, 0.5, 0.0, 1.0], G @ x + [INF, 1.0, 0.5, 0.0, 2.0]
-    if sparse:
-        P, G = sp.csr_array(P), sp.csr_array(G)
-    return lcp.from_qp(P, rng.integers(-4, 5, n).astype(float), G, high, B, B @ x, 0, 1, rows_lower=low)
 
 
 def test_what_is_no_program_is_not_read_as_one():
@@ -37,16 +22,6 @@ def test_what_is_no_program_is_not_read_as_one():
     assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], -INF, INF)) is None
     assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], [-INF, 0], [INF, 1], primal=1)) is None
     assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], [-INF, 1], [INF, INF], primal=1)) is None
-
-
-def test_the_multipliers_converge_to_those_of_the_program():
-    made = program(np.random.default_rng(3))
-    wanted = lcp.solve(made)
-    counts = Counts()
-    found = guesses(Saddle.of(made.problem), 0.0, np.zeros(made.n), counts, exchanging())
-    _, point = next(islice(found, 15, None))
-    np.testing.assert_allclose(point[: made.n], wanted.x[: made.n], atol=1e-8)
-    assert counts.factorizations < 60
 
 
 @pytest.mark.parametrize("sparse", [False, True])
@@ -62,15 +37,6 @@ def test_degenerate_linear_programs_need_no_path(sparse):
         assert solution.success, solution.message
         assert not solution.paths
         assert solution.objective == pytest.approx(linprog(cost, A_eq=rows, b_eq=np.ones(2 * k)).fun, abs=1e-12)
-
-
-def test_a_program_that_is_not_convex_with_rows_gives_a_kkt_point():
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        made = program(rng, n=8, convex=False)
-        solution = lcp.solve(made)
-        assert solution.success, solution.message
-        assert solution.residual <= 1e-11
 
 
 def test_rounding_in_place_of_a_zero_is_solved_to_precision_and_said():

@@ -48,19 +48,6 @@ def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m
         assert all(times([row], y)[0] >= right for row, right in alternative)
 
 
-def test_bland_ends_on_beales_cycling_problem():
-    """Beale 1955: the largest-coefficient rule cycles here. Feasible at cost at most -1/20, infeasible below it."""
-    rows = [[25, -6000, -4, 900], [50, -9000, -2, 300], [0, 0, 100, 0], [75, -15000, 2, -600]]
-    limits = [0, 0, 100]
-
-    def attempt(cost):
-        system = [at_least([-v for v in row], -limit) for row, limit in zip(rows, limits, strict=False)]
-        return feasible_point([*system, at_least(rows[3], cost)], 4)
-
-    assert attempt(5) is not None
-    assert attempt(6) is None
-
-
 def test_floats_are_taken_as_the_rationals_that_they_are():
     """0.1 + 0.2 - 0.3 is 2^-54, not zero; 0.8 is not 4/5."""
     assert classes.is_p([[0.1 + 0.2 - 0.3]]).holds

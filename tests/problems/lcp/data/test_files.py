@@ -87,12 +87,6 @@ def test_every_form_of_a_vector(tmp_path, vector):
     np.testing.assert_array_equal(read_vector("q", tmp_path / vector, 3), Q)
 
 
-def test_q_of_its_own_file_takes_precedence(tmp_path):
-    np.savez(tmp_path / "p.npz", A=A, q=Q)
-    np.save(tmp_path / "q.npy", Q + 1)
-    np.testing.assert_array_equal(read_problem(tmp_path / "p.npz", tmp_path / "q.npy").q, Q + 1)
-
-
 def npy(array):
     file = io.BytesIO()
     np.save(file, array)

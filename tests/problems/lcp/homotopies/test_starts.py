@@ -37,13 +37,12 @@ def test_the_papers_start_is_kept():
 
 
 def test_relaxed_start():
-    problem = lcp.LCP([[1.0, 0.0], [0.0, 1.0]], [-3.0, 2.0])
+    problem = lcp.LCP(np.eye(2), [-3.0, 2.0])
     homotopy = lcp.KKTHomotopy(problem, [1.0, 1.0])
-    assert np.array_equal(homotopy.origin.w0, [3.0, 6.0])
-    assert np.array_equal(homotopy.rho, [5.0, 3.0])
+    assert homotopy.origin.w0.tolist() == [3.0, 6.0]
+    assert homotopy.rho.tolist() == [5.0, 3.0]
     assert np.ptp(homotopy.c) < 1e-15 * homotopy.c[0]
-    given_w0 = lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0])
-    assert np.array_equal(given_w0.origin.w0, [1.0, 2.0])
+    assert lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0]).origin.w0.tolist() == [1.0, 2.0]
 
 
 def test_default_start_has_the_units_of_the_problem():

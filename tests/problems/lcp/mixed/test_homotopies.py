@@ -17,7 +17,7 @@ from problems.lcp.proof.verdict import stationary
 from problems.lcp.reference.enumeration import exhaust
 from problems.nonlinear import InteriorHomotopy, MixedComplementarity, solve_complementarity
 
-from .util import drawn, orders, stationarity
+from .util import stationarity
 
 BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
 INF = np.inf
@@ -48,18 +48,6 @@ def test_starts_are_inside_and_finite_for_any_bounds():
 def test_a_fixed_unknown_has_no_inside():
     with pytest.raises(ValueError, match="problem: expected lower < upper, found a fixed unknown 1"):
         lcp.WangHomotopy(lcp.MixedLCP(np.eye(2), [1.0, 1.0], [0, 1], [1, 1]))
-
-
-@pytest.mark.parametrize("banded", [False, True])
-def test_the_order_of_what_the_kkt_path_factors_is_n(monkeypatch, banded):
-    found = orders(monkeypatch)
-    problem = drawn(np.random.default_rng(1), 10)
-    if banded:
-        band = sp.diags_array([1.0, 3.0, -1.0], offsets=[-1, 0, 1], shape=(10, 10))
-        problem = lcp.MixedLCP(band, problem.q, problem.lower, problem.upper)
-    assert lcp.solve(problem, "kkt").success
-    assert len(found) >= 10
-    assert max(found) <= 10
 
 
 def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():

@@ -93,16 +93,20 @@ def test_every_check_of_a_plug_in_passes_with_a_row_of_two_sides():
     check_homotopy(HOMOTOPIES["wang"].make(problem, None))
 
 
-def test_what_only_looks_like_a_row_with_two_sides_is_none():
-    inf = np.inf
-    A = np.array([[2.0, -1.0, 0.0], [1.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-    found = ranges(lcp.MixedLCP(A, np.ones(3), [0, -inf, 0], [inf, inf, 1]))
-    assert found.activity.tolist() == [2]
-    assert found.multiplier.tolist() == [1]
-    signed = lcp.MixedLCP(A, np.ones(3), [0, 0, 0], [inf, inf, 1])
-    assert ranges(signed) is None
-    A[2, 2] = 1.0
-    assert ranges(lcp.MixedLCP(A, np.ones(3), [0, -inf, 0], [inf, inf, 1])) is None
-    twice = np.array([[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    assert ranges(lcp.MixedLCP(twice, np.zeros(3), [-inf, 0, 0], [inf, 1, 1])) is None
-    assert lcp.solve(lcp.MixedLCP(twice, np.zeros(3), [-inf, 0, 0], [inf, 1, 1])).success
+INDEFINITE = [[2.0, -1.0, 0.0], [1.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
+TWICE = [[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("A", "lower", "upper"),
+    [
+        (INDEFINITE, [0, 0, 0], [INF, INF, 1]),
+        ([*INDEFINITE[:2], [0.0, 1.0, 1.0]], [0, -INF, 0], [INF, INF, 1]),
+        (TWICE, [-INF, 0, 0], [INF, 1, 1]),
+    ],
+)
+def test_what_only_looks_like_a_row_with_two_sides_is_none(A, lower, upper):
+    assert ranges(lcp.MixedLCP(A, np.zeros(3), lower, upper)) is None
+    assert ranges(lcp.MixedLCP(INDEFINITE, np.ones(3), [0, -INF, 0], [INF, INF, 1])).activity.tolist() == [2]
+
+

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from scipy.optimize import lsq_linear, nnls
 
 from continuation.archive import open_archive
 from problems import lcp
@@ -83,26 +82,6 @@ def test_the_nearest_point_of_a_box_is_clipped_exactly():
     c = np.array([3.0, -0.25, 0.1, -7.0])
     solution = lcp.solve(lcp.MixedLCP(np.eye(4), -c, -1 / 3, 1 / 7))
     np.testing.assert_array_equal(solution.x, np.clip(c, -1 / 3, 1 / 7))
-
-
-def test_the_nearest_point_of_a_simplex_is_that_of_the_sorting_formula():
-    c = np.random.default_rng(1).standard_normal(50)
-    solution = lcp.solve(lcp.from_qp(np.eye(50), -c, A_eq=np.ones((1, 50)), b_eq=[1.0], lower=0))
-    falling = np.sort(c)[::-1]
-    level = (np.cumsum(falling) - 1.0) / np.arange(1, 51)
-    theta = level[np.flatnonzero(falling > level)[-1]]
-    np.testing.assert_allclose(solution.named["x"], np.maximum(c - theta, 0.0), atol=1e-15)
-    np.testing.assert_allclose(solution.named["equations"], [-theta], atol=1e-15)
-
-
-@pytest.mark.parametrize(("m", "n"), [(40, 15), (60, 30)])
-def test_least_squares_with_bounds_beside_scipy(m, n):
-    rng = np.random.default_rng(5)
-    M, b = rng.standard_normal((m, n)), rng.standard_normal(m)
-    nonnegative = lcp.solve(lcp.from_qp(M.T @ M, -M.T @ b, lower=0))
-    np.testing.assert_allclose(nonnegative.x, nnls(M, b)[0], atol=1e-12)
-    bounded = lcp.solve(lcp.from_qp(M.T @ M, -M.T @ b, lower=-0.1, upper=0.05))
-    np.testing.assert_allclose(bounded.x, lsq_linear(M, b, (-0.1, 0.05), method="bvls", tol=1e-15).x, atol=1e-12)
 
 
 def test_multipliers_by_name_satisfy_the_optimality_conditions():

@@ -11,21 +11,15 @@ from problems.lcp.homotopies import elimination
 def orders(monkeypatch):
     """Where the orders of all matrices that are factored go from here on."""
     found = []
-
-    def spy(module, name):
+    factors = [(face, name) for name in ("factor_lu", "factor_cholesky", "factor_band")]
+    for module, name in (*factors, (Factoring, "factor"), (elimination, "factor_bordered")):
         real = getattr(module, name)
 
-        def counted(*arguments, **given):
-            matrix = next(one for one in arguments if hasattr(one, "shape"))
-            found.append(matrix.shape[0])
+        def counted(*arguments, real=real, **given):
+            found.append(next(one for one in arguments if hasattr(one, "shape")).shape[0])
             return real(*arguments, **given)
 
         monkeypatch.setattr(module, name, counted)
-
-    for name in ("factor_lu", "factor_cholesky", "factor_band"):
-        spy(face, name)
-    spy(Factoring, "factor")
-    spy(elimination, "factor_bordered")
     return found
 
 

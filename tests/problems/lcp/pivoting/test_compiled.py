@@ -125,13 +125,6 @@ def test_a_game_is_left_where_the_table_of_either_player_is_singular(monkeypatch
         assert path.run(200) is almost.Ended.PATH_LEFT
 
 
-def test_the_largest_floats_have_a_unit():
-    largest = np.finfo(float).max
-    path = covering(LCP([[largest, 0.0], [0.0, largest]], [-largest, -largest]), np.full(2, largest))
-    assert path.run(10) is almost.Ended.REACHED
-    assert path.active.all()
-
-
 def test_numba_compiles_it():
     pytest.importorskip("numba")
     assert agreed()[0] > 20

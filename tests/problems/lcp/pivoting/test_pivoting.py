@@ -9,7 +9,6 @@ from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
-from problems.lcp.search.pivots import constraints
 
 
 def on_face(problem, active):
@@ -95,14 +94,6 @@ def test_from_the_solution_for_another_q():
     assert covering(LCP(A, now), before - now, ~active) is None
 
 
-def test_all_pivots_are_counted_and_limited():
-    problem = LCP(np.eye(4), -np.ones(4))
-    path = covering(problem, np.array([1.0, 2.0, 3.0, 4.0]))
-    assert path.run(2) is Ended.PIVOTS
-    assert path.pivots == 2
-    assert path.run(100) is Ended.REACHED
-
-
 def test_lemke_and_howson_from_every_label():
     # Bach and Stravinsky: two pure equilibria and a mixed one.
     C, D = 3.0 - np.array([[2.0, 0.0], [0.0, 1.0]]), 3.0 - np.array([[1.0, 0.0], [0.0, 2.0]])
@@ -125,20 +116,6 @@ def test_what_is_no_game():
     assert Game.of(LCP(np.zeros((2, 2)), [-1.0, -1.0])) is None
 
 
-def test_a_bounded_program_has_no_other_ray():
-    r, n = np.random.default_rng(8), 12
-    Q = r.integers(-50, 51, (n, n)).astype(float)
-    Q = Q + Q.T
-    np.fill_diagonal(Q, -7.0)
-    A = np.block([[Q, np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
-    problem = LCP(A, np.append(r.integers(-50, 51, n), np.ones(n)))
-    np.testing.assert_array_equal(constraints(problem), np.arange(2 * n) >= n)
-    for d in 10.0 ** r.uniform(-3.0, 0.0, (20, 2 * n)):
-        assert covering(problem, np.where(constraints(problem), 0.0, d)).run(2000) is Ended.REACHED
-    assert covering(problem, np.ones(2 * n)).run(2000) is Ended.RAY
-    assert "Lemke" in lcp.solve(problem).message
-
-
 def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
     r = np.random.default_rng(4)
     y = r.uniform(0.5, 1.5, 20)
@@ -150,11 +127,3 @@ def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
     assert found.outcome is lcp.Outcome.INFEASIBLE_TO_PRECISION
     assert "Lemke" in found.message
     np.testing.assert_allclose(found.float_farkas.y, y / y.max(), rtol=1e-9)
-
-
-def test_a_row_that_falls_slowly_is_not_tied_with_one_that_falls_fast():
-    # The first row is zero but for 5e-12, and 5e-8 of the other variable: the second would fall to -5e-8.
-    table = Dictionary(np.array([[-1e-4, 5e-12], [-1.0, 0.0], [1.0, 1.0]]), np.arange(3), np.array([3]))
-    assert table.first_zero(0, frozenset({0})) == 1
-    table = Dictionary(np.array([[1e-4, 0.0], [1.0, -5e-8], [1.0, 1.0]]), np.arange(3), np.array([3]))
-    assert table.last_zero(0) == 1

@@ -75,14 +75,6 @@ def test_infeasible_is_told_from_no_interior():
     assert isinstance(thin.value, ValueError)
 
 
-def test_large_sparse_start():
-    n = 3000
-    A = sp.diags_array([-np.ones(n - 1), 2.0 * np.ones(n), -np.ones(n - 1)], offsets=[-1, 0, 1])
-    problem = LCP(A, -np.full(n, 0.5) / n**2)
-    x0 = strictly_feasible_start(problem)
-    assert is_strictly_feasible(problem, x0)
-
-
 def test_boundary_points_are_not_strictly_feasible():
     """The exact value of 0.1 * 3 - 0.3 in floats, 2.8e-17, decides, not the rounded one."""
     problem = LCP([[0.1]], [-0.3])

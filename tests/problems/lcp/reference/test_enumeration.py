@@ -79,16 +79,6 @@ def test_a_singular_face_with_one_point_is_complete(problem, x, faces):
     assert faces is None or (solution.faces, solution.strictly_complementary) == (faces, False)
 
 
-COUNTS = {1: 1, 2: 1, 3: 1, 4: 3, 5: 2, 6: 2, 8: 1, 9: 2, 10: 2}
-
-
-@pytest.mark.parametrize("number", COUNTS)
-def test_the_number_of_solutions_of_the_papers_examples(number):
-    found = solve_by_enumeration(EXAMPLES[number - 1].problem)
-    assert (len(found.solutions), found.complete) == (COUNTS[number], True)
-    assert all(s.strictly_complementary for s in found.solutions)
-
-
 @given(lcps("any", ORDERS))
 def test_every_solution_solves_exactly_and_they_are_distinct(problem):
     found = solve_by_enumeration(problem)

@@ -7,9 +7,7 @@ import pytest
 
 from problems import lcp
 from problems.lcp import LCP, Outcome
-from problems.lcp.pivoting.lockstep import lemke_bases
 from problems.lcp.proof.certificate import ROUND_OFF
-from problems.lcp.proof.stacked import judged
 from problems.lcp.search import many
 
 from ....util import benchmark
@@ -81,18 +79,6 @@ def test_an_executor_and_other_parts_change_nothing(monkeypatch):
         spread = lcp.solve_many(A, q, executor=executor)
     for name in ("x", "outcome", "residual", "relative_residual", "singly"):
         np.testing.assert_array_equal(getattr(alone, name), getattr(spread, name))
-
-
-def test_a_wrong_face_is_not_accepted():
-    A, q = KINDS["p_matrices"](40, 5, np.random.default_rng(8))
-    active, ended = lemke_bases(A, q)
-    assert ended.all()
-    assert judged(A, q, active, 1e-10).solves.all()
-    active[:, 0] = ~active[:, 0]
-    found = judged(A, q, active, 1e-10)
-    # But for a point that corrections bring to the solution, since one more x_i may be zero.
-    assert found.solves.sum() <= 2
-    assert all(lcp.certify(LCP(A[i], q[i]), found.x[i]).solves() for i in np.flatnonzero(found.solves))
 
 
 def test_what_the_last_digit_decides_is_left_to_solve():

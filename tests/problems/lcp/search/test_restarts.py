@@ -9,7 +9,7 @@ import pytest
 import continuation
 from problems import lcp
 from problems.lcp.homotopies.starts import LOG_DEVIATION, START_DISTANCES, natural_units, typical_units
-from problems.lcp.search.paths import Restart, light, trace_light
+from problems.lcp.search.paths import Restart
 
 PLANTED = 30
 
@@ -107,14 +107,6 @@ def test_an_executor_stops_at_the_count():
     assert solution.outcome is lcp.Outcome.STATIONARY
     assert len(solution.paths) == 6
     assert "Restarts from random starts: 5" in solution.message
-
-
-def test_light_paths_keep_their_ends():
-    path = restart(planted(0), 0).trace(continuation.Budget())
-    ends = [path.steps[0].u, path.endpoint.u]
-    assert len(path) > 2
-    for kept in (light(path), trace_light(restart(planted(0), 0), continuation.Budget())):
-        np.testing.assert_array_equal(kept.u, ends)
 
 
 def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):

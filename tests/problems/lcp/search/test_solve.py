@@ -106,12 +106,6 @@ def test_the_outcome_is_judged_by_the_certificate_alone(monkeypatch):
     assert solution.outcome is not Outcome.SOLVED
 
 
-def test_a_path_to_infinity_along_a_solution_of_the_homogeneous_problem_is_no_solution():
-    # w1 = -1 always; x2 -> infinity makes the residual small relative to |x|, and to nothing else.
-    problem = lcp.LCP([[0.0, 0.0], [0.0, 1.0]], [-1.0, -1e9])
-    assert lcp.solve(problem, restarts=2).outcome is Outcome.UNSOLVABLE
-
-
 def test_the_budget_ends_the_search():
     problem = COUNTEREXAMPLES[0].problem
     # The pure path alone: with the finish all faces of so small a problem are tried first.

@@ -12,7 +12,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search import exclusion
 from problems.lcp.search.search import Asked, Search
-from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, Row, settled_by
+from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, settled_by
 
 INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
 GAME = lcp.LCP([[0.0, 1.0], [2.0, 0.0]], [-1.0, -1.0])
@@ -39,14 +39,6 @@ def tried(one, table):
     noted = tuple(evolve(row, method=lambda _, name=row.name: Noted(name)) for row in table)
     assert settled_by(one, noted) == ""
     return names
-
-
-def test_the_table_fits_one_screen_and_every_row_is_tried_somewhere():
-    seen = set()
-    for problem in (INFEASIBLE, GAME, lcp.LCP(np.eye(30) - 2.0, -np.ones(30)), lcp.LCP(-np.eye(3), -np.ones(3))):
-        seen |= set(tried(search(problem), AUTOMATIC))
-    assert seen == {row.name for row in AUTOMATIC}
-    assert len(AUTOMATIC) <= 10
 
 
 @pytest.mark.parametrize(
@@ -76,19 +68,6 @@ def test_what_is_dear_is_left_out_when_the_budget_is_spent():
     one.traced.accepted = 10_000
     assert settled_by(one, PATHS) == ""
     assert not one.paths
-
-
-def test_another_method_is_one_more_row():
-    class Guess:
-        def __init__(self, search):
-            self.search = search
-
-        def run(self, work):
-            return "Guessed." if self.search.settle(np.zeros(2, dtype=np.int8)) else ""
-
-    one = search(lcp.LCP(np.eye(2), [-1.0, -1.0]))
-    assert settled_by(one, (Row("a guess", Guess, lambda s: True, 1, "guesses"), *AUTOMATIC)) == "Guessed."
-    np.testing.assert_array_equal(one.best().certificate.x, [1.0, 1.0])
 
 
 @pytest.mark.parametrize(
