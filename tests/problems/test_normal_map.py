@@ -72,21 +72,6 @@ def banded(n):
     return Banded(np.array([np.full(n, -1.0), np.full(n, 2.5), np.full(n, -1.0)]), 1, 1)
 
 
-def test_the_structure_changes_nothing():
-    q, d = np.random.default_rng(4).standard_normal((2, 20))
-    shift, ends = np.abs(q) + 1.0, []
-    for A in (chain(20).toarray(), chain(20), sp.csr_array(chain(20)), banded(20)):
-        problem = NormalMap.affine(A, q + shift, d - shift, x0=np.zeros(20), lam0=0.0, target=1.0, upper=0.6)
-        path = trace(problem)
-        x = problem.x(path.endpoint.y)
-        assert np.abs(x - np.clip(x - chain(20) @ x - q - d, 0.0, 0.6)).max() < 1e-12
-        ends.append(([kink.switches for kink in path.kinks], path.endpoint.u))
-    assert len(ends[0][0]) > 10
-    for switches, u in ends[1:]:
-        assert switches == ends[0][0]
-        assert np.abs(u - ends[0][1]).max() < 1e-13
-
-
 @pytest.mark.parametrize("make", [lambda n: chain(n).toarray(), chain, banded], ids=["dense", "sparse", "banded"])
 @pytest.mark.parametrize("count", [0, 3, 8])
 def test_the_reduced_system_solves_the_whole_one(make, count):

@@ -18,7 +18,7 @@ from problems.lcp import MixedLCP
 from problems.scenes import available, error, find, make, order, solve
 from problems.scenes.scene import conditions
 
-from .util import EXACT_TO, FREE, MINIMAL, TAKE_POINTS, needless, small
+from .util import EXACT_TO, FREE, MINIMAL, small
 
 ROOT = Path(__file__).parents[3]
 NAMES = list(available())
@@ -69,7 +69,6 @@ def test_no_scene_has_an_unknown_that_its_answer_does_not_need(name):
     fewest, reason = MINIMAL[name]
     problem = conditions(scene.problem())
     assert order(scene.problem()) == fewest, reason
-    assert needless(scene, name in TAKE_POINTS) == []
     if isinstance(problem, MixedLCP):
         free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
         assert int(free.sum()) == FREE.get(name, (0, ""))[0]

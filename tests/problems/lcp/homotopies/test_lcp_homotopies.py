@@ -5,11 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import continuation
 from problems import lcp
 from problems.lcp.homotopies.interior import RelativeMetric
 from problems.lcp.strategies import lcps
-from problems.paper import EXAMPLES
 
 from .util import every, made
 
@@ -76,12 +74,3 @@ def test_relative_metric():
 def test_observe():
     homotopy = lcp.KKTHomotopy(lcp.LCP(np.eye(2), [-1.0, 2.0]))
     assert homotopy.observe(np.array([1.5, 0.25, 9, 9, 9, 9.0]), 0.1) == {"natural_residual": 0.5, "gap": 1.3125}
-
-
-@pytest.mark.parametrize("make", [lcp.YuHomotopy, lcp.XuHomotopy, lcp.WangHomotopy])
-def test_older_homotopies_solve_what_they_can_and_diverge_elsewhere(make):
-    for number, solved in ((1, False), (2, True), (3, True), (4, True), (6, True), (9, False)):
-        problem = EXAMPLES[number - 1].problem
-        path = continuation.trace(make(problem, EXAMPLES[number - 1].x0))
-        assert path.status is (continuation.Status.REACHED_TARGET if solved else continuation.Status.DIVERGED)
-        assert not solved or problem.natural_residual(path.endpoint.y[: problem.n]) < 1e-8

@@ -44,16 +44,6 @@ def test_integers_one_number_and_none_are_bounds():
     assert lcp.MixedLCP(A, Q, 0).standard
 
 
-def test_an_lcp_is_a_problem_with_bounds_and_carries_none():
-    problem = lcp.LCP(A, Q)
-    assert isinstance(problem, lcp.MixedLCP)
-    assert problem.lower.strides == problem.upper.strides == (0,)
-    mixed = lcp.MixedLCP(A, Q, 0.0, np.inf)
-    a, b = lcp.solve(problem), lcp.solve(mixed)
-    np.testing.assert_array_equal(a.x, b.x)
-    assert (a.outcome, a.message, a.counts) == (b.outcome, b.message, b.counts)
-
-
 def test_a_fixed_unknown_is_eliminated_and_named():
     solution = lcp.solve(lcp.MixedLCP(A, Q, [1.5, 0.0], [1.5, np.inf]))
     np.testing.assert_array_equal(solution.x, [1.5, 2.25])

@@ -120,20 +120,6 @@ def test_a_multiplier_of_bounds_is_checked_exactly():
     assert not proof.holds(lcp.MixedLCP(problem.A, problem.q, [0.0, 0.0], [3.0, np.inf]))
 
 
-@pytest.mark.parametrize(("n", "seed"), [(20, 8), (20, 9), (50, 10)])
-def test_a_nonconvex_program_in_a_box_gives_a_kkt_point(n, seed):
-    """Integers from -50 to 50."""
-    rng = np.random.default_rng(seed)
-    P, c = np.triu(rng.integers(-50, 51, (n, n))).astype(float), rng.integers(-50, 51, n).astype(float)
-    P += np.triu(P, 1).T
-    solution = lcp.solve(lcp.from_qp(P, c, lower=0, upper=1), restarts=0)
-    x = solution.x
-    assert solution.success
-    assert not solution.paths
-    assert np.abs(x - np.clip(x - P @ x - c, 0, 1)).max() <= 1e-10
-    assert "this is a KKT point, and need not be a minimum" in solution.message
-
-
 @pytest.mark.parametrize("path", [False, True])
 def test_an_archive_of_a_problem_with_bounds(tmp_path, path):
     problem = lcp.MixedLCP([[1.0, 1.0], [-1.0, 1.0]], [-1.0, -1.0], [0.0, -np.inf], [0.5, np.inf])

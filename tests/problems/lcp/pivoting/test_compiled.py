@@ -95,26 +95,6 @@ def test_it_is_used_where_the_program_has_imported_numba_and_said_so(monkeypatch
     np.testing.assert_array_equal(found.x, without.x)
 
 
-def smallest(n, seed):
-    """Constants so small that a ratio times its rate is zero: what falls first is not seen to be tied with itself."""
-    r = np.random.default_rng([n, seed])
-    return LCP(r.integers(-9, 10, (n, n)).astype(float), 5e-324 * r.integers(-9, 9, n))
-
-
-def run_to_ends():
-    for seed in range(60):
-        path = covering(smallest(5, seed), np.ones(5))
-        assert path is None or path.run(200) in almost.Ended
-
-
-def test_a_ratio_that_underflows_is_still_the_first(monkeypatch):
-    run_to_ends()
-    assert lcp.solve(smallest(14, 5), restarts=0).outcome in lcp.Outcome
-    monkeypatch.setattr(almost, "available", lambda: True)
-    monkeypatch.setattr(almost, "kernel", lambda: compiled.pivots)
-    run_to_ends()
-
-
 def test_a_game_is_left_where_the_table_of_either_player_is_singular(monkeypatch):
     monkeypatch.setattr(almost, "REBUILT_AFTER", -100)
     for lost in (0, 1):

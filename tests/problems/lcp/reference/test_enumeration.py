@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import LARGEST_FACES, solve_by_enumeration
-from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, lcps, near_singular_lcps, planted_lcps
+from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps, planted_lcps
 from problems.paper import EXAMPLES
 
 from ....exact import exact_w, solves
@@ -116,22 +116,6 @@ def test_a_planted_solution_is_found(pair):
     problem, x = pair
     found = solve_by_enumeration(problem)
     assert tuple(map(Fraction, x)) in {s.x for s in found.solutions} or not found.complete
-
-
-@given(feasible_lcps("any", ORDERS), st.data())
-def test_scaling_and_permutation_move_the_solutions_and_nothing_else(pair, data):
-    """D A E, D q has the solutions x / E, and P A P', P q the permuted ones."""
-    problem, _ = pair
-    n = problem.n
-    factor = st.sampled_from((0.25, 0.5, 2.0, 8.0))
-    left, right = (np.array([data.draw(factor) for _ in range(n)]) for _ in range(2))
-    order = data.draw(st.permutations(range(n)))
-    moved = LCP((left[:, None] * problem.A * right)[np.ix_(order, order)], (left * problem.q)[order])
-    before, after = solve_by_enumeration(problem), solve_by_enumeration(moved)
-    assert before.complete == after.complete
-    if before.complete:
-        expected = {tuple(s.x[i] / Fraction(right[i]) for i in order) for s in before.solutions}
-        assert {s.x for s in after.solutions} == expected
 
 
 @given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))

@@ -8,7 +8,7 @@ import pytest
 
 import continuation
 from problems import lcp
-from problems.lcp.homotopies.starts import LOG_DEVIATION, START_DISTANCES, natural_units, typical_units
+from problems.lcp.homotopies.starts import LOG_DEVIATION, START_DISTANCES, typical_units
 from problems.lcp.search.paths import Restart
 
 PLANTED = 30
@@ -63,27 +63,6 @@ def test_the_first_path_leaves_time_for_others(monkeypatch):
     for options in ({"restarts": 0}, {"finish": False}, {"preset": small}, {"finish": False, "preset": small}):
         found = lcp.solve(problem, **{"restarts": 1, "path": True, **options})
         assert "it has not ended" not in found.paths[0].message
-
-
-def test_one_row_in_other_units_hardly_moves_the_starts():
-    problem = planted(1)
-    units = np.ones(PLANTED)
-    units[np.argmin(np.abs(problem.q))] = 4.0
-    other = lcp.LCP(units[:, None] * problem.A, units * problem.q)
-    assert natural_units(other)[0] < 0.5 * natural_units(problem)[0]
-    assert typical_units(other)[0] > 0.75 * typical_units(problem)[0]
-    assert lcp.default_start(other).x0[0] > 0.75 * lcp.default_start(problem).x0[0]
-
-
-def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.paths.RESTART_STEPS", 5 - PLANTED)
-    problem = planted(3)
-    paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
-    given_up = [k for k, path in enumerate(paths) if "Given up: " in path.message]
-    for k in given_up:
-        assert paths[k].status is continuation.Status.ABANDONED
-    pure = restart(problem, given_up[0], tolerance=None).trace(continuation.Budget())
-    assert "Given up" not in pure.message
 
 
 def test_restarts_are_the_same_again_and_over_an_executor():

@@ -63,13 +63,6 @@ def test_without_the_finish_and_with_a_path_that_is_wanted_paths_come_first():
     assert tried(search(INFEASIBLE, restarts=0), NAMED) == ["paths", "root"]
 
 
-def test_what_is_dear_is_left_out_when_the_budget_is_spent():
-    one = search(lcp.LCP(np.eye(50) - 2.0, -np.ones(50)))
-    one.traced.accepted = 10_000
-    assert settled_by(one, PATHS) == ""
-    assert not one.paths
-
-
 @pytest.mark.parametrize(
     ("problem", "options", "expected"),
     [
@@ -93,18 +86,6 @@ def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, opt
     assert (problem.A.T @ y <= 0.0).all()
     assert problem.q @ y < 0.0
     assert len(calls) == expected
-
-
-@pytest.mark.parametrize("n", [6, 20, 40])
-def test_the_root_of_the_tree_is_a_farkas_vector(n):
-    r = np.random.default_rng(n)
-    A, q = r.standard_normal((n, n)), r.standard_normal(n)
-    A[0], q[0] = -A[1:].sum(axis=0) - r.random(n), -q[1:].sum() - 0.1
-    problem = lcp.LCP(A, q)
-    found = lcp.solve(problem)
-    assert found.outcome is lcp.Outcome.UNSOLVABLE
-    assert found.farkas.holds(problem)
-    assert not found.paths
 
 
 def test_a_sparse_matrix_is_dense_for_paths():
