@@ -108,12 +108,10 @@ def test_what_is_unknown_is_refused(make, message):
 @given(mine.near_singular_lcps(st.integers(2, 4)))
 def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_feasible(pair):
     problem, x0 = pair
-    assert min(x0) > 0
-    assert min(exact_w(problem, x0)) > 0
+    assert min(*x0, *exact_w(problem, x0)) > 0
     whole = np.round(problem.A)
-    moved = np.abs(problem.A - whole)
-    assert np.count_nonzero(moved) == 1
-    assert 2.0**-40 <= moved.max() <= 2.0**-10
+    (moved,) = np.abs(problem.A - whole)[whole != problem.A]
+    assert 2.0**-40 <= moved <= 2.0**-10
     assert classes.ExactMatrix.of(whole).minors[-1] == 0
 
 
@@ -121,9 +119,7 @@ def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_fe
 def test_badly_scaled_problems_keep_their_class_and_start(pair):
     problem, x0 = pair
     assert classes.is_p(problem.A).holds
-    assert min(x0) > 0
-    assert min(exact_w(problem, x0)) > 0
-    assert len(solve_by_enumeration(problem).solutions) == 1
+    assert min(*x0, *exact_w(problem, x0)) > 0
 
 
 def test_the_hook_imports_nothing():

@@ -175,14 +175,6 @@ def test_every_check_of_a_plug_in_passes_for_nonlinear_problems():
     check_homotopy(InteriorHomotopy(MixedComplementarity(kojima_shindo, lower=np.zeros(4))))
 
 
-def test_a_path_is_followed_where_newtons_method_fails():
-    """Powell's kind of failure: from the start the linearised problems have no solution."""
-    problem = MixedComplementarity(lambda x: np.arctan(4.0 * (x - 3.0)), lower=[-INF], upper=[INF])
-    solution = solve_complementarity(problem, [40.0])
-    assert solution.success
-    np.testing.assert_allclose(solution.x, [3.0], atol=1e-12)
-
-
 NONLINEAR_REFUSED = {
     "no vector": ({}, "lower: expected a vector of bounds"),
     "fixed": ({"lower": [0, 1], "upper": [2, 1]}, "lower: expected less than upper, found both 1.0 at index 1"),

@@ -106,10 +106,11 @@ def test_an_archive_holds_the_path_its_kinks_and_their_rays(tmp_path):
     problem, d = known.integer_problem(9)
     path = along(problem, d, (np.inf, -np.inf), archive=tmp_path / "path.h5")
     with open_archive(tmp_path / "path.h5") as archive:
-        again = archive[0]
+        (again,) = archive
     assert np.array_equal(again.u, path.u)
-    assert [(k.name, k.switches, k.kind) for k in again.kinks] == [(k.name, k.switches, Kind.KINK) for k in path.kinks]
-    assert all(np.array_equal(a.rays, b.rays) for a, b in zip(again.kinks, path.kinks))
+    for one, other in zip(again.kinks, path.kinks, strict=True):
+        assert (one.name, one.switches, one.kind) == (other.name, other.switches, Kind.KINK)
+        assert np.array_equal(one.rays, other.rays)
     middle = 0.5 * (path.arclength[1:] + path.arclength[:-1])
     assert again(middle) == pytest.approx(path(middle), abs=1e-12)
 

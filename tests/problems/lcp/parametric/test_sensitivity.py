@@ -54,15 +54,21 @@ def test_one_sided_derivatives_are_those_of_differences(seed):
     assert found.jvp(dq) == pytest.approx((solve(LCP(A, w - A @ x + H * dq)).x - x) / H, abs=1e-8)
 
 
-def test_what_has_no_derivative_says_so():
-    with pytest.raises(NotDifferentiableError, match="A singular where x is off its bounds"):
-        solve(LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), x0=[0.5, 0.5]).sensitivity()
-    with pytest.raises(NotDifferentiableError, match="expected one, found none"):
-        solve(LCP([[0.0]], [-1.0])).sensitivity()
-    jammed = solve(LCP([[-1.0]], [0.0])).sensitivity()
-    with pytest.raises(NotDifferentiableError, match="found 2 ways"):
-        jammed.jvp([1.0])
-    with pytest.raises(NotDifferentiableError, match="found no ways"):
-        jammed.jvp([-1.0])
+JAMMED = LCP([[-1.0]], [0.0])
+
+
+@pytest.mark.parametrize(
+    ("problem", "message", "dq"),
+    [
+        (LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), "A singular where x is off its bounds", None),
+        (LCP([[0.0]], [-1.0]), "expected one, found none", None),
+        (JAMMED, "found 2 ways", [1.0]),
+        (JAMMED, "found no ways", [-1.0]),
+    ],
+)
+def test_what_has_no_derivative_says_so(problem, message, dq):
+    found = solve(problem, x0=np.full(problem.n, 0.5))
+    with pytest.raises(NotDifferentiableError, match=message):
+        found.sensitivity().jvp(dq)
     with pytest.raises(ValueError, match="dA: expected finite numbers of shape"):
-        jammed.jvp(dA=[1.0])
+        solve(JAMMED).sensitivity().jvp(dA=[1.0])
