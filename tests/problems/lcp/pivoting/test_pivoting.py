@@ -9,6 +9,7 @@ from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
+from problems.lcp.search.pivots import constraints
 
 
 def on_face(problem, active):
@@ -109,6 +110,19 @@ def test_what_is_no_game():
     assert Game.of(LCP([[0.0, 1.0], [1.0, 0.0]], [-1.0, 1.0])) is None
     assert Game.of(LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])) is None
     assert Game.of(LCP(np.zeros((2, 2)), [-1.0, -1.0])) is None
+
+
+def test_a_bounded_program_has_no_other_ray():
+    r, n = np.random.default_rng(8), 12
+    Q = r.integers(-50, 51, (n, n)).astype(float)
+    Q = Q + Q.T
+    np.fill_diagonal(Q, -7.0)
+    A = np.block([[Q, np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    problem = LCP(A, np.append(r.integers(-50, 51, n), np.ones(n)))
+    np.testing.assert_array_equal(constraints(problem), np.arange(2 * n) >= n)
+    for d in 10.0 ** r.uniform(-3.0, 0.0, (20, 2 * n)):
+        assert covering(problem, np.where(constraints(problem), 0.0, d)).run(2000) is Ended.REACHED
+    assert covering(problem, np.ones(2 * n)).run(2000) is Ended.RAY
 
 
 def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():

@@ -66,8 +66,9 @@ def test_rows_and_columns_over_sixteen_orders_of_magnitude(seed):
 
 def test_infeasible_is_told_from_no_interior():
     with pytest.raises(NoStrictlyFeasiblePoint, match="no solution") as infeasible:
-        strictly_feasible_start(LCP([[-1.0]], [-1.0]))
+        strictly_feasible_start(LCP([[-1.0, 0.0], [0.0, 1.0]], [-1.0, -10.0]))
     assert infeasible.value.certificate.no_feasible_point
+    assert infeasible.value.margin < 0.0
     with pytest.raises(NoStrictlyFeasiblePoint, match="may still have solutions") as thin:
         strictly_feasible_start(LCP([[1.0, -1.0], [-1.0, 1.0]], [0.0, 0.0]))
     assert not thin.value.certificate.no_feasible_point

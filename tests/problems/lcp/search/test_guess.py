@@ -39,6 +39,14 @@ def test_with_bounds_and_units():
     assert again.x == pytest.approx(solve(after).x, abs=1e-10)
 
 
+def test_the_path_from_the_nearby_problem_is_followed_up_to_the_largest_table(monkeypatch):
+    A, q, random = moving(9)
+    found, problem = solve(LCP(A, q)), LCP(A, q + random.normal(size=20))
+    for largest, nearby in ((20, True), (19, False)):
+        monkeypatch.setattr("problems.lcp.search.active_sets.LARGEST_TABLE", largest)
+        assert ("nearby" in solve(problem, guess=found).message) is nearby
+
+
 def test_a_far_guess_harms_nothing():
     for seed in range(5):
         A, q, random = moving(seed, 6)

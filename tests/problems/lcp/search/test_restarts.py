@@ -1,5 +1,6 @@
 """Restarts: reproducible, in any order, over an executor, and given up when they are not worth following."""
 
+import itertools
 import math
 from concurrent.futures import ThreadPoolExecutor
 
@@ -86,6 +87,16 @@ def test_an_executor_stops_at_the_count():
     assert solution.outcome is lcp.Outcome.STATIONARY
     assert len(solution.paths) == 6
     assert "Restarts from random starts: 5" in solution.message
+
+
+def test_over_an_executor_the_clock_on_the_wall_counts(monkeypatch):
+    """Ten minutes pass between any two looks at it, and none of the processor's."""
+    now = itertools.count(0.0, 600.0)
+    monkeypatch.setattr("problems.lcp.search.search.time.perf_counter", lambda: next(now))
+    problem, budget = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), continuation.Budget(seconds=1800.0)
+    with ThreadPoolExecutor(2) as executor:
+        solution = lcp.solve(problem, "kkt", restarts=200, executor=executor, budget=budget)
+    assert len(solution.paths) < 201
 
 
 def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
