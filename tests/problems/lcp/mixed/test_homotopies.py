@@ -74,6 +74,11 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
             lcp.KKTHomotopy(EVERY_KIND, **{name: value})
 
 
+def test_the_default_multipliers_of_a_box_balance_its_forces():
+    z2 = lcp.KKTHomotopy(EVERY_KIND, w0=[1.0, 2.0, 3.0, 4.0]).origin.z2
+    assert z2[2] * 2.0 == pytest.approx((2.0 - z2[2]) * 4.0)
+
+
 def test_the_kkt_equations_of_a_box_by_hand():
     """A = 2, q = -3 on [1, 4], x0 = 2, z1 = (5, 6), z2 = 1, (s0, t0) = (7, 8); rho = 7 - 8 - 1."""
     homotopy = lcp.KKTHomotopy(lcp.MixedLCP([[2.0]], [-3.0], 1, 4), [2.0], [5.0, 6.0], [1.0], [7.0, 8.0])

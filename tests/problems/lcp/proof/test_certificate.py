@@ -64,6 +64,11 @@ def test_products_that_no_float_holds_are_certified():
     assert certify(LCP([[1e200]], [0.0]), np.array([1e200])).w[0] == np.inf
 
 
+def test_complementarity_is_the_product_with_the_distance_to_which_w_points():
+    for x, q, product in ((0.5, 0.0, 0.25), (3.5, -4.0, 0.25), (0.25, 3.0, 0.8125)):
+        assert certify(MixedLCP([[1.0]], [q], 0.0, 4.0), np.array([x])).complementarity == product
+
+
 def test_parts_of_the_certificate():
     certificate = certify(LCP([[1.0, 0.0], [0.0, 1.0]], [1.0, -4.0]), np.array([-0.5, 3.0]))
     assert (certificate.negative_x, certificate.negative_w) == (0.5, 1.0)

@@ -89,6 +89,15 @@ def test_an_executor_stops_at_the_count():
     assert "Restarts from random starts: 5" in solution.message
 
 
+def test_workers_have_what_is_left_of_the_budget():
+    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    first = lcp.solve(problem, "kkt").counts.factorizations
+    budget = continuation.Budget(factorizations=first + 3)
+    with ThreadPoolExecutor(2) as executor:
+        found = lcp.solve(problem, "kkt", restarts=5, executor=executor, budget=budget)
+    assert {path.status for path in found.paths[1:]} == {continuation.Status.BUDGET_EXHAUSTED}
+
+
 def test_over_an_executor_the_clock_on_the_wall_counts(monkeypatch):
     """Ten minutes pass between any two looks at it, and none of the processor's."""
     now = itertools.count(0.0, 600.0)

@@ -98,6 +98,7 @@ def test_the_outcome_is_judged_by_the_certificate_alone(monkeypatch):
     monkeypatch.setattr("problems.lcp.proof.certificate.Certificate.solves", lambda self, tolerance=0.0: False)
     solution = lcp.solve(PD, restarts=1)
     assert solution.outcome is not Outcome.SOLVED
+    assert "By Lemke" not in solution.message
 
 
 def test_the_budget_ends_the_search():
