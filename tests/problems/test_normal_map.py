@@ -53,15 +53,6 @@ def test_kojima_and_shindos_two_solutions_on_one_path():
     assert [event.name for event in path.events[:2]] == ["kink", "kink"]
 
 
-@pytest.mark.parametrize("n", [2, 3, 4, 5])
-def test_murtys_problem_has_all_its_kinks(n):
-    A = np.tril(np.full((n, n), 2.0), -1) + np.eye(n)
-    q = -np.cumsum(2.0 ** (n - 1.0 - np.arange(n)))
-    path = trace(NormalMap.affine(A, q, np.ones(n), x0=np.zeros(n), lam0=2.0**n + 1.0))
-    assert path.status is Status.REACHED_TARGET
-    assert len(path.kinks) == 2**n - 1
-
-
 def chain(n):
     """A tridiagonal M-matrix, sparse."""
     return sp.diags_array([np.full(n - 1, -1.0), np.full(n, 2.5), np.full(n - 1, -1.0)], offsets=[-1, 0, 1])

@@ -95,14 +95,13 @@ FACES = {
 
 
 @for_interior_paths
-@pytest.mark.parametrize("name", FACES)
-def test_an_end_inside_a_face_of_solutions(name, preset):
+@pytest.mark.parametrize(("A", "q", "x0"), FACES.values(), ids=FACES)
+def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
     """Row sufficient, A singular, all w = 0 on a segment: near its inside the condition of H' is about 1/lambda^2.
 
     Below lambda = 1e-4 Newton's method has no more digits to give than the tolerance asks for, or fewer; the limit has
     them all, by way of samples at larger values. `end_error` holds: presets, which sample elsewhere, differ by less.
     """
-    A, q, x0 = FACES[name]
     problem = LCP(A, q)
     path = trace(KKTHomotopy(problem, x0), preset=preset)
     assert path.status is Status.REACHED_TARGET

@@ -69,9 +69,8 @@ PUBLISHED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", PUBLISHED)
-def test_published_answers(name):
-    scene, expected, relative, absolute = PUBLISHED[name]
+@pytest.mark.parametrize(("scene", "expected", "relative", "absolute"), PUBLISHED.values(), ids=PUBLISHED)
+def test_published_answers(scene, expected, relative, absolute):
     found = answered(scene)
     for key, value in expected.items():
         assert found[key] == pytest.approx(value, rel=relative, abs=absolute), key
@@ -89,9 +88,8 @@ CLOSED = {
 }
 
 
-@pytest.mark.parametrize("name", CLOSED)
-def test_closed_forms_at_other_parameters(name):
-    scene, accuracy = CLOSED[name]
+@pytest.mark.parametrize(("scene", "accuracy"), CLOSED.values(), ids=CLOSED)
+def test_closed_forms_at_other_parameters(scene, accuracy):
     assert error(answered(scene), scene.exact()) <= accuracy
 
 

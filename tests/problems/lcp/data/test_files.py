@@ -135,9 +135,8 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_bad_files_are_named_in_one_line(tmp_path, case):
-    name, write, message = BAD[case]
+@pytest.mark.parametrize(("name", "write", "message"), BAD.values(), ids=BAD)
+def test_bad_files_are_named_in_one_line(tmp_path, name, write, message):
     if write is not None:
         write(tmp_path / name.partition(":")[0])
     with pytest.raises(InputError, match=message) as caught:

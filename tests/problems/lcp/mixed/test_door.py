@@ -29,9 +29,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_bounds_that_are_none_are_refused(case):
-    bounds, message = REFUSED[case]
+@pytest.mark.parametrize(("bounds", "message"), REFUSED.values(), ids=REFUSED)
+def test_bounds_that_are_none_are_refused(bounds, message):
     with pytest.raises(ValueError, match=message):
         lcp.MixedLCP(A, Q, *bounds)
 
@@ -65,9 +64,8 @@ PROGRAM_REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", PROGRAM_REFUSED)
-def test_programs_that_do_not_fit_are_refused(case):
-    given_, message = PROGRAM_REFUSED[case]
+@pytest.mark.parametrize(("given_", "message"), PROGRAM_REFUSED.values(), ids=PROGRAM_REFUSED)
+def test_programs_that_do_not_fit_are_refused(given_, message):
     with pytest.raises(ValueError, match=message):
         lcp.from_qp(**given_)
 

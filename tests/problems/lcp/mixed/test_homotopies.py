@@ -188,8 +188,7 @@ NONLINEAR_REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", NONLINEAR_REFUSED)
-def test_bad_nonlinear_problems_are_refused(case):
-    bounds, message = NONLINEAR_REFUSED[case]
+@pytest.mark.parametrize(("bounds", "message"), NONLINEAR_REFUSED.values(), ids=NONLINEAR_REFUSED)
+def test_bad_nonlinear_problems_are_refused(bounds, message):
     with pytest.raises(ValueError, match=message):
         MixedComplementarity(lambda x: x[:2], **bounds)
