@@ -28,8 +28,7 @@ def test_every_study_can_be_made(module):
 def test_the_h_equation_turns_where_it_should(n):
     homotopy = Chandrasekhar(n)
     assert check_jacobian(homotopy, np.append(np.linspace(1.0, 2.0, n), 0.7)).correct
-    end = continuation.TargetValue(0.5, direction=-1)
-    path = continuation.trace(homotopy, direction=1, events=[end])
+    path = continuation.trace(homotopy, direction=1, events=[continuation.TargetValue(0.5, direction=-1)])
     (fold,) = path.turning_points
     assert fold.lam == pytest.approx(1.0, abs=1e-12)
     assert fold.y.mean() == pytest.approx(2.0, abs=1e-6)

@@ -51,27 +51,17 @@ def test_the_claim_is_true_on_all_examples_but_the_first(run):
         np.testing.assert_allclose(result.x, example.printed_solution, atol=1e-4)
 
 
-def test_the_step_never_exceeds_one(run):
-    _, result = run
-    # A prediction of length at most 1 and a correction; where the steps are long the correction is short.
-    lengths = np.linalg.norm(np.diff(result.u, axis=0), axis=1)
-    assert np.median(lengths) <= 1 + 1e-6
-
-
-def test_a_larger_a0_ends_by_step_4_outside_the_interval():
-    example = EXAMPLES[1]
-    result = run_literally(example.problem, example.x0, settings=LiteralSettings(a0=1e-3))
-    assert result.ended_by.startswith("Step 4")
-    assert result.claims_solution
-    assert result.lam[-1] < 0
-
-
-def test_a_limit_is_reported_and_claims_nothing():
-    example = EXAMPLES[7]
-    result = run_literally(example.problem, example.x0, settings=LiteralSettings(max_iterations=5))
-    assert result.iterations == 5
-    assert not result.claims_solution
-    assert "5 iterations" in result.ended_by
+@pytest.mark.parametrize(
+    ("number", "settings", "ended", "claims"),
+    [(2, {"a0": 1e-3}, "Step 4", True), (8, {"max_iterations": 5}, "5 iterations", False)],
+)
+def test_a_run_ends_early_and_says_how(number, settings, ended, claims):
+    example = EXAMPLES[number - 1]
+    result = run_literally(example.problem, example.x0, settings=LiteralSettings(**settings))
+    assert ended in result.ended_by
+    assert result.claims_solution is claims
+    assert claims or result.iterations == 5
+    assert not claims or result.lam[-1] < 0, "outside the interval"
 
 
 def test_a_start_that_is_not_strictly_feasible_is_refused():

@@ -8,7 +8,6 @@ from continuation import Budget, Kind, Monitor, Status, TargetValue, trace
 from continuation.linear import Banded, SingularError
 from continuation.testing import check_homotopy
 from problems.nonlinear import NormalMap, bratu_under_obstacle
-from problems.scenes.painleve_rod import PainleveRod
 
 PSI = 2.0
 FOLD = 8.0 * np.exp(-PSI) * np.arccosh(np.exp(PSI / 2.0)) ** 2
@@ -34,59 +33,6 @@ def test_bratu_under_an_obstacle_turns_in_a_kink(bratu):
     assert max(errors.values()) / min(errors.values()) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_every_kink_is_newtons_answer(bratu):
-    for n, path in bratu.items():
-        homotopy = bratu_under_obstacle(n, PSI)
-        previous = set()
-        for kink in path.kinks:
-            u = newton(homotopy, kink.u, held=previous, at=kink.switches[0])
-            assert np.abs(u - kink.u).max() < 1e-12
-            assert len(kink.rays) == 2
-            previous |= set(kink.switches)
-
-
-def newton(homotopy, u, held, at):
-    """F(x, lam) + z - x = 0 with x = psi on the nodes held, and z = psi at one more: plain Newton, dense."""
-    n = u.size - 1
-    on = np.isin(np.arange(n), list(held))
-    u = u + 1e-3
-    for _ in range(8):
-        x = np.where(on, PSI, u[:-1])
-        F_x, F_lam = homotopy.jacobian_of_F(x, u[-1])
-        J = np.zeros((n + 1, n + 1))
-        J[:n, :n], J[:n, n], J[n, at] = F_x.toarray() * ~on + np.diag(1.0 * on), F_lam, 1.0
-        u = u - np.linalg.solve(J, np.append(homotopy.F(x, u[-1]) + u[:-1] - x, u[at] - PSI))
-    return u
-
-
-def test_the_contact_is_where_the_exact_solution_has_it(bratu):
-    for n, path in bratu.items():
-        h = 1.0 / (n + 1)
-        for kink in path.kinks[1:]:
-            a = np.sqrt(2.0 / kink.lam) * np.exp(-PSI / 2.0) * np.arccosh(np.exp(PSI / 2.0))
-            left, right = (h * (i + 1) for i in kink.switches)
-            assert left == pytest.approx(1.0 - right, abs=1e-14)
-            assert 0.0 < a - left < h
-
-
-def test_bratu_with_a_low_obstacle_has_no_fold():
-    path = trace(bratu_under_obstacle(19, 1.0, target=6.0))
-    assert path.status is Status.REACHED_TARGET
-    assert {event.name for event in path.events} == {"kink"}
-    assert (np.diff(path.lam) > 0.0).all()
-
-
-def test_painleves_rod_goes_back():
-    a = -PainleveRod().problem().A[0, 0]
-    rod = NormalMap.affine([[-a]], [0.0], [1.0], x0=[0.0], lam0=1.0, target=None)
-    path = trace(rod, direction=-1, events=[OFF])
-    (kink,) = path.kinks
-    assert kink.name == "turning kink"
-    assert np.abs(kink.u).max() < 1e-15
-    x = path.endpoint.y[0]
-    assert x == pytest.approx(path.endpoint.lam / a, rel=1e-14)
-
-
 def kojima_shindo(x):
     """The four functions."""
     a, b, c, d = x[0], x[1], x[2], x[3]
@@ -99,23 +45,12 @@ def kojima_shindo(x):
 def test_kojima_and_shindos_two_solutions_on_one_path():
     problem = NormalMap(lambda x, lam: kojima_shindo(x) + 10.0 * lam, x0=np.zeros(4), lam0=1.0, target=None)
     path = trace(problem, direction=-1, events=[TargetValue(0.0, terminal=0), OFF])
-    assert path.status is Status.STOPPED_AT_EVENT
     solutions = [problem.x(event.y) for event in path.events if event.name != "off" and abs(event.lam) < 1e-14]
     assert np.abs(solutions[0] - [1.0, 0.0, 3.0, 0.0]).max() < 1e-13
     # The other one is degenerate: two components of x and F vanish there, and the path has a turning kink in it.
     assert np.abs(solutions[-1] - [np.sqrt(6.0) / 2.0, 0.0, 0.0, 0.5]).max() < 1e-13
     # At lam = 0.3 it goes on in the fold of another piece: the parameter stands still there and turns neither way.
     assert [event.name for event in path.events[:2]] == ["kink", "kink"]
-    assert path.turning_points == []
-
-
-@pytest.mark.parametrize("n", [2, 3, 4, 5])
-def test_murtys_problem_has_all_its_kinks(n):
-    A = np.tril(np.full((n, n), 2.0), -1) + np.eye(n)
-    q = -np.cumsum(2.0 ** (n - 1.0 - np.arange(n)))
-    path = trace(NormalMap.affine(A, q, np.ones(n), x0=np.zeros(n), lam0=2.0**n + 1.0))
-    assert path.status is Status.REACHED_TARGET
-    assert len(path.kinks) == 2**n - 1
 
 
 def chain(n):
@@ -128,43 +63,19 @@ def banded(n):
     return Banded(np.array([np.full(n, -1.0), np.full(n, 2.5), np.full(n, -1.0)]), 1, 1)
 
 
-def test_the_structure_changes_nothing():
-    n = 20
-    generator = np.random.default_rng(4)
-    q, d = generator.standard_normal(n), generator.standard_normal(n)
-    x0 = np.zeros(n)
-    shift = np.abs(q) + 1.0
-    ends = []
-    for A in (chain(n).toarray(), chain(n), sp.csr_array(chain(n)), banded(n)):
-        problem = NormalMap.affine(A, q + shift, d - shift, x0=x0, lam0=0.0, target=1.0, upper=0.6)
-        path = trace(problem)
-        assert path.status is Status.REACHED_TARGET
-        x, w = problem.x(path.endpoint.y), chain(n) @ problem.x(path.endpoint.y) + q + d
-        assert np.abs(x - np.clip(x - w, 0.0, 0.6)).max() < 1e-12
-        ends.append(([kink.switches for kink in path.kinks], path.endpoint.u))
-    assert len(ends[0][0]) > 10
-    for switches, u in ends[1:]:
-        assert switches == ends[0][0]
-        assert np.abs(u - ends[0][1]).max() < 1e-13
-
-
 @pytest.mark.parametrize("make", [lambda n: chain(n).toarray(), chain, banded], ids=["dense", "sparse", "banded"])
-def test_the_reduced_system_solves_the_whole_one(make):
-    n = 8
+@pytest.mark.parametrize("count", [0, 3, 8])
+def test_the_reduced_system_solves_the_whole_one(make, count):
     generator = np.random.default_rng(5)
-    problem = NormalMap.affine(make(n), np.ones(n), np.ones(n), x0=np.zeros(n), lam0=1.0)
-    for count in (0, 3, n):
-        free = generator.permutation(np.arange(n) < count)
-        piece = problem.piece(np.where(free, 1, -1))
-        H_y, H_lam = piece.jacobian(np.zeros(n), 0.0)
-        border = generator.standard_normal(n + 1)
-        whole = np.vstack([np.column_stack([np.asarray(H_y @ np.eye(n)), H_lam]), border])
-        system = piece.bordered(np.zeros(n), 0.0, border)
-        assert system.sign == np.sign(np.linalg.det(whole))
-        b = generator.standard_normal(n + 1)
-        assert np.abs(whole @ system.solve(b[:-1], b[-1]) - b).max() < 1e-12
-        v = generator.standard_normal(n + 1)
-        assert np.abs(piece.differential(np.zeros(n), 0.0, v) - whole[:-1] @ v).max() < 1e-13
+    problem = NormalMap.affine(make(8), np.ones(8), np.ones(8), x0=np.zeros(8), lam0=1.0)
+    piece = problem.piece(np.where(generator.permutation(np.arange(8) < count), 1, -1))
+    border, b, v = generator.standard_normal((3, 9))
+    H_y, H_lam = piece.jacobian(np.zeros(8), 0.0)
+    whole = np.vstack([np.column_stack([np.asarray(H_y @ np.eye(8)), H_lam]), border])
+    system = piece.bordered(np.zeros(8), 0.0, border)
+    assert system.sign == np.sign(np.linalg.det(whole))
+    assert np.abs(whole @ system.solve(b[:-1], b[-1]) - b).max() < 1e-12
+    assert np.abs(piece.differential(np.zeros(8), 0.0, v) - whole[:-1] @ v).max() < 1e-13
 
 
 def test_a_piece_without_free_unknowns_may_be_singular():
@@ -174,13 +85,11 @@ def test_a_piece_without_free_unknowns_may_be_singular():
 
 
 def test_random_paths_end_in_solutions():
-    generator = np.random.default_rng(6)
-    reached = 0
+    generator, reached = np.random.default_rng(6), 0
     for _ in range(40):
         n = int(generator.integers(1, 6))
         A, q = generator.integers(-3, 4, (n, n)) + 0.0, generator.integers(-4, 5, n) + 0.0
-        lam0 = float(1.5 - q.min())
-        problem = NormalMap.affine(A, q, np.ones(n), x0=np.zeros(n), lam0=lam0)
+        problem = NormalMap.affine(A, q, np.ones(n), x0=np.zeros(n), lam0=float(1.5 - q.min()))
         path = trace(problem, events=[OFF], budget=Budget(steps=99))
         assert path.status not in (Status.STEP_TOO_SMALL, Status.START_NOT_ON_PATH, Status.BUDGET_EXHAUSTED)
         for step in path.steps:
@@ -232,43 +141,6 @@ def test_bad_affine_data_are_named():
         NormalMap.affine(np.eye(2), [1.0], [1.0], x0=[0.0], lam0=0.0)
     with pytest.raises(ValueError, match="psi: expected a positive number"):
         bratu_under_obstacle(9, -1.0)
-
-
-def mairal_and_yu(p):
-    """Their lasso with p variables, whose path has (3^p - 1) / 2 kinks, grown by one row and column at a time."""
-    X, y = np.ones((1, 1)), np.ones(1)
-    while X.shape[1] < p:
-        t = min(kink.lam for kink in lasso_path(X, y).kinks)
-        a = t / (2.0 * (2.0 * y @ y + 1.0))
-        X = np.block([[X, 2.0 * a * y[:, None]], [np.zeros((1, X.shape[1])), np.full((1, 1), a)]])
-        y = np.append(y, 1.0)
-    return X, y
-
-
-def lasso_path(X, y):
-    """min |X b - y|^2 / 2 + lam |b|_1 as a path of the correlations w = X'(y - X b), which are held at +-lam."""
-    inverse, Xy = np.linalg.inv(X.T @ X), X.T @ y
-    top = 1.1 * float(np.abs(Xy).max())
-    n = Xy.size
-    problem = NormalMap.affine(
-        inverse, -inverse @ Xy, np.zeros(n), x0=Xy, lam0=top,
-        lower=0.0, upper=0.0, lower_rate=-1.0, upper_rate=1.0, target=0.0,
-    )  # fmt: skip
-    return trace(problem)
-
-
-@pytest.mark.parametrize("p", [1, 2, 3, 4])
-def test_a_lasso_as_bounds_that_move(p):
-    X, y = mairal_and_yu(p)
-    path = lasso_path(X, y)
-    assert path.status is Status.REACHED_TARGET
-    assert len([kink for kink in path.kinks if kink.lam > 1e-12]) == (3**p - 1) // 2
-    for step in path.steps[1:-1]:
-        w = np.clip(step.y, -step.lam, step.lam)
-        b = np.linalg.solve(X.T @ X, X.T @ y - w)
-        assert np.abs(w).max() <= step.lam
-        # X'X has a condition of 1e6 for p = 4, and b is computed with it here.
-        assert abs(w @ b - step.lam * np.abs(b).sum()) < 1e-10
 
 
 def test_friction_slips_when_the_bound_is_reached():

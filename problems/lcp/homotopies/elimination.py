@@ -107,7 +107,7 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
     """The bordered system of a homotopy in (x, y), by a core of order n + 1.
 
     Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
-    if A is symmetric positive semidefinite and alpha, beta, gamma >= 0, otherwise LU the core of better pivots. Without
+    if A is symmetric positive semidefinite and the sum is definite, otherwise LU the core of better pivots. Without
     `refine` the definite core's solutions stay uncorrected. Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
@@ -118,7 +118,7 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
 
     definite = not (structure.problem.sparse or np.any(np.less(homotopy.blend.x, 0)))
     definite = definite and structure.symmetric and structure.semidefinite
-    inside = definite and (gaps > 0.0).all() and (y > 0.0).all() and 0.0 <= system.lam <= 1.0
+    inside = definite and (gaps > 0.0).all() and (y > 0.0).all()
     return _refining(system, border, _or_none(lambda: core(False)) if inside else None, lambda: core(True), np.zeros(0))
 
 

@@ -36,26 +36,6 @@ def test_a_face_has_one_bar_for_each_pair_and_a_ring_where_both_are_zero():
     assert axes.get_xlabel() == "i: 1 of 3 off their bounds"
 
 
-def test_bars_are_those_of_the_solution_in_any_units():
-    random = np.random.default_rng(5)
-    A = random.standard_normal((12, 12))
-    A, q = A @ A.T + np.eye(12), random.standard_normal(12)
-    faces = []
-    for unit in (1.0, 1e-9, 1e9):
-        solution = lcp.solve(lcp.LCP(A * unit, q * unit**2))
-        faces.append([sorted(part) for part in bars(solution.plot(mpl.figure.Figure().subplots()))])
-        assert faces[-1][0] == np.flatnonzero(solution.x > 0).tolist()
-    assert faces[0] == faces[1] == faces[2]
-    assert sorted(faces[0][0] + faces[0][1]) == list(range(12))
-
-
-def test_bounds_on_both_sides_and_none():
-    problem = lcp.MixedLCP(np.eye(3), [-5, -0.5, 3], lower=[0, 0, -np.inf], upper=[1, 1, np.inf])
-    up, down = bars(lcp.solve(problem).plot(mpl.figure.Figure().subplots()))
-    assert sorted(up) == [1, 2]
-    assert sorted(down) == [0]
-
-
 def test_a_traced_path_stands_beside_the_face_and_the_message_above():
     random = np.random.default_rng(1)
     A = random.standard_normal((6, 6))

@@ -54,8 +54,7 @@ def test_the_start_is_regular(pair):
 @given(feasible_lcps())
 def test_the_determinant_is_negative_in_the_positive_direction(pair):
     """Theorem 3.10: det [[H'], [tau']] < 0 at the start for the direction tau in which lambda falls."""
-    problem, x0 = pair
-    homotopy = KKTHomotopy(problem, x0)
+    homotopy = KKTHomotopy(*pair)
     y0, lam0 = homotopy.start()
     H_y, H_lam = homotopy.jacobian(y0, lam0)
     tau = np.append(np.linalg.solve(H_y, H_lam), -1.0)

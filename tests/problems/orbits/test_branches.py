@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Budget, Curve, Family, Kind, TargetValue
+from continuation import Curve, Family, Kind, TargetValue
 from problems.orbits import PeriodicOrbit
-from problems.orbits.models import brusselator, normal_form, roessler
+from problems.orbits.models import brusselator, normal_form
 
-from .util import simulated, two_circles
+from .util import two_circles
 
 
 def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
@@ -46,28 +46,3 @@ def test_the_curve_of_folds_of_cycles():
     assert curve.success
     for step in curve.steps:
         assert step.u[-2] == pytest.approx(-0.25 * step.lam**2, abs=1e-11)
-
-
-def test_the_curve_of_period_doublings():
-    def at(a):
-        found = simulated(lambda z, c: roessler(z, c, a), 1.8, [1.0, 1.0, 0.1], 300.0)
-        orbit = PeriodicOrbit.from_solution(roessler, *found, 1.8, second=a)
-        path = continuation.trace(orbit, direction=1, events=[TargetValue(3.0)])
-        return orbit, next(event for event in path.events if event.name == "period doubling")
-
-    orbit, doubling = at(0.2)
-    twice = orbit.doubled(doubling, radius=0.0)
-    curve = Curve(Family(twice, "second"), Kind.BRANCH_POINT, at=twice.start())
-    path = continuation.trace(curve, target=0.25, budget=Budget(steps=30))
-    assert path.success
-    assert path.steps[-1].u[-2] == pytest.approx(at(0.25)[1].lam, abs=1e-5)
-
-
-def test_pictures_tell_the_stable_part():
-    pytest.importorskip("matplotlib")
-    from continuation.plot import plot_bifurcation
-
-    orbit = PeriodicOrbit.from_hopf(normal_form, ([0.0, 0.0], 0.0), intervals=10)
-    path = continuation.trace(orbit, start=orbit.leaving, events=[TargetValue(0.2)])
-    axes = plot_bifurcation(path, value="max 0")
-    assert {line.get_linestyle() for line in axes.lines if len(line.get_xdata()) > 1} == {"-", "--"}

@@ -5,7 +5,7 @@ import pytest
 
 import continuation
 from continuation import Budget, TargetValue
-from continuation.archive import open_archive, resume
+from continuation.archive import open_archive
 from problems.orbits import PeriodicOrbit, from_model
 from problems.orbits.models import lorenz, normal_form
 
@@ -17,15 +17,12 @@ def test_orbits_of_lorenz_up_to_period_50():
     followed = continuation.follow(orbit, start=orbit.leaving, events=[end], budget=Budget(steps=120))
     path = followed.path
     assert path.steps[0].lam == pytest.approx(470.0 / 19.0, abs=1e-3)
-    assert path.steps[-1].observed["period"] == 50.0
     assert path.steps[-1].lam == pytest.approx(13.926557407, abs=1e-6)
-    assert len(path) == sum(len(part) - 1 for part in followed.paths) + 1
     periods = [step.observed["period"] for step in path.steps]
     assert periods == sorted(periods)
-    assert [event.name for event in path.events if event.name in ("period doubling", "torus")] == []
+    assert periods[-1] == 50.0
+    assert not {"period doubling", "torus"} & {event.name for event in path.events}
     assert followed.homotopy_of(path.steps[-1]) is followed.homotopies[-1]
-    with pytest.raises(ValueError, match="event"):
-        followed.homotopy_of(end)
 
 
 def test_a_point_of_a_file_says_its_orbit(tmp_path):
@@ -43,16 +40,6 @@ def test_a_point_of_a_file_says_its_orbit(tmp_path):
         assert np.abs(again.residual(last.y, last.lam)[:-8]).max() < 1e-7
 
 
-def test_a_part_is_resumed_on_its_own_mesh(tmp_path):
-    orbit = from_model("brusselator", intervals=8)
-    renewed, u, v = orbit.renewed(*orbit.leaving)
-    whole = continuation.trace(renewed, start=(u, v), budget=Budget(steps=6))
-    file = tmp_path / "part.h5"
-    continuation.trace(renewed, start=(u, v), budget=Budget(steps=3), archive=file)
-    found = resume(file, budget=Budget(steps=6))
-    assert np.array_equal(found.u, whole.u)
-
-
 def test_a_path_on_which_the_phase_condition_fails_says_so():
     orbit = from_model("lorenz")
     path = continuation.trace(orbit, start=orbit.leaving, budget=Budget(steps=60))
@@ -60,33 +47,37 @@ def test_a_path_on_which_the_phase_condition_fails_says_so():
     assert orbit.renewed_at == ("phase condition fails",)
 
 
-def test_what_cannot_be_meant_is_refused():
-    good = {"states": np.ones((80, 2)), "period": 1.0, "parameter": 0.0}
-    for wrong, name in [
-        ({"states": np.ones((79, 2))}, "states"), ({"states": [1.0]}, "states"),
-        ({"states": np.full((80, 2), np.nan)}, "states"),
-        ({"period": 0.0}, "period"), ({"parameter": np.nan}, "parameter"), ({"mesh": 1}, "mesh"),
-        ({"mesh": [0.0, 0.5, 0.5, 1.0]}, "mesh"), ({"degree": 1}, "degree"), ({"scale": [1.0]}, "scale"),
-        ({"scale": [1.0, 0.0]}, "scale"), ({"jacobian": 3}, "jacobian"), ({"smallest": 0.0}, "smallest"),
-    ]:  # fmt: skip
-        with pytest.raises((ValueError, TypeError), match=name):
-            PeriodicOrbit(normal_form, **{**good, **wrong})
-    with pytest.raises(TypeError, match="f:"):
-        PeriodicOrbit(None, **good)
-    with pytest.raises(ValueError, match="f:"):
-        PeriodicOrbit(lambda x, p: x[:1], **good)
-    with pytest.raises(ValueError, match="point"):
-        PeriodicOrbit.from_hopf(normal_form, ([0.3, 0.1], 0.4))
-    with pytest.raises(ValueError, match="x: expected a simulation"):
-        PeriodicOrbit.from_solution(lorenz, np.arange(50.0), np.random.default_rng(0).normal(size=(50, 3)), 28.0)
-    with pytest.raises(ValueError, match="t:"):
-        PeriodicOrbit.from_solution(lorenz, np.zeros(50), np.zeros((50, 3)), 28.0)
-    with pytest.raises(ValueError, match="point"):
-        PeriodicOrbit.from_point(normal_form, (np.zeros(31), 0.0), 2)
-    with pytest.raises(ValueError, match="model"):
-        from_model("ross")
-    for every in (0, True, 1.5):
-        with pytest.raises(ValueError, match="every"):
-            continuation.follow(from_model(), every=every)
-    with pytest.raises(TypeError, match="homotopy"):
-        continuation.follow(continuation.from_functions(lambda y, p: y - p, start=([0.0], 0.0)))
+GOOD = {"states": np.ones((80, 2)), "period": 1.0, "parameter": 0.0}
+TIMES, NOISE = np.arange(50.0), np.random.default_rng(0).normal(size=(50, 3))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"states": np.ones((79, 2))}, {"states": [1.0]}, {"states": np.full((80, 2), np.nan)}, {"period": 0.0},
+        {"parameter": np.nan}, {"mesh": 1}, {"mesh": [0.0, 0.5, 0.5, 1.0]}, {"degree": 1}, {"scale": [1.0]},
+        {"scale": [1.0, 0.0]}, {"jacobian": 3}, {"smallest": 0.0}, {"f": None}, {"f": lambda x, p: x[:1]},
+    ],
+    ids=lambda wrong: next(iter(wrong)),
+)  # fmt: skip
+def test_what_is_no_orbit_is_refused(wrong):
+    (name,) = wrong
+    with pytest.raises((ValueError, TypeError), match=name):
+        PeriodicOrbit(**{"f": normal_form, **GOOD, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: PeriodicOrbit.from_hopf(normal_form, ([0.3, 0.1], 0.4)), "point"),
+        (lambda: PeriodicOrbit.from_solution(lorenz, TIMES, NOISE, 28.0), "x: expected a simulation"),
+        (lambda: PeriodicOrbit.from_solution(lorenz, np.zeros(50), np.zeros((50, 3)), 28.0), "t:"),
+        (lambda: PeriodicOrbit.from_point(normal_form, (np.zeros(31), 0.0), 2), "point"),
+        (lambda: from_model("ross"), "model"),
+        *((lambda every=every: continuation.follow(from_model(), every=every), "every") for every in (0, True, 1.5)),
+        (lambda: continuation.follow(continuation.from_functions(lambda y, p: y - p, start=([0.0], 0.0))), "homotopy"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(make, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        make()

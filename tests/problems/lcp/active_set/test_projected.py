@@ -34,21 +34,3 @@ def test_few_corrections_are_left(kind, counted):
     assert all(solution.success for solution in found)
     assert max(solution.certificate.relative_residual for solution in found) <= 1e-14
     assert sum(solution.counts.factorizations for solution in found) == counted
-
-
-@pytest.mark.parametrize("diagonal", [0.0, 1.0])
-def test_directions_without_curvature_are_no_trouble(diagonal):
-    A = np.array([[diagonal, 1.0], [1.0, diagonal]])
-    problem = lcp.MixedLCP(A, [-1.0, 2.0], [-1.0, -np.inf], [np.inf, 5.0])
-    assert projected_state(problem).shape == (2,)
-    boxed = lcp.solve(lcp.MixedLCP(A, [-1.0, 2.0], -1.0, 5.0))
-    assert boxed.success
-
-
-def test_a_matrix_of_a_program_is_not_copied_twice_and_that_of_the_caller_is():
-    P = np.eye(3)
-    program = lcp.from_qp(P, [1.0, 2.0, 3.0], lower=0)
-    assert program.problem.A is program.P
-    assert not program.P.flags.writeable
-    P[0, 0] = 7.0
-    assert program.P[0, 0] == 1.0

@@ -20,21 +20,13 @@ from .util import ALL, every, made
 def test_starts_are_on_the_path(problem, seed):
     rng = np.random.default_rng(seed)
     another = lcp.random_start(problem, rng)
-    tries = [
-        lcp.KKTHomotopy(problem),
-        lcp.KKTHomotopy(problem, another.x0, another.z1, another.z2, another.w0),
-        *(made(make, problem, rng) for make in ALL),
-        lcp.YuHomotopy(problem),
-        lcp.WangHomotopy(problem),
-        lcp.KojimaMegiddoMizunoHomotopy(problem),
-    ]
-    for homotopy in tries:
+    kkt = lcp.KKTHomotopy(problem, another.x0, another.z1, another.z2, another.w0)
+    defaults = (lcp.KKTHomotopy, lcp.YuHomotopy, lcp.WangHomotopy, lcp.KojimaMegiddoMizunoHomotopy)
+    for homotopy in (kkt, *(made(make, problem, rng) for make in ALL), *(make(problem) for make in defaults)):
         y, lam = homotopy.start()
         assert lam == 1.0
         assert (y > 0.0).all()
-        size = 1.0 + np.abs(y).max() ** 2
-        assert np.abs(homotopy.residual(y, lam)).max() <= 1e-14 * size
-        assert homotopy.max_step(np.append(y, lam), np.zeros(y.size + 1)) == np.inf
+        assert np.abs(homotopy.residual(y, lam)).max() <= 1e-14 * (1.0 + np.abs(y).max() ** 2)
 
 
 def test_the_papers_start_is_kept():
@@ -45,13 +37,12 @@ def test_the_papers_start_is_kept():
 
 
 def test_relaxed_start():
-    problem = lcp.LCP([[1.0, 0.0], [0.0, 1.0]], [-3.0, 2.0])
+    problem = lcp.LCP(np.eye(2), [-3.0, 2.0])
     homotopy = lcp.KKTHomotopy(problem, [1.0, 1.0])
-    assert np.array_equal(homotopy.origin.w0, [3.0, 6.0])
-    assert np.array_equal(homotopy.rho, [5.0, 3.0])
+    assert homotopy.origin.w0.tolist() == [3.0, 6.0]
+    assert homotopy.rho.tolist() == [5.0, 3.0]
     assert np.ptp(homotopy.c) < 1e-15 * homotopy.c[0]
-    given_w0 = lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0])
-    assert np.array_equal(given_w0.origin.w0, [1.0, 2.0])
+    assert lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0]).origin.w0.tolist() == [1.0, 2.0]
 
 
 def test_default_start_has_the_units_of_the_problem():
@@ -60,13 +51,6 @@ def test_default_start_has_the_units_of_the_problem():
     assert np.allclose(scaled.x0, 1e-4 * start.x0)
     assert np.allclose(scaled.w0, 1e2 * start.w0)
     assert lcp.default_start(lcp.LCP(np.zeros((2, 2)), [0.0, 0.0])).x0 == pytest.approx([1.0, 1.0])
-
-
-def test_random_starts_are_reproducible():
-    problem = EXAMPLES[4].problem
-    one, two = (lcp.random_start(problem, np.random.default_rng(11)) for _ in range(2))
-    assert np.array_equal(one.x0, two.x0)
-    assert np.array_equal(one.w0, two.w0)
 
 
 @pytest.mark.parametrize("make", [lcp.ZhaoHomotopy, lcp.XuHomotopy])

@@ -29,9 +29,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_bounds_that_are_none_are_refused(case):
-    bounds, message = REFUSED[case]
+@pytest.mark.parametrize(("bounds", "message"), REFUSED.values(), ids=REFUSED)
+def test_bounds_that_are_none_are_refused(bounds, message):
     with pytest.raises(ValueError, match=message):
         lcp.MixedLCP(A, Q, *bounds)
 
@@ -42,16 +41,6 @@ def test_integers_one_number_and_none_are_bounds():
     assert problem.upper.tolist() == [3.0, 3.0]
     assert np.isinf(lcp.MixedLCP(A, Q).lower).all()
     assert lcp.MixedLCP(A, Q, 0).standard
-
-
-def test_an_lcp_is_a_problem_with_bounds_and_carries_none():
-    problem = lcp.LCP(A, Q)
-    assert isinstance(problem, lcp.MixedLCP)
-    assert problem.lower.strides == problem.upper.strides == (0,)
-    mixed = lcp.MixedLCP(A, Q, 0.0, np.inf)
-    a, b = lcp.solve(problem), lcp.solve(mixed)
-    np.testing.assert_array_equal(a.x, b.x)
-    assert (a.outcome, a.message, a.counts) == (b.outcome, b.message, b.counts)
 
 
 def test_a_fixed_unknown_is_eliminated_and_named():
@@ -75,37 +64,37 @@ PROGRAM_REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", PROGRAM_REFUSED)
-def test_programs_that_do_not_fit_are_refused(case):
-    given_, message = PROGRAM_REFUSED[case]
+@pytest.mark.parametrize(("given_", "message"), PROGRAM_REFUSED.values(), ids=PROGRAM_REFUSED)
+def test_programs_that_do_not_fit_are_refused(given_, message):
     with pytest.raises(ValueError, match=message):
         lcp.from_qp(**given_)
+
+
+def written(file, data):
+    """A file of that suffix, with the data; JSON has null where a bound is infinite."""
+    if file.suffix == ".npz":
+        np.savez(file, **data)
+    elif file.suffix == ".mat":
+        scipy.io.savemat(file, data)
+    elif file.suffix == ".h5":
+        with h5py.File(file, "w") as root:
+            root.update(data)
+    else:
+        text = json.dumps({name: np.asarray(values).tolist() for name, values in data.items()})
+        file.write_text(text.replace("-Infinity", "null").replace("Infinity", "null"))
+    return file
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".json", ".mat", ".h5"])
 def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
     bounded = {"A": A, "q": Q, "lower": [0.0, -np.inf], "upper": [1.0, np.inf]}
     program = {"P": A, "c": Q, "G": np.ones((1, 2)), "h": [2.0], "rows_lower": [-np.inf], "lower": [0.0, 0.0]}
-    for name, data in (("bounded", bounded), ("program", program)):
-        file = tmp_path / (name + suffix)
-        if suffix == ".npz":
-            np.savez(file, **data)
-        elif suffix == ".mat":
-            scipy.io.savemat(file, data)
-        elif suffix == ".h5":
-            with h5py.File(file, "w") as root:
-                for key, value in data.items():
-                    root[key] = value
-        else:
-            text = {k: np.asarray(v).tolist() for k, v in data.items()}
-            text = {k: [None if np.ndim(e) == 0 and np.isinf(e) else e for e in v] for k, v in text.items()}
-            file.write_text(json.dumps(text))
-    problem = read_problem(tmp_path / ("bounded" + suffix))
-    np.testing.assert_array_equal(problem.upper, [1.0, np.inf])
-    np.testing.assert_array_equal(problem.lower, [0.0, -np.inf])
-    assert read_program(tmp_path / ("bounded" + suffix)) is None
-    read = read_program(tmp_path / ("program" + suffix))
-    np.testing.assert_allclose(lcp.solve(read).x, lcp.solve(lcp.from_qp(**program)).x, rtol=0, atol=0)
+    file = written(tmp_path / ("bounded" + suffix), bounded)
+    problem = read_problem(file)
+    np.testing.assert_array_equal([problem.lower, problem.upper], [bounded["lower"], bounded["upper"]])
+    assert read_program(file) is None
+    read = read_program(written(tmp_path / ("program" + suffix), program))
+    np.testing.assert_array_equal(lcp.solve(read).x, lcp.solve(lcp.from_qp(**program)).x)
 
 
 def test_bad_bounds_in_a_file_are_one_line(tmp_path):
@@ -150,16 +139,14 @@ def test_problems_of_every_kind_of_bound_are_drawn():
 
 
 def test_the_shell_solves_bounds_and_programs(tmp_path, capsys):
-    bounds = {"A": [[2, 1], [1, 2]], "q": [-5, -6], "lower": [0, None], "upper": [1, None]}
-    (tmp_path / "bounds.json").write_text(json.dumps(bounds))
-    assert main(["solve", str(tmp_path / "bounds.json"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["x"] == pytest.approx([1.0, 2.5], rel=1e-15)
+    bounds = {"A": [[2, 1], [1, 2]], "q": [-5, -6], "lower": [0, -np.inf], "upper": [1, np.inf]}
     program = {"P": [[2, 0], [0, 2]], "c": [-2, -6], "G": [[1, 1]], "h": [2], "lower": [0, 0]}
-    (tmp_path / "program.json").write_text(json.dumps(program))
-    assert main(["solve", str(tmp_path / "program.json"), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert (said["objective"], said["named"]["rows"]) == (-8.0, [-2.0])
-    assert main(["solve", str(tmp_path / "program.json")]) == 0
+    files = [str(written(tmp_path / f"{len(data)}.json", data)) for data in (bounds, program)]
+    assert [main(["solve", file, "--json"]) for file in files] == [0, 0]
+    one, other = map(json.loads, capsys.readouterr().out.splitlines())
+    assert one["x"] == pytest.approx([1.0, 2.5], rel=1e-15)
+    assert (other["objective"], other["named"]["rows"]) == (-8.0, [-2.0])
+    assert main(["solve", files[1]]) == 0
     assert "objective  -8" in capsys.readouterr().out
     (tmp_path / "model.mps").write_text("NAME")
     if importlib.util.find_spec("highspy") is None:

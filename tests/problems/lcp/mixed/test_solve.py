@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from hypothesis import given, settings
-from scipy.optimize import linprog, lsq_linear, nnls
 
+from continuation.archive import open_archive
 from problems import lcp
 from problems.lcp import Outcome
 from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps, programs
@@ -13,7 +12,7 @@ from problems.lcp.proof.farkas import farkas
 from problems.lcp.reference.enumeration import exhaust
 
 from ....util import benchmark
-from .util import orders
+from .util import drawn
 
 random_problem = benchmark("claims.py").random_problem
 
@@ -63,20 +62,13 @@ def test_the_example_of_pathsolver():
 
 
 @pytest.mark.parametrize("homotopy", ["wang", "kmm", "yu", "kkt"])
-def test_a_path_alone_solves_every_mixture_of_bounds(homotopy):
-    rng = np.random.default_rng(3)
-    n = 20
-    for _ in range(3):
-        M = rng.standard_normal((n, n))
-        A = M @ M.T / n + np.triu(M, 1) - np.triu(M, 1).T
-        kind = rng.integers(0, 4, n)
-        lower = np.where(kind < 2, rng.standard_normal(n), -np.inf)
-        upper = np.where(kind == 1, lower + rng.random(n), np.where(kind == 2, rng.standard_normal(n), np.inf))
-        problem = lcp.MixedLCP(A, rng.standard_normal(n), lower, upper)
-        solution = lcp.solve(problem, homotopy, finish=False)
-        assert solution.success, solution.message
-        np.testing.assert_allclose(solution.x, lcp.solve(problem).x, atol=1e-8)
-        assert len(solution.paths) == 1
+@pytest.mark.parametrize("seed", range(3))
+def test_a_path_alone_solves_every_mixture_of_bounds(homotopy, seed):
+    problem = drawn(np.random.default_rng(seed), 20)
+    solution = lcp.solve(problem, homotopy, finish=False)
+    assert solution.success, solution.message
+    np.testing.assert_allclose(solution.x, lcp.solve(problem).x, atol=1e-8)
+    assert len(solution.paths) == 1
 
 
 def test_free_unknowns_are_a_system_of_equations():
@@ -93,91 +85,19 @@ def test_the_nearest_point_of_a_box_is_clipped_exactly():
     np.testing.assert_array_equal(solution.x, np.clip(c, -1 / 3, 1 / 7))
 
 
-def test_the_nearest_point_of_a_simplex_is_that_of_the_sorting_formula():
-    c = np.random.default_rng(1).standard_normal(50)
-    solution = lcp.solve(lcp.from_qp(np.eye(50), -c, A_eq=np.ones((1, 50)), b_eq=[1.0], lower=0))
-    falling = np.sort(c)[::-1]
-    level = (np.cumsum(falling) - 1.0) / np.arange(1, 51)
-    theta = level[np.flatnonzero(falling > level)[-1]]
-    np.testing.assert_allclose(solution.named["x"], np.maximum(c - theta, 0.0), atol=1e-15)
-    np.testing.assert_allclose(solution.named["equations"], [-theta], atol=1e-15)
-
-
-def pool_adjacent_violators(y):
-    blocks = []
-    for value in y:
-        blocks.append([value, 1])
-        while len(blocks) > 1 and blocks[-2][0] / blocks[-2][1] >= blocks[-1][0] / blocks[-1][1]:
-            total, count = blocks.pop()
-            blocks[-1][0] += total
-            blocks[-1][1] += count
-    return np.concatenate([np.full(count, total / count) for total, count in blocks])
-
-
-def test_isotonic_regression():
-    n = 60
-    y = np.cumsum(np.random.default_rng(2).standard_normal(n))
-    D = sp.diags_array([-np.ones(n - 1), np.ones(n - 1)], offsets=[0, 1], shape=(n - 1, n))
-    solution = lcp.solve(lcp.from_qp(sp.eye_array(n), -y, D, rows_lower=0.0))
-    np.testing.assert_allclose(solution.named["x"], pool_adjacent_violators(y), atol=1e-12)
-
-
-def test_total_variation_in_one_dimension():
-    """Its dual is a problem in a box: u = D'z, min |y - D'z|^2 over |z| <= weight; the subgradient checks it."""
-    n, weight = 80, 0.7
-    rng = np.random.default_rng(4)
-    y = np.repeat([0.0, 2.0, -1.0, 1.0], n // 4) + 0.3 * rng.standard_normal(n)
-    D = sp.diags_array([-np.ones(n - 1), np.ones(n - 1)], offsets=[0, 1], shape=(n - 1, n)).tocsr()
-    solution = lcp.solve(lcp.MixedLCP(D @ D.T, -(D @ y), -weight, weight))
-    assert solution.success
-    x, z = y - D.T @ solution.x, solution.x
-    jump = D @ x
-    assert (np.abs(z) <= weight).all()
-    np.testing.assert_allclose(np.abs(jump) * weight, jump * z, atol=1e-13)
-
-
-def test_least_squares_with_bounds_beside_scipy():
-    rng = np.random.default_rng(5)
-    for m, n in ((40, 15), (60, 30)):
-        M, b = rng.standard_normal((m, n)), rng.standard_normal(m)
-        nonnegative = lcp.solve(lcp.from_qp(M.T @ M, -M.T @ b, lower=0))
-        np.testing.assert_allclose(nonnegative.x, nnls(M, b)[0], atol=1e-12)
-        bounded = lcp.solve(lcp.from_qp(M.T @ M, -M.T @ b, lower=-0.1, upper=0.05))
-        rival = lsq_linear(M, b, (-0.1, 0.05), method="bvls", tol=1e-15).x
-        np.testing.assert_allclose(bounded.x, rival, atol=1e-12)
-
-
-def random_program(rng, n=25, m=8, k=4, linear=False):
-    M = rng.standard_normal((n // 2, n))
-    P = np.zeros((n, n)) if linear else M.T @ M
-    G, B, inside = rng.standard_normal((m, n)), rng.standard_normal((k, n)), rng.random(n)
-    return P, rng.standard_normal(n), G, G @ inside + rng.random(m), B, B @ inside
-
-
 def test_multipliers_by_name_satisfy_the_optimality_conditions():
-    P, c, G, h, B, b = random_program(np.random.default_rng(6))
-    solution = lcp.solve(lcp.from_qp(P, c, G, h, B, b, 0, 1, rows_lower=h - 1.5))
+    rng, n = np.random.default_rng(6), 25
+    M, G, B = rng.standard_normal((12, n)), rng.standard_normal((8, n)), rng.standard_normal((4, n))
+    P, c, inside = M.T @ M, rng.standard_normal(n), rng.random(n)
+    h = G @ inside + rng.random(8)
+    solution = lcp.solve(lcp.from_qp(P, c, G, h, B, B @ inside, 0, 1, rows_lower=h - 1.5))
     x, equations, rows, bounds = (solution.named[name] for name in ("x", "equations", "rows", "bounds"))
     np.testing.assert_allclose(P @ x + c, B.T @ equations + G.T @ rows + bounds, atol=1e-12)
     np.testing.assert_allclose(np.minimum(rows, 0.0) * (h - G @ x), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.maximum(rows, 0.0) * (G @ x - h + 1.5), 0.0, atol=1e-12)
     assert (bounds[x == 0.0] >= 0.0).all()
     assert (bounds[x == 1.0] <= 0.0).all()
-    assert rows.size == 8
     assert solution.objective == pytest.approx(0.5 * x @ P @ x + c @ x)
-
-
-@pytest.mark.parametrize("sparse", [False, True])
-def test_linear_programs_beside_highs(sparse):
-    rng = np.random.default_rng(7)
-    for _ in range(3):
-        _, c, G, h, B, b = random_program(rng, linear=True)
-        if sparse:
-            G, B = sp.csr_array(G), sp.csr_array(B)
-        solution = lcp.solve(lcp.from_lp(c, G, h, B, b, 0, 1))
-        rival = linprog(c, G, h, B, b, bounds=(0, 1))
-        assert solution.success
-        assert solution.objective == pytest.approx(rival.fun, abs=1e-9)
 
 
 def test_infeasible_and_unbounded_programs_are_proved():
@@ -201,50 +121,13 @@ def test_a_multiplier_of_bounds_is_checked_exactly():
     assert not proof.holds(lcp.MixedLCP(problem.A, problem.q, [0.0, 0.0], [3.0, np.inf]))
 
 
-@pytest.mark.parametrize("n", [20, 50])
-def test_a_nonconvex_program_in_a_box_gives_a_kkt_point(n):
-    """Integers from -50 to 50."""
-    rng = np.random.default_rng(8)
-    for _ in range(3):
-        P = np.triu(rng.integers(-50, 51, (n, n))).astype(float)
-        P, c = P + np.triu(P, 1).T, rng.integers(-50, 51, n).astype(float)
-        solution = lcp.solve(lcp.from_qp(P, c, lower=0, upper=1), restarts=0)
-        x = solution.x
-        assert solution.success
-        assert not solution.paths
-        assert np.abs(x - np.clip(x - P @ x - c, 0, 1)).max() <= 1e-10
-        assert "this is a KKT point, and need not be a minimum" in solution.message
-
-
-def test_the_order_of_what_is_factored_in_a_box_is_n(monkeypatch):
-    rng = np.random.default_rng(9)
-    M = rng.standard_normal((12, 12))
-    problem = lcp.MixedLCP(M @ M.T + np.triu(M) - np.triu(M).T, rng.standard_normal(12), -1, 1)
-    found = orders(monkeypatch)
-    for given_ in ({}, {"homotopy": "wang", "finish": False}):
-        assert lcp.solve(problem, **given_).success
-    assert max(found) == 12
-
-
-def test_the_order_of_what_is_factored_for_a_program_is_n_and_its_rows(monkeypatch):
-    P, c, G, h, B, b = random_program(np.random.default_rng(10), n=12, m=5, k=3)
-    program = lcp.from_qp(P, c, G, h, B, b, 0, 1)
-    assert program.problem.n == 12 + 5 + 3
-    found = orders(monkeypatch)
-    for given_ in ({}, {"homotopy": "wang", "finish": False}):
-        assert lcp.solve(program, **given_).success
-    assert max(found) == 20
-
-
-def test_an_archive_of_a_problem_with_bounds(tmp_path):
-    from continuation.archive import open_archive
-
+@pytest.mark.parametrize("path", [False, True])
+def test_an_archive_of_a_problem_with_bounds(tmp_path, path):
     problem = lcp.MixedLCP([[1.0, 1.0], [-1.0, 1.0]], [-1.0, -1.0], [0.0, -np.inf], [0.5, np.inf])
-    for name, given_ in (("traced", {"path": True}), ("none", {})):
-        solution = lcp.solve(problem, archive=tmp_path / f"{name}.h5", **given_)
-        with open_archive(tmp_path / f"{name}.h5") as archive:
-            assert len(archive) == 1
-            np.testing.assert_allclose(next(iter(archive)).endpoint.u[:2], solution.x, atol=1e-14)
+    solution = lcp.solve(problem, archive=tmp_path / "run.h5", path=path)
+    with open_archive(tmp_path / "run.h5") as archive:
+        (stored,) = archive
+        np.testing.assert_allclose(stored.endpoint.u[:2], solution.x, atol=1e-14)
 
 
 def test_homotopies_without_bounds_are_refused_by_name():

@@ -11,22 +11,24 @@ from problems.lcp.homotopies import elimination
 def orders(monkeypatch):
     """Where the orders of all matrices that are factored go from here on."""
     found = []
-
-    def spy(module, name):
+    factors = [(face, name) for name in ("factor_lu", "factor_cholesky", "factor_band")]
+    for module, name in (*factors, (Factoring, "factor"), (elimination, "factor_bordered")):
         real = getattr(module, name)
 
-        def counted(*arguments, **given):
-            matrix = next(one for one in arguments if hasattr(one, "shape"))
-            found.append(matrix.shape[0])
+        def counted(*arguments, real=real, **given):
+            found.append(next(one for one in arguments if hasattr(one, "shape")).shape[0])
             return real(*arguments, **given)
 
         monkeypatch.setattr(module, name, counted)
-
-    for name in ("factor_lu", "factor_cholesky", "factor_band"):
-        spy(face, name)
-    spy(Factoring, "factor")
-    spy(elimination, "factor_bordered")
     return found
+
+
+def drawn(rng, n):
+    """A monotone problem with lower, upper, both and no bounds mixed."""
+    M, kind = rng.standard_normal((n, n)), rng.integers(0, 4, n)
+    lower = np.where(kind % 2 == 0, rng.standard_normal(n), -np.inf)
+    upper = np.where(kind == 1, rng.standard_normal(n), np.where(kind == 2, lower + 0.1 + rng.random(n), np.inf))
+    return MixedLCP(M @ M.T / n + np.triu(M, 1) - np.triu(M, 1).T, rng.standard_normal(n), lower, upper)
 
 
 def stationarity(problem):

@@ -27,13 +27,9 @@ def test_murtys_example_has_all_its_kinks(n):
     assert np.array_equal(path(t=0.0)[:n], np.append(2.0 ** (n - 1), np.zeros(n - 1)))
 
 
-@pytest.mark.parametrize("p", [1, 3, 5, 6])
+@pytest.mark.parametrize("p", [1, 3, 5, 7])
 def test_the_lasso_path_of_mairal_and_yu_has_all_its_kinks(p):
     assert len(lasso(*known.mairal_yu(p)).kinks) == (3**p - 1) // 2
-
-
-def test_a_thousand_kinks_down_to_rounding():
-    assert len(lasso(*known.mairal_yu(7)).kinks) == 1093
 
 
 def test_random_paths_with_ties_are_those_of_all_pieces():
@@ -58,31 +54,18 @@ def test_random_paths_with_ties_are_those_of_all_pieces():
     assert branching > 10
 
 
-def test_ends_agree_with_solutions():
-    random = np.random.default_rng(5)
-    for _ in range(20):
-        n = int(random.integers(2, 12))
-        A = random.normal(size=(n, n))
-        problem = LCP(A @ A.T + np.eye(n), random.normal(size=n))
-        path = along(problem, np.ones(n), (np.inf, 0.0))
-        assert path.success
-        assert path.endpoint.y == pytest.approx(solve(problem).x, abs=1e-11)
-
-
-def test_bounds_of_all_kinds():
-    random = np.random.default_rng(6)
-    for _ in range(20):
-        n = int(random.integers(2, 9))
-        A, d = random.normal(size=(n, n)), random.normal(size=n)
-        lower = np.where(random.random(n) < 0.6, -random.random(n), -np.inf)
-        upper = np.where(random.random(n) < 0.6, random.random(n), np.inf)
-        problem = MixedLCP(A @ A.T + 0.1 * np.eye(n), 3.0 * random.normal(size=n), lower, upper)
-        path = along(problem, d, (0.0, 10.0))
-        assert path.success
-        end = MixedLCP(problem.A, problem.q + 10.0 * d, lower, upper)
-        assert path.endpoint.y == pytest.approx(solve(end).x, abs=1e-9)
-        natural = NaturalMap(problem, d, np.zeros(n), path.u[0])
-        assert max(np.abs(natural.residual(u[:n], u[n])).max() for u in path.u) <= 1e-11
+@pytest.mark.parametrize("seed", range(20))
+def test_bounds_of_all_kinds(seed):
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 9))
+    A, q, d = random.normal(size=(n, n)), 3.0 * random.normal(size=n), random.normal(size=n)
+    lower = np.where(random.random(n) < 0.6, -random.random(n), -np.inf)
+    upper = np.where(random.random(n) < 0.6, random.random(n), np.inf)
+    problem = MixedLCP(A @ A.T + 0.1 * np.eye(n), q, lower, upper)
+    path = along(problem, d, (0.0, 10.0))
+    assert path.endpoint.y == pytest.approx(solve(MixedLCP(problem.A, q + 10.0 * d, lower, upper)).x, abs=1e-9)
+    natural = NaturalMap(problem, d, np.zeros(n), path.u[0])
+    assert max(np.abs(natural.residual(u[:n], u[n])).max() for u in path.u) <= 1e-11
 
 
 def test_t_stands_still_where_a_block_is_singular():
@@ -92,66 +75,26 @@ def test_t_stands_still_where_a_block_is_singular():
     assert path.u[1:] == pytest.approx(np.array([[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 0.0]]), abs=1e-15)
 
 
-def test_two_correlations_that_tie_all_the_way():
-    # Issue 2746 of scikit-learn, whose 1.9.1 gives 4.998 for the first.
-    X = np.array([[0.0, 0.0, 0.0, -1.0, 0.0], [0.0, -1.0, 0.0, 0.0, 0.0]])
-    path = lasso(X, np.array([-2.5, -2.5]))
-    assert path(t=0.002) == pytest.approx([0.0, 2.498, 0.0, 2.498, 0.0, 0.002], rel=1e-15)
-    assert [kink.switches for kink in path.kinks] == [(1, 3)]
-
-
-def test_integer_designs_with_ties_and_columns_that_are_alike():
-    for seed in (*range(40), 75, 152, 191, 244, 472, 823):
-        X, y = known.integer_design(seed)
-        path = lasso(X, y)
-        assert path.success, seed
-        for u in (*path.u, *(0.5 * (path.u[1:] + path.u[:-1]))):
-            slope, b, t = X.T @ (X @ u[:-1] - y), u[:-1], u[-1]
-            off = np.where(b != 0.0, np.abs(slope + t * np.sign(b)), np.maximum(np.abs(slope) - t, 0.0))
-            assert off.max() <= 1e-12 * (1.0 + np.abs(X.T @ y).max()), seed
-
-
-def test_columns_that_are_alike():
-    random = np.random.default_rng(3)
-    X = random.integers(-2, 3, (12, 4)).astype(float)
-    X, y = np.column_stack([X, X[:, 0], -X[:, 2]]), random.integers(-3, 4, 12).astype(float)
-    path = lasso(X, y)
-    assert path.success
-    for u in path.u[1:]:
-        slope = X.T @ (X @ u[:-1] - y)
-        assert np.abs(slope + np.clip(-slope, -u[-1], u[-1])).max() <= 1e-13
-        assert np.abs(slope[u[:-1] != 0.0]) == pytest.approx(u[-1], abs=1e-13)
-    assert np.linalg.norm(X @ path.endpoint.y - y) == pytest.approx(
-        np.sqrt(np.linalg.lstsq(X[:, :4], y, rcond=None)[1][0]), rel=1e-13
-    )
-
-
 def test_a_closed_curve_closes():
     # Between the faces of w_0 x_0 = 0 and x_1 w_1 = 0 the solutions go round.
-    found = [along(*_loop(seed), (0.0, 50.0)) for seed in range(200)]
-    closed = [path for path in found if path.status is Status.CLOSED]
+    closed = []
+    for seed in range(200):
+        random = np.random.default_rng(seed)
+        A, x = random.normal(size=(3, 3)), np.maximum(random.normal(size=3), 0.0)
+        problem = LCP(A, np.where(x > 0.0, 0.0, random.random(3)) - A @ x)
+        path = along(problem, random.normal(size=3), (0.0, 50.0))
+        closed += [path] if path.status is Status.CLOSED else []
     assert closed
     for path in closed:
         assert path.u[-1] == pytest.approx(path.u[0], abs=1e-12)
 
 
-def _loop(seed):
-    random = np.random.default_rng(seed)
-    A = random.normal(size=(3, 3))
-    x = np.maximum(random.normal(size=3), 0.0)
-    w = np.where(x > 0.0, 0.0, random.random(3))
-    return LCP(A, w - A @ x), random.normal(size=3)
-
-
 def test_crossings_of_a_value():
     path = along(murty(3), [1.0, 1.0, 1.0], (np.inf, -np.inf))
-    assert path.success
     for t in (0.0, 1.5, 3.0):
         there = path.crossings(t)
-        assert len(there) >= 1
         assert np.array_equal(path(t=t), there[0])
-        problem = LCP(murty(3).A, murty(3).q + t)
-        assert max(problem.natural_residual(u[:3]) for u in there) <= 1e-14
+        assert max(LCP(murty(3).A, murty(3).q + t).natural_residual(u[:3]) for u in there) <= 1e-14
     assert path.crossings(1e6).shape == (0, 4)
     with pytest.raises(ValueError, match=r"t: expected a value that the parameter takes"):
         path(t=1e6)
@@ -163,10 +106,11 @@ def test_an_archive_holds_the_path_its_kinks_and_their_rays(tmp_path):
     problem, d = known.integer_problem(9)
     path = along(problem, d, (np.inf, -np.inf), archive=tmp_path / "path.h5")
     with open_archive(tmp_path / "path.h5") as archive:
-        again = archive[0]
+        (again,) = archive
     assert np.array_equal(again.u, path.u)
-    assert [(k.name, k.switches, k.kind) for k in again.kinks] == [(k.name, k.switches, Kind.KINK) for k in path.kinks]
-    assert all(np.array_equal(a.rays, b.rays) for a, b in zip(again.kinks, path.kinks))
+    for one, other in zip(again.kinks, path.kinks, strict=True):
+        assert (one.name, one.switches, one.kind) == (other.name, other.switches, Kind.KINK)
+        assert np.array_equal(one.rays, other.rays)
     middle = 0.5 * (path.arclength[1:] + path.arclength[:-1])
     assert again(middle) == pytest.approx(path(middle), abs=1e-12)
 

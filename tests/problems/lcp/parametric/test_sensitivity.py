@@ -42,31 +42,33 @@ def test_at_biactive_indices_it_is_one_sided():
     assert found.vjp([1.0, 1.0, 1.0]).one_sided
 
 
-def test_one_sided_derivatives_are_those_of_differences():
-    random = np.random.default_rng(0)
-    for _ in range(10):
-        n = 6
-        A = random.normal(size=(n, n))
-        A = A @ A.T + np.eye(n)
-        x = np.where(np.arange(n) < 2, random.random(n), 0.0)
-        w = np.where(np.arange(n) < 4, 0.0, random.random(n))
-        problem = LCP(A, w - A @ x)
-        found = solve(problem).sensitivity()
-        assert found.biactive.tolist() == [2, 3]
-        dq = random.normal(size=n)
-        moved = solve(LCP(A, problem.q + H * dq)).x
-        assert found.jvp(dq) == pytest.approx((moved - x) / H, abs=1e-8)
+@pytest.mark.parametrize("seed", range(10))
+def test_one_sided_derivatives_are_those_of_differences(seed):
+    random, place = np.random.default_rng(seed), np.arange(6)
+    A = random.normal(size=(6, 6))
+    A = A @ A.T + np.eye(6)
+    x, w = np.where(place < 2, random.random(6), 0.0), np.where(place < 4, 0.0, random.random(6))
+    found = solve(LCP(A, w - A @ x)).sensitivity()
+    assert found.biactive.tolist() == [2, 3]
+    dq = random.normal(size=6)
+    assert found.jvp(dq) == pytest.approx((solve(LCP(A, w - A @ x + H * dq)).x - x) / H, abs=1e-8)
 
 
-def test_what_has_no_derivative_says_so():
-    with pytest.raises(NotDifferentiableError, match="A singular where x is off its bounds"):
-        solve(LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), x0=[0.5, 0.5]).sensitivity()
-    with pytest.raises(NotDifferentiableError, match="expected one, found none"):
-        solve(LCP([[0.0]], [-1.0])).sensitivity()
-    jammed = solve(LCP([[-1.0]], [0.0])).sensitivity()
-    with pytest.raises(NotDifferentiableError, match="found 2 ways"):
-        jammed.jvp([1.0])
-    with pytest.raises(NotDifferentiableError, match="found no ways"):
-        jammed.jvp([-1.0])
+JAMMED = LCP([[-1.0]], [0.0])
+
+
+@pytest.mark.parametrize(
+    ("problem", "message", "dq"),
+    [
+        (LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), "A singular where x is off its bounds", None),
+        (LCP([[0.0]], [-1.0]), "expected one, found none", None),
+        (JAMMED, "found 2 ways", [1.0]),
+        (JAMMED, "found no ways", [-1.0]),
+    ],
+)
+def test_what_has_no_derivative_says_so(problem, message, dq):
+    found = solve(problem, x0=np.full(problem.n, 0.5))
+    with pytest.raises(NotDifferentiableError, match=message):
+        found.sensitivity().jvp(dq)
     with pytest.raises(ValueError, match="dA: expected finite numbers of shape"):
-        jammed.jvp(dA=[1.0])
+        solve(JAMMED).sensitivity().jvp(dA=[1.0])

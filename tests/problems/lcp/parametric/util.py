@@ -39,16 +39,6 @@ def integer_problem(seed):
     return LCP(A, random.integers(-3, 4, n)), random.integers(1, 3, n).astype(float)
 
 
-def integer_design(seed):
-    """A design of small integers, some columns alike: correlations tie."""
-    random = np.random.default_rng([2746, seed])
-    n, p = int(random.integers(3, 9)), int(random.integers(2, 7))
-    X = random.integers(-2, 3, (n, p)).astype(float)
-    if seed % 4 == 0:
-        X[:, -1] = X[:, 0] * random.choice([-1.0, 1.0])
-    return X, random.integers(-4, 5, n).astype(float)
-
-
 def all_rays(problem, d, u):
     """The unit vectors along which solutions leave u = (x, t); None where they fill more than lines.
 

@@ -55,39 +55,20 @@ def test_murty_s_path_has_all_its_kinks(n):
     assert path.pivots == 2**n
 
 
-def test_a_rebuilt_table_is_the_pivoted_one():
-    r = np.random.default_rng(1)
-    problem = LCP(r.standard_normal((12, 12)), r.standard_normal(12))
-    path = covering(problem, np.ones(12))
-    for _ in range(7):
-        path.step()
-    (one,) = path.dictionaries
-    rows, columns, table = one.basic.copy(), one.nonbasic.copy(), one.table.copy()
-    assert one.rebuilt() > -1e-10
-    again = one.table[np.argsort(one.basic)]
-    order = np.append(np.argsort(one.nonbasic), 13)
-    expected = table[np.argsort(rows)][:, np.append(np.argsort(columns), 13)]
-    np.testing.assert_allclose(again[:, order], expected, rtol=1e-9, atol=1e-9)
-
-
 def test_pivots_that_wait_are_the_same_ones(monkeypatch):
     """Put into the table together or one by one, with ties, which look at all of it, and without."""
+    draws = map(np.random.default_rng, range(10))
+    large = [LCP(np.abs(r.standard_normal((60, 60))), -r.random(60)) for r in draws]
     most = 0
-    for k in range(60):
-        problem = random_problem(k)
-        if k % 6 == 0:
-            r = np.random.default_rng(k)
-            problem = LCP(np.abs(r.standard_normal((60, 60))), -r.random(60))
+    for problem in (*map(random_problem, range(50)), *large):
         ends = []
         for largest in (10**9, 0):
             monkeypatch.setattr(dictionary, "LARGE", largest)
             path = covering(problem, np.ones(problem.n))
-            ended = path.run(1000)
-            ends.append((ended, path.pivots, tuple(path.active)))
+            ends.append((path.run(1000), path.pivots, tuple(path.active)))
             (one,) = path.dictionaries
             pivoted, basic = one.table.copy(), one.basic.copy()
             assert one.rebuilt() > -1e-7
-            assert np.array_equal(np.sort(one.basic), np.sort(basic))
             np.testing.assert_allclose(one.table[np.argsort(one.basic), -1], pivoted[np.argsort(basic), -1], atol=1e-7)
         assert ends[0] == ends[1]
         most = max(most, path.pivots)
@@ -114,27 +95,14 @@ def test_from_the_solution_for_another_q():
     assert covering(LCP(A, now), before - now, ~active) is None
 
 
-def test_all_pivots_are_counted_and_limited():
-    problem = LCP(np.eye(4), -np.ones(4))
-    path = covering(problem, np.array([1.0, 2.0, 3.0, 4.0]))
-    assert path.run(2) is Ended.PIVOTS
-    assert path.pivots == 2
-    assert path.run(100) is Ended.REACHED
-
-
 def test_lemke_and_howson_from_every_label():
     # Bach and Stravinsky: two pure equilibria and a mixed one.
     C, D = 3.0 - np.array([[2.0, 0.0], [0.0, 1.0]]), 3.0 - np.array([[1.0, 0.0], [0.0, 2.0]])
-    problem = LCP(np.block([[np.zeros((2, 2)), C], [D.T, np.zeros((2, 2))]]), -np.ones(4))
-    game = Game.of(problem)
+    game = Game.of(LCP(np.block([[np.zeros((2, 2)), C], [D.T, np.zeros((2, 2))]]), -np.ones(4)))
     assert game.actions == 2
-    ends = set()
-    for label in range(4):
-        path = game.path(label)
-        assert path.run(50) is Ended.REACHED
-        assert problem.natural_residual(on_face(problem, path.active)) < 1e-14
-        ends.add(tuple(path.active))
-    assert ends == {(True, False, True, False), (False, True, False, True)}
+    paths = [game.path(label) for label in range(4)]
+    assert {path.run(50) for path in paths} == {Ended.REACHED}
+    assert {tuple(path.active) for path in paths} == {(True, False, True, False), (False, True, False, True)}
 
 
 def test_what_is_no_game():
@@ -145,22 +113,16 @@ def test_what_is_no_game():
 
 
 def test_a_bounded_program_has_no_other_ray():
-    r = np.random.default_rng(8)
-    n = 12
+    r, n = np.random.default_rng(8), 12
     Q = r.integers(-50, 51, (n, n)).astype(float)
     Q = Q + Q.T
     np.fill_diagonal(Q, -7.0)
     A = np.block([[Q, np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
     problem = LCP(A, np.append(r.integers(-50, 51, n), np.ones(n)))
-    bounds = constraints(problem)
-    np.testing.assert_array_equal(bounds, np.arange(2 * n) >= n)
-    for _ in range(20):
-        d = np.where(bounds, 0.0, 10.0 ** r.uniform(-3.0, 0.0, 2 * n))
-        assert covering(problem, d).run(2000) is Ended.REACHED
+    np.testing.assert_array_equal(constraints(problem), np.arange(2 * n) >= n)
+    for d in 10.0 ** r.uniform(-3.0, 0.0, (20, 2 * n)):
+        assert covering(problem, np.where(constraints(problem), 0.0, d)).run(2000) is Ended.REACHED
     assert covering(problem, np.ones(2 * n)).run(2000) is Ended.RAY
-    found = lcp.solve(problem)
-    assert found.solved
-    assert "Lemke" in found.message
 
 
 def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
@@ -174,11 +136,3 @@ def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
     assert found.outcome is lcp.Outcome.INFEASIBLE_TO_PRECISION
     assert "Lemke" in found.message
     np.testing.assert_allclose(found.float_farkas.y, y / y.max(), rtol=1e-9)
-
-
-def test_a_row_that_falls_slowly_is_not_tied_with_one_that_falls_fast():
-    # The first row is zero but for 5e-12, and 5e-8 of the other variable: the second would fall to -5e-8.
-    table = Dictionary(np.array([[-1e-4, 5e-12], [-1.0, 0.0], [1.0, 1.0]]), np.arange(3), np.array([3]))
-    assert table.first_zero(0, frozenset({0})) == 1
-    table = Dictionary(np.array([[1e-4, 0.0], [1.0, -5e-8], [1.0, 1.0]]), np.arange(3), np.array([3]))
-    assert table.last_zero(0) == 1

@@ -15,13 +15,6 @@ from ....util import benchmark
 random_problem = benchmark("claims.py").random_problem
 
 
-def test_the_outcome_is_that_of_exact_arithmetic_alone():
-    rng = np.random.default_rng(11)
-    for _ in range(200):
-        problem = random_problem(rng)
-        assert exhaust(problem, filtered=True) == exhaust(problem), problem
-
-
 @settings(max_examples=50, deadline=None)
 @given(mixed_lcps())
 def test_no_solution_is_excluded(problem):

@@ -29,21 +29,19 @@ def test_what_the_last_digit_decides_is_solved_to_precision_alone():
     assert lcp.solve(LCP(wide, [-1.0, 1.0 - LAST, *[-1.0] * 11])).outcome is Outcome.SOLVED
 
 
-def test_floats_prove_what_is_clear_and_rationals_the_rest():
-    clear = LCP([[2.0, 1.0], [1.0, 3.0]], [-1.0, 4.0])
-    assert _clearly_exact(clear, np.array([0.5, 0.0]))
-    degenerate = LCP([[2.0, 1.0], [1.0, 3.0]], [-1.0, -0.5])
-    assert not _clearly_exact(degenerate, np.array([0.5, 0.0]))
-    assert exact_nearby(degenerate, np.array([0.5, 0.0]))
-    singular = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0])
-    assert not _clearly_exact(singular, np.array([2.0, 1.0]))
-    assert exact_nearby(singular, np.array([2.0, 1.0]))
-    inconsistent = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0 - LAST])
-    assert not exact_nearby(inconsistent, np.array([2.0, 1.0]))
-    # Its equations have a solution, with an x that is negative, to far less than the tolerance.
-    below = LCP([[-1.0, 1.0], [0.0, 1.0]], [-1.0 - 2.0**-40, -1.0])
-    assert lcp.certify(below, [-(2.0**-40), 1.0]).solves()
-    assert not exact_nearby(below, np.array([-(2.0**-40), 1.0]))
+@pytest.mark.parametrize(
+    ("A", "q", "x", "exact"),
+    [
+        ([[2.0, 1.0], [1.0, 3.0]], [-1.0, -0.5], [0.5, 0.0], True),  # degenerate
+        ([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0], [2.0, 1.0], True),  # singular
+        ([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0 - LAST], [2.0, 1.0], False),  # inconsistent
+        # Its equations have a solution, with an x that is negative, to far less than the tolerance.
+        ([[-1.0, 1.0], [0.0, 1.0]], [-1.0 - 2.0**-40, -1.0], [-(2.0**-40), 1.0], False),
+    ],
+)
+def test_rationals_decide_what_floats_do_not_prove(A, q, x, exact):
+    assert not _clearly_exact(LCP(A, q), np.array(x))
+    assert exact_nearby(LCP(A, q), np.array(x)) is exact
 
 
 @pytest.mark.parametrize("make", [np.asarray, sp.csr_array])

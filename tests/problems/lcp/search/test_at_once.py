@@ -9,9 +9,6 @@ import pytest
 from problems import lcp
 from problems.lcp import LCP
 from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.iteration import Ended, Policy, iterate
-from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import active_state
 from problems.lcp.search import exclusion
 from problems.lcp.search.active_sets import SETTLED
 from problems.lcp.search.pivots import Pivots
@@ -50,22 +47,8 @@ def test_a_first_active_set_that_is_wrong_is_factored_once(made):
     assert len(made) == len(set(made)) == found.counts.factorizations > 1
 
 
-def test_an_iteration_ends_where_more_faces_are_singular_than_allowed():
-    faces, state = Faces(Structure(SINGULAR)), active_state(SINGULAR.q < 0.0)
-    assert iterate(faces, state, Policy(steps=5, singular=0)).ended is Ended.SINGULAR
-    assert iterate(faces, state, Policy(steps=5)).ended is not Ended.SINGULAR
-
-
 def test_singular_faces_are_left_to_pivots():
     assert "Lemke" in lcp.solve(SINGULAR).message
-
-
-def test_a_face_of_order_one_is_solved_by_a_division(monkeypatch):
-    monkeypatch.setattr(Structure, "semidefinite", property(lambda self: pytest.fail("A was factored")))
-    problem = LCP([[3.0, 1.0], [1.0, 2.0]], [-1.0, 5.0])
-    face = Faces(Structure(problem)).face(active_state(problem.q < 0.0))
-    assert face.exact
-    assert face.point(np.zeros(2))[0].tolist() == [1.0 / 3.0, 0.0]
 
 
 def test_the_first_active_set_costs_few_calls():
@@ -94,21 +77,7 @@ def test_a_tiny_problem_without_solution_costs_no_search(monkeypatch):
         assert found.outcome is lcp.Outcome.UNSOLVABLE
         assert found.problem is problem
         assert (found.exhaustion.faces, found.exhaustion.solvable) == (4, False)
-        assert found.proof in found.message
-    assert lcp.solve(infeasible).farkas.holds(infeasible)
-    assert lcp.solve(feasible).farkas is None
-
-
-def test_tiny_problems_are_decided_as_exact_enumeration_decides_them():
-    seen = Counter()
-    for seed in range(200):
-        r = np.random.default_rng([26, seed])
-        n = int(r.integers(2, 6))
-        problem = LCP(r.integers(-3, 4, (n, n)), r.integers(-3, 4, n))
-        found = lcp.solve(problem)
-        assert found.solved == lcp.solve_by_enumeration(problem).solvable
-        seen[found.outcome, "before any path" in found.message or "linear program" in found.message] += 1
-    assert seen[lcp.Outcome.UNSOLVABLE, False] > 50
+        assert found.farkas.holds(infeasible) if problem is infeasible else found.farkas is None
 
 
 def test_a_box_on_many_corners_needs_few_factorizations():
@@ -123,16 +92,15 @@ def test_a_box_on_many_corners_needs_few_factorizations():
 
 
 def test_contact_goes_to_pivots_after_the_first_face_and_in_any_unit(made):
-    """Two boxes on each other: singular faces, but no few degrees of freedom of which each face tells nearly all."""
+    """Three boxes on each other: singular faces, but no few degrees of freedom of which each face tells nearly all."""
     bodies = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(3)]
     contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(3) for side in (-0.5, 0.5)]
     A, J, inverse = time_step(bodies, contacts, 0.5)
     v = np.random.default_rng(1).normal(0.0, 0.05, 9) + 0.01 * inverse * np.tile([0.0, -9.81, 0.0], 3)
     q = free_motion(J @ v)
-    found = lcp.solve(LCP(A, q))
+    found, other = lcp.solve(LCP(A, q)), lcp.solve(LCP(2.0**-11 * A, 2.0**-14 * q))
     assert "By Lemke's method" in found.message
-    assert len(made) == found.counts.factorizations == 2
-    other = lcp.solve(LCP(2.0**-11 * A, 2.0**-14 * q))
+    assert len(made) == 2 * found.counts.factorizations == 4
     assert (other.outcome, other.counts) == (found.outcome, found.counts)
     np.testing.assert_array_equal(8.0 * other.x, found.x)
 
@@ -141,10 +109,7 @@ def test_a_singular_block_of_zeros_is_left_alone_in_any_unit():
     """Routes between two pairs of nodes: the first face is that of the times, a block of zeros."""
     R = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     G = np.eye(2)[[0, 0, 1, 1]]
-    A = np.block([[R @ R.T, -G], [G.T, np.zeros((2, 2))]])
-    q = np.array([1.0, 2.0, 3.0, 1.0, -2.0, -1.0])
-    faces = Faces(Structure(LCP(A, q)))
-    assert faces.face(active_state(q < 0.0)) is None
+    A, q = np.block([[R @ R.T, -G], [G.T, np.zeros((2, 2))]]), np.array([1.0, 2.0, 3.0, 1.0, -2.0, -1.0])
     x = lcp.solve(LCP(A, q)).x
     for k in (-40, -11, 12):
         np.testing.assert_array_equal(lcp.solve(LCP(2.0**k * A, 2.0**k * q)).x, x)

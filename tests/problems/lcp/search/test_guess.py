@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from continuation.budget import Budget
 from problems.lcp import LCP, MixedLCP, solve
-from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import Finish
-from problems.lcp.homotopies import Structure
-from problems.lcp.search.pivots import by_guess
-from problems.lcp.search.search import Nearby, Search
 
 
 def moving(seed, n=20):
@@ -45,14 +39,12 @@ def test_with_bounds_and_units():
     assert again.x == pytest.approx(solve(after).x, abs=1e-10)
 
 
-def test_the_path_itself_leads_there():
+def test_the_path_from_the_nearby_problem_is_followed_up_to_the_largest_table(monkeypatch):
     A, q, random = moving(9)
-    found = solve(LCP(A, q))
-    problem = LCP(A, q + random.normal(size=20))
-    structure = Structure(problem)
-    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget())
-    assert by_guess(search, Nearby(found.x, found.w))
-    assert search.ends[-1].certificate.x == pytest.approx(solve(problem).x, abs=1e-11)
+    found, problem = solve(LCP(A, q)), LCP(A, q + random.normal(size=20))
+    for largest, nearby in ((20, True), (19, False)):
+        monkeypatch.setattr("problems.lcp.search.active_sets.LARGEST_TABLE", largest)
+        assert ("nearby" in solve(problem, guess=found).message) is nearby
 
 
 def test_a_far_guess_harms_nothing():

@@ -1,19 +1,14 @@
 """The search by reflections: what its sets are, in any units, and that it solves where paths seldom do."""
 
-import itertools
 import math
 
 import numpy as np
 import pytest
 
-from continuation import Budget
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
-from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
-from problems.lcp.search.reflections import RUNS_AT_ONCE, Reflections, Sets
-from problems.lcp.search.search import Search
+from problems.lcp.search.reflections import RUNS_AT_ONCE, Sets
 
 
 def planted(n, seed, bounds=False):
@@ -61,19 +56,6 @@ def test_both_projections_are_the_nearest_points(bounds):
             assert w == 0.0 if face == BETWEEN else x == pytest.approx(lo if face == LOWER else hi)
 
 
-def test_the_affine_set_is_that_of_the_problem():
-    problem = planted(5, 2)
-    sets = Sets.of(problem)
-    # Points of it, in units that are those of x and w but for a factor each: all w = A x + q fit the same factors.
-    points = sets.onto @ np.random.default_rng(1).standard_normal((10, 40)) + sets.nearest
-    x, w = points[:5], points[5:]
-    for i in range(5):
-        fit, rest, *_ = np.linalg.lstsq(np.column_stack([x.T, np.ones(40)]), w[i], rcond=None)
-        assert rest.size == 0 or rest[0] < 1e-8
-        # The signs and shares of the row: w_i r_i = sum_j a_ij c_j x_j + q_i / length.
-        assert (np.sign(fit) == np.sign(np.append(problem.A[i], problem.q[i]))).all()
-
-
 def test_a_large_part_of_rank_one_is_not_what_units_are_taken_from():
     r = np.random.default_rng(6)
     game = LCP(r.standard_normal((40, 40)) + 1e4, -np.ones(40))
@@ -109,48 +91,15 @@ def test_a_hard_size_in_few_factorizations():
     assert found.counts.factorizations < 300
 
 
-def test_the_same_call_gives_the_same_answer():
-    problem = planted(60, 7)
-    first, again = (lcp.solve(problem, seed=3) for _ in range(2))
-    np.testing.assert_array_equal(first.x, again.x)
-    assert first.counts == again.counts
-
-
 def test_what_has_no_solution_comes_to_an_end():
     r = np.random.default_rng(5)
-    A = r.standard_normal((45, 45))
-    A[0] = -np.abs(A[0])
-    q = r.standard_normal(45)
-    q[0] = -1.0
+    A, q = r.standard_normal((45, 45)), r.standard_normal(45)
+    A[0], q[0] = -np.abs(A[0]), -1.0
     assert lcp.solve(LCP(A, q), restarts=0).outcome is lcp.Outcome.UNSOLVABLE
-    sets = Sets.of(LCP(A, q))
-    looks = sets.rounds(np.random.default_rng(0))
-    assert next(over for over, _ in looks if over) == 1
+    assert next(over for over, _ in Sets.of(LCP(A, q)).rounds(np.random.default_rng(0)) if over) == 1
 
 
 def test_no_unit_of_length_is_no_search():
     assert Sets.of(LCP(np.eye(2), np.zeros(2))) is None
     nothing = Sets.of(LCP(np.zeros((2, 2)), [-1.0, 1.0]))
     assert np.isfinite(nothing.onto).all()
-
-
-@pytest.mark.parametrize(("n", "share", "rounds"), [(10, 1.0, 16), (600, 1.0, 3), (10, 1e-3, 1)])
-def test_large_problems_and_small_budgets_have_fewer_rounds_but_one(n, share, rounds, monkeypatch):
-    over = []
-    monkeypatch.setattr(Sets, "of", classmethod(lambda *a: evolve_rounds(over)))
-    structure = lcp.Structure(LCP(-np.eye(n), -np.ones(n)))
-    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget(factorizations=170_000 * share))
-    assert Reflections(search).run(16) == ""
-    assert len(over) - 1 == rounds
-
-
-def evolve_rounds(over):
-    """Sets on which no run stays anywhere."""
-
-    class Restless:
-        def rounds(self, random):
-            for k in itertools.count():
-                over.append(k)
-                yield k, []
-
-    return Restless()

@@ -12,7 +12,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search import exclusion
 from problems.lcp.search.search import Asked, Search
-from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, Row, settled_by
+from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, settled_by
 
 INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
 GAME = lcp.LCP([[0.0, 1.0], [2.0, 0.0]], [-1.0, -1.0])
@@ -41,14 +41,6 @@ def tried(one, table):
     return names
 
 
-def test_the_table_fits_one_screen_and_every_row_is_tried_somewhere():
-    seen = set()
-    for problem in (INFEASIBLE, GAME, lcp.LCP(np.eye(30) - 2.0, -np.ones(30)), lcp.LCP(-np.eye(3), -np.ones(3))):
-        seen |= set(tried(search(problem), AUTOMATIC))
-    assert seen == {row.name for row in AUTOMATIC}
-    assert len(AUTOMATIC) <= 10
-
-
 @pytest.mark.parametrize(
     ("problem", "left_out"),
     [
@@ -69,26 +61,6 @@ def test_the_order_depends_on_the_problem(problem, left_out):
 def test_without_the_finish_and_with_a_path_that_is_wanted_paths_come_first():
     assert tried(search(INFEASIBLE), PATHS)[0] == "paths"
     assert tried(search(INFEASIBLE, restarts=0), NAMED) == ["paths", "root"]
-
-
-def test_what_is_dear_is_left_out_when_the_budget_is_spent():
-    one = search(lcp.LCP(np.eye(50) - 2.0, -np.ones(50)))
-    one.traced.accepted = 10_000
-    assert settled_by(one, PATHS) == ""
-    assert not one.paths
-
-
-def test_another_method_is_one_more_row():
-    class Guess:
-        def __init__(self, search):
-            self.search = search
-
-        def run(self, work):
-            return "Guessed." if self.search.settle(np.zeros(2, dtype=np.int8)) else ""
-
-    one = search(lcp.LCP(np.eye(2), [-1.0, -1.0]))
-    assert settled_by(one, (Row("a guess", Guess, lambda s: True, 1, "guesses"), *AUTOMATIC)) == "Guessed."
-    np.testing.assert_array_equal(one.best().certificate.x, [1.0, 1.0])
 
 
 @pytest.mark.parametrize(
@@ -114,18 +86,6 @@ def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, opt
     assert (problem.A.T @ y <= 0.0).all()
     assert problem.q @ y < 0.0
     assert len(calls) == expected
-
-
-@pytest.mark.parametrize("n", [6, 20, 40])
-def test_the_root_of_the_tree_is_a_farkas_vector(n):
-    r = np.random.default_rng(n)
-    A, q = r.standard_normal((n, n)), r.standard_normal(n)
-    A[0], q[0] = -A[1:].sum(axis=0) - r.random(n), -q[1:].sum() - 0.1
-    problem = lcp.LCP(A, q)
-    found = lcp.solve(problem)
-    assert found.outcome is lcp.Outcome.UNSOLVABLE
-    assert found.farkas.holds(problem)
-    assert not found.paths
 
 
 def test_a_sparse_matrix_is_dense_for_paths():
