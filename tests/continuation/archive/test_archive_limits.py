@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from continuation import Budget, trace
-from continuation.archive import ArchiveError, Limits, PathLog, describe, export, open_archive, recover, resume
+from continuation.archive import ArchiveError, describe, export, open_archive, recover, resume
 from continuation.archive.hdf5 import LEAST_BYTES
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp
 
 from .test_archive_hostile import outcome, unchecked
+from .util import killed, logged
 
 MOST_BYTES = 500 << 20
 
@@ -99,14 +100,6 @@ def test_the_caller_may_allow_more(changed):
     assert len(open_archive(file, limit=1 << 29)) == 1
 
 
-def test_a_steps_objects_count_and_those_of_its_ends_do_not(small):
-    with open_archive(small, limit=1 << 20) as archive:
-        many = 1 + (1 << 20) // 1400
-        archive._first_rows[-1] = many
-        with pytest.raises(ArchiveError, match="the steps of the path claims"):
-            archive.path(0)
-
-
 def test_the_same_thing_read_again_counts_once(small):
     with open_archive(small, limit=1 << 20) as archive:
         for _ in range(100):
@@ -117,30 +110,18 @@ def test_the_same_thing_read_again_counts_once(small):
 # -- files that are cut off -----------------------------------------------------------------------------------
 
 
+HEAD = 45_000
+SHARES = (0.3, 0.5, 0.7, 0.9, 0.99, 0.999)
+LONG = {"controller": Fixed(bounds=Bounds(initial=0.005)), "budget": Budget(steps=1500), "target": None}
+
+
 @pytest.fixture(scope="module", params=["closed", "killed"])
 def long(request, tmp_path_factory):
     file = tmp_path_factory.mktemp("long") / "long.h5"
-    process = os.fork() if request.param == "killed" else 1
-    if request.param == "closed" or not process:
-        log = PathLog(file, limits=Limits(rows=50, seconds=3600.0))
-        trace(
-            Cusp(), archive=log, controller=Fixed(bounds=Bounds(initial=0.005)), budget=Budget(steps=1500), target=None,
-            observers=() if process else (_Killer(),),
-        )  # fmt: skip
-    os.waitpid(process, 0) if process != 1 else None
+    if request.param == "killed":
+        return killed(file, Cusp(), 1499, 50, **LONG)
+    trace(Cusp(), archive=logged(file, 50), **LONG)
     return file
-
-
-HEAD = 45_000
-SHARES = (0.3, 0.5, 0.7, 0.9, 0.99, 0.999)
-
-
-class _Killer:
-    def step(self, tracer, step):
-        if step.index == 1499:
-            os.kill(os.getpid(), 9)
-
-    event = end = lambda self, *arguments: None
 
 
 def test_whole_blocks_before_the_cut_are_recovered(tmp_path, long):
@@ -181,18 +162,17 @@ def kink_without_a_switch(file):
     file["event_name"].resize((1,))
 
 
-def put(file, name, value):
-    file[name][0] = value
-
-
 def names(*texts):
     return lambda file: file.attrs.__setitem__("names", json.dumps(texts))
 
 
 CONTENTS = {
     "a kink without a switch": kink_without_a_switch,
-    "a message": lambda file: put(file, "message", b"\xff\xfe"),
-    "an event's name": lambda file: (file["event_name"].resize((1,)), put(file, "event_name", b"\xff\x1b[0m")),
+    "a message": lambda file: file["message"].__setitem__(0, b"\xff\xfe"),
+    "an event's name": lambda file: (
+        file["event_name"].resize((1,)),
+        file["event_name"].__setitem__(0, b"\xff\x1b[0m"),
+    ),
     "a column's name": lambda file: file.create_dataset(b"observed_\xff", data=np.zeros(7)),
     "a column's control codes": lambda file: file.create_dataset("observed_\x1b]0;x\x07", data=np.zeros(7)),
     "a type with control codes": lambda file: (file.pop("y"), file.create_dataset("y", (7,), [("\x1b[2J", "f8")])),
