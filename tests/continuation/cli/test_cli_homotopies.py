@@ -26,11 +26,6 @@ def home(tmp_path, monkeypatch):
         "class Wrong(Root):\n"
         "    def jacobian(self, y, lam):\n"
         "        return 3 * y[:, None], np.ones(1)\n\n\n"
-        "class Empty:\n"
-        "    pass\n\n\n"
-        "class Buggy(Root):\n"
-        "    def residual(self, y, lam):\n"
-        "        return y + 'text'\n"
     )
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -117,11 +112,3 @@ def test_check_says_what_is_wrong(run, home):
     assert "failed   jacobian\n" in out
     assert "H_y[0, 0] is 3, expected 2 (by jets), at the start" in out
     assert out.strip().endswith("checks passed.")
-
-
-def test_a_bug_in_a_plugin_is_not_taken_for_bad_input(run, home):
-    status, out, err = run("trace", "my_homotopies:Buggy")
-    assert (status, out) == (FAILURE, "")
-    assert err.count("\n") == 1
-    assert err.startswith("continuation: my_homotopies:Buggy: UFuncTypeError: ufunc 'add'")
-    assert "(my_homotopies.py, line " in err
