@@ -1,7 +1,5 @@
 """Values, first and second derivatives over boxes hold those at points inside, in 120 digits: every rule."""
 
-from fractions import Fraction
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -115,28 +113,6 @@ def test_the_slopes_of_an_expression_are_enclosed(name, x, width, part, v):
 def _signs(e, v):
     minus_e, minus_v = [-s for s in e], [-s for s in v]
     return (e, v), (e, minus_v), (minus_e, v), (minus_e, minus_v)
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.data())
-def test_products_of_many_hold_the_exact_ones(data):
-    entries = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda x: float(np.float32(x)))
-    a, b, c = (np.array(data.draw(st.lists(entries, min_size=4, max_size=4))).reshape(2, 2) for _ in "abc")
-    found = np.einsum("ij,jk,kl->il", a, Interval(b), c)
-    total = np.einsum("ij,ij,ij->", a, Interval(b), Interval(c))
-    exact = [[sum(_term(a[i, j], b[j, k], c[k, m]) for j in (0, 1) for k in (0, 1)) for m in (0, 1)] for i in (0, 1)]
-    for i in (0, 1):
-        for m in (0, 1):
-            assert Fraction(found.lo[i, m]) <= exact[i][m] <= Fraction(found.hi[i, m])
-    whole = sum(_term(a[i, j], b[i, j], c[i, j]) for i in (0, 1) for j in (0, 1))
-    assert Fraction(float(total.lo)) <= whole <= Fraction(float(total.hi))
-
-
-def _term(*factors):
-    product = Fraction(1)
-    for factor in factors:
-        product *= Fraction(float(factor))
-    return product
 
 
 def test_where_boxes_do_not_decide_there_is_no_second_derivative():

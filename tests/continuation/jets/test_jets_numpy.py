@@ -236,27 +236,16 @@ def test_a_jet_does_not_keep_its_makers_memory():
     assert (jet.shape, jet.ndim, jet.size, len(jet), jet.order, jet.dtype) == ((2,), 1, 2, 2, 2, float)
     assert (np.shape(jet), np.ndim(jet), np.size(jet), np.size(M, 1)) == ((2,), 1, 2, 3)
     assert repr(jet) == "Jet(shape=(2,), order=2, leading=array([1., 1.]))"
-    assert isinstance(jet[0], Jet)
-
-
-def test_jets_copy():
-    for x in (copy.copy(X), copy.deepcopy(X), copy.deepcopy(Z)):
-        assert isinstance(x, Jet)
+    assert all(isinstance(other, Jet) for other in (jet[0], copy.copy(X), copy.deepcopy(Z)))
     assert copy.deepcopy(X).c is not X.c
 
 
-def test_sparse_products_from_the_right():
-    for matrix in (sp.csr_array(A), sp.csc_matrix(A), sp.dia_array(A)):
-        np.testing.assert_allclose((X @ matrix.T).c, (A @ X).c, atol=1e-13)
-        np.testing.assert_allclose(np.matmul(matrix, X).c, (A @ X).c, atol=1e-13)
-    with pytest.raises(TypeError, match="sparse product with an array of 2 axes"):
-        M @ sp.csr_array(A)
-
-
 @pytest.mark.parametrize("make", [sp.csr_array, sp.csc_matrix, sp.dia_array])
-def test_sparse_products_from_the_left(make):
-    np.testing.assert_allclose((make(A) @ X).c, (A @ X).c, atol=1e-13)
-    np.testing.assert_allclose(make(A).dot(X).c, (A @ X).c, atol=1e-13)
+def test_sparse_products(make):
+    for product in (make(A) @ X, make(A).dot(X), X @ make(A).T, np.matmul(make(A), X)):
+        np.testing.assert_allclose(product.c, (A @ X).c, atol=1e-13)
+    with pytest.raises(TypeError, match="sparse product with an array of 2 axes"):
+        M @ make(A)
 
 
 def assign(target, key, value):
