@@ -41,8 +41,7 @@ def test_the_front_is_what_nothing_beats():
     assert far == {
         "cheap": 1.0, "middle": 1.0, "beaten": 1.5, "exact": 1.0, "also exact": 1.0, "dearer": 1.2, "failed": math.inf
     }  # fmt: skip
-    table = chart.summary(results)
-    lines = {line[0]: line for line in table.rows}
+    lines = {line[0]: line for line in chart.summary(results).rows}
     assert lines["beaten"][-2:] == (1.5, 1.5)
     assert lines["failed"][1:4] == (1, 0, "1 jump")
 
