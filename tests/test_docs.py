@@ -117,7 +117,7 @@ def test_a_failing_block_is_named_with_its_line(tmp_path):
     with pytest.raises(ZeroDivisionError) as caught:
         list(executed.run(text, tmp_path, "page.md"))
     last = caught.traceback[-1]
-    assert (last.path.name, last.lineno + 1) == ("page.md", 9)
+    assert (Path(last.path).name, last.lineno + 1) == ("page.md", 9)
 
 
 def test_what_a_block_prints_and_draws_follows_it(tmp_path):
