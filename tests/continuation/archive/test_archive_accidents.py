@@ -13,7 +13,7 @@ from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
 from ...util import in_child, refused
-from .util import killed, logged, read
+from .util import killed, logged, observer, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.02))}
 REFUSED = 7 << 8
@@ -73,27 +73,16 @@ def test_other_names_come_back(tmp_path, name):
 
 def test_one_writer_at_a_time(file):
     """Two resumes at once: the second is refused, whatever number its process has, and the first goes on."""
-    path = trace(HOMOTOPY, **OPTIONS)
+    path, complaints = trace(HOMOTOPY, **OPTIONS), []
 
-    class Second:
-        complaints = 0
+    def second(tracer, step):
+        for work in (resume, recover) if step.index in (40, 60) else ():
+            complaints.append(in_child(lambda work=work: work(file)))
+            with pytest.raises(ArchiveError, match="seems to be alive"):
+                work(file)
 
-        def step(self, tracer, step):
-            for work in (resume, recover) if step.index in (40, 60) else ():
-                assert in_child(lambda work=work: work(file)) == REFUSED
-                with pytest.raises(ArchiveError, match="seems to be alive"):
-                    work(file)
-                self.complaints += 1
-
-        def event(self, tracer, event):
-            pass
-
-        def end(self, tracer):
-            pass
-
-    watching = Second()
-    assert np.array_equal(resume(file, observers=(watching,)).u, path.u)
-    assert watching.complaints == 4
+    assert np.array_equal(resume(file, observers=(observer(step=second),)).u, path.u)
+    assert complaints == 4 * [REFUSED]
     assert np.array_equal(read(file).u, path.u)
 
 

@@ -12,7 +12,7 @@ from continuation.archive import ArchiveError, ArchiveExistsError, open_archive,
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
 
-from .util import logged, read
+from .util import logged, observer, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.05))}
 
@@ -67,30 +67,16 @@ def test_a_child_never_writes(tmp_path, path, act):
         assert archive.path(0).status is path.status
 
 
-class Raising:
-    """An observer that raises at the sixth step, at the first event, or at the end."""
-
-    def __init__(self, where):
-        self.where = where
-
-    def step(self, tracer, step):
-        if self.where == "step" and step.index == 6:
-            raise RuntimeError("of the observer")
-
-    def event(self, tracer, event):
-        if self.where == "event":
-            raise RuntimeError("of the observer")
-
-    def end(self, tracer):
-        if self.where == "end":
-            raise RuntimeError("of the observer")
-
-
 @pytest.mark.parametrize("where", ["step", "event", "end"])
 @pytest.mark.parametrize("first", [False, True])
 def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, first):
     file = tmp_path / "run.h5"
-    observers = [logged(file, 3), Raising(where)]
+
+    def raises(tracer, seen=None):
+        if where != "step" or seen.index == 6:
+            raise RuntimeError("of the observer")
+
+    observers = [logged(file, 3), observer(**{where: raises})]
     with pytest.raises(RuntimeError, match="of the observer"):
         trace(HOMOTOPY, observers=observers[::-1] if first else observers, **OPTIONS)
     with open_archive(file) as archive:

@@ -14,7 +14,7 @@ from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpa
 from continuation.metric import Relative
 from problems.bifurcation import Circle, ExponentialCosine, FreudensteinRoth
 
-from .util import assert_same, interrupted, read
+from .util import assert_same, interrupted, observer, read
 
 PROBLEMS = {"circle": Circle(), "freudenstein-roth": FreudensteinRoth(), "exponential cosine": ExponentialCosine(3)}
 
@@ -54,40 +54,34 @@ def identical(a, b):
     return len(a) == len(b) and all(np.array_equal(x, y, equal_nan=True) for x, y in zip(a, b))
 
 
-class Snapshots:
-    """The states along a path, and as an archive holds them."""
+def recording():
+    """An observer; the states that it sees along a path, and these as an archive holds them."""
+    states, checkpoints = [], []
 
-    def __init__(self):
-        self.states, self.checkpoints = [], []
-
-    def step(self, tracer, step):
+    def step(tracer, step):
         if step.index == tracer.state.index:
             checkpoint = Checkpoint(1, 0, 1, tracer.state, tracer.counts.as_dict(), 0.0, describe_run(tracer, None))
-            self.states.append(tracer.state)
-            self.checkpoints.append(unpack(pack(checkpoint)))
+            states.append(tracer.state)
+            checkpoints.append(unpack(pack(checkpoint)))
 
-    def event(self, tracer, event):
-        pass
-
-    def end(self, tracer):
-        pass
+    return observer(step=step), states, checkpoints
 
 
 @pytest.mark.parametrize("problem", PROBLEMS)
 @pytest.mark.parametrize("options", OPTIONS, ids=name)
 def test_each_state_leads_to_the_next_exactly(problem, options):
     """By induction from here on: the state that an archive holds gives the next state, bit for bit, at every step."""
-    homotopy, seen = PROBLEMS[problem], Snapshots()
+    homotopy, (watching, states, checkpoints) = PROBLEMS[problem], recording()
     options = {"budget": Budget(steps=20), **options}
-    path = trace(homotopy, observers=(seen,), **options)
-    assert len(seen.states) > 3 or path.status is not Status.REACHED_TARGET
-    for (before, after), checkpoint in zip(pairwise(seen.states), seen.checkpoints):
+    path = trace(homotopy, observers=(watching,), **options)
+    assert len(states) > 3 or path.status is not Status.REACHED_TARGET
+    for (before, after), checkpoint in zip(pairwise(states), checkpoints):
         assert identical(before, checkpoint.state)
-        again = Snapshots()
-        steps = iter(Tracer(homotopy, state=checkpoint.state, observers=(again,), **options))
+        watching, again, _ = recording()
+        steps = iter(Tracer(homotopy, state=checkpoint.state, observers=(watching,), **options))
         next(steps, None)
         steps.close()
-        assert identical(again.states[0], after)
+        assert identical(again[0], after)
 
 
 def test_resumed_again_and_again(tmp_path):

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -14,6 +15,11 @@ from ...util import in_child
 def logged(file, rows=5, **options):
     """A log that commits after so many rows, whatever the clock says."""
     return PathLog(file, limits=Limits(rows=rows, seconds=3600.0), **options)
+
+
+def observer(**methods):
+    """An observer with these methods, which looks at nothing else."""
+    return SimpleNamespace(**{**dict.fromkeys(("step", "event", "end"), lambda *_: None), **methods})
 
 
 def read(file, number=0, **options):
