@@ -1,5 +1,6 @@
 """Archives made to harm: doors to other files, sizes that are not there, numbers that mean nothing. One line, soon."""
 
+import json
 import shutil
 
 import attrs
@@ -8,11 +9,11 @@ import numpy as np
 import pytest
 
 from continuation import Budget, TargetValue, trace
-from continuation.archive import ArchiveError, describe, export, merge, open_archive, recover, resume
+from continuation.archive import ArchiveError, open_archive, recover, resume
 from continuation.archive.checks import Committed
 from problems.bifurcation import ExponentialCosine
 
-from .util import logged, read
+from .util import OPERATIONS, logged, outcome, read
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +39,10 @@ def claimed(file, points):
 def replaced(file, name, value):
     del file[name]
     file[name] = value
+
+
+def names(file, text):
+    file.attrs["names"] = text
 
 
 def external(file, secret):
@@ -87,27 +92,23 @@ HARM = {
     "a problem that is not there": lambda f, s: f["problem"].create_dataset("A", (10**5,) * 2, "f8", chunks=(99, 99)),
     "a checkpoint that is not there": lambda f, s: f["resume"]["slots"].resize((2, 4 * 10**9)),
     "no checkpoints": lambda f, s: replaced(f, "resume", 5),
-}
-
-OPERATIONS = {
-    "open": lambda file: repr(open_archive(file)),
-    "read": lambda file: [path.u for path in open_archive(file)],
-    "columns": lambda file: dict(open_archive(file).points),
-    "problem": lambda file: open_archive(file).problem(),
-    "describe": lambda file: describe(open_archive(file)),
-    "export": lambda file: export(file, file.with_suffix(".csv")),
-    "merge": lambda file: merge([file], file.with_suffix(".nc")),
-    "recover": recover,
-    "resume": lambda file: resume(file, archive=file.with_suffix(".more.h5"), budget=Budget(steps=14)),
+    "a kink without a switch": lambda f, s: (f["role"].__setitem__(5, 2), f["event_index"].__setitem__(4, 0)),
+    "a message that is no text": lambda f, s: f["message"].__setitem__(0, b"\xff\xfe"),
+    "an event's name with control codes": lambda f, s: f["event_name"].__setitem__(0, b"\xff\x1b[0m"),
+    "a column's name that is no text": lambda f, s: f.create_dataset(b"observed_\xff", data=np.zeros(14)),
+    "a column's name with control codes": lambda f, s: f.create_dataset("observed_\x1b]0;x\x07", data=np.zeros(14)),
+    "a type with control codes": lambda f, s: (f.pop("y"), f.create_dataset("y", (14,), [("\x1b[2J", "f8")])),
+    "nested roots": lambda f, s: names(f, json.dumps(["$" + "\\sqrt{" * 300 + "x" + "}" * 300 + "$"])),
+    "nested names": lambda f, s: names(f, "[" * 100_000),
+    "a homotopy's name with control codes": lambda f, s: f.attrs.__setitem__("homotopy", "\x1b]0;x\x07"),
 }
 
 
 @pytest.mark.parametrize("checked", [True, False], ids=["checked", "unchecked"])
 @pytest.mark.parametrize("harm", HARM)
 def test_one_line_or_nothing_amiss(tmp_path, base, harm, checked):
-    secret = tmp_path / "secret.h5"
+    secret, right, refused = tmp_path / "secret.h5", read(base).u, 0
     shutil.copy(base, secret)
-    right, refused = read(base).u, 0
     for name, operation in OPERATIONS.items():
         file = tmp_path / f"{name}.h5"
         shutil.copy(base, file)
@@ -120,15 +121,11 @@ def test_one_line_or_nothing_amiss(tmp_path, base, harm, checked):
         assert "\n" not in complaint
         if checked and name == "read" and not complaint:
             assert np.array_equal(found[0], right)
-    harmless = ("rows that are not there", "names without end", "a checkpoint that is not there")
+        for said in (complaint, str(found)):
+            assert "\x1b" not in said
+            said.encode()
+    harmless = ("rows that are not there", "names without end", "a checkpoint that is not there", "another's column")
     assert refused or not checked or harm in harmless
-
-
-def outcome(operation, file):
-    try:
-        return "", operation(file)
-    except ArchiveError as error:
-        return str(error), None
 
 
 def test_points_that_are_claimed_with_a_checksum(tmp_path, base):

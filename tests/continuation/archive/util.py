@@ -5,11 +5,48 @@ import signal
 from types import SimpleNamespace
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from continuation import Tracer
-from continuation.archive import Limits, PathLog, open_archive
+from continuation import Budget, Tracer
+from continuation.archive import (
+    ArchiveError,
+    Limits,
+    PathLog,
+    describe,
+    export,
+    merge,
+    open_archive,
+    recover,
+    resume,
+)
 
 from ...util import in_child
+
+OPERATIONS = {
+    "open": lambda file: repr(open_archive(file)),
+    "read": lambda file: [path.u for path in open_archive(file)],
+    "columns": lambda file: dict(open_archive(file).points),
+    "problem": lambda file: open_archive(file).problem(),
+    "checkpoint": lambda file: open_archive(file).checkpoint(),
+    "describe": lambda file: describe(open_archive(file)),
+    "table": lambda file: open_archive(file)._repr_html_(),
+    "xarray": lambda file: open_archive(file).to_xarray(),
+    "picture": lambda file: (
+        open_archive(file).path(0).plot(Figure().subplots()).figure.savefig(file.with_suffix(".png"))
+    ),
+    "export": lambda file: export(file, file.with_suffix(".csv")),
+    "merge": lambda file: merge([file], file.with_suffix(".nc")),
+    "recover": recover,
+    "resume": lambda file: resume(file, archive=file.with_suffix(".more.h5"), budget=Budget(steps=14)),
+}
+
+
+def outcome(operation, file):
+    """What is said of an archive, and what is found in it."""
+    try:
+        return "", operation(file)
+    except ArchiveError as error:
+        return str(error), None
 
 
 def logged(file, rows=5, **options):
