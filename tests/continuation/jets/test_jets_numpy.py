@@ -280,6 +280,7 @@ def add_to(target, value):
             r"numpy\.sum with these arguments \(got an unexpected keyword argument 'where'\)",
         ),
         (lambda: np.linalg.norm(X, 1), r"numpy\.linalg\.norm with ord=1"),
+        (lambda: np.linalg.norm(P, "nuc"), r"numpy\.linalg\.norm with ord='nuc'"),
         (lambda: np.reshape(M, (3, 2), order="F"), r"numpy\.reshape with these arguments"),
         (lambda: np.pad(X, 1, mode="linear_ramp"), r"numpy\.pad with mode='linear_ramp'"),
         (lambda: np.einsum(X, [0], X, [0]), r"numpy\.einsum without subscripts"),
