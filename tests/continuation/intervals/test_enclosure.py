@@ -133,6 +133,17 @@ def test_angles_are_decided_box_by_box():
     assert np.isnan(image.c.lo[0, 2])  # across the negative axis
 
 
+def test_products_of_vectors_are_taken_box_by_box():
+    lo = np.array([[1.0, -2.0], [0.5, 3.0], [-1.0, 0.0]])
+    boxes = with_gradient(lo, lo + 0.1)
+    for image in (boxes @ boxes, boxes @ (boxes + np.zeros(2)), np.stack([boxes, boxes]) @ boxes):
+        for x in (lo, lo + 0.1):
+            value, slopes = (x * x).sum(axis=1), 2.0 * x.T
+            ends = image.c.lo.reshape(3, 3, -1)[..., 0], image.c.hi.reshape(3, 3, -1)[..., 0]
+            assert ((ends[0][0] <= value) & (value <= ends[1][0])).all()
+            assert ((ends[0][1:] <= slopes) & (slopes <= ends[1][1:])).all()
+
+
 def test_entries_that_are_assigned_stay_between_their_own_ends():
     y = Interval(np.zeros(3))  # both ends are one array
     y[1] = Interval(1.0, 2.0)
