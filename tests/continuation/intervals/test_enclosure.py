@@ -125,12 +125,16 @@ def test_where_boxes_do_not_decide_there_is_no_second_derivative():
 
 
 def test_angles_are_decided_box_by_box():
-    lo, hi = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]]), np.array([[1.5, 2.0], [2.0, 1.0], [1.0, -0.5]])
+    lo, hi = (
+        np.array([[1.0, 1.0], [1.0, -1.0], [1.0, 0.0], [-1.0, -1.0]]),
+        np.array([[1.5, 2.0], [2.0, 1.0], [1.5, 1.0], [1.0, -0.5]]),
+    )
     boxes = with_gradient(lo, hi)
     image = np.arctan2(boxes[0], boxes[1])
-    assert image.c.lo[0, 0] <= np.arctan2(1.0, 2.0) <= np.arctan2(1.5, 1.0) <= image.c.hi[0, 0]
-    assert image.c.lo[0, 1] <= np.arctan2(1.0, 1.0) <= np.arctan2(1.0, -1.0) <= image.c.hi[0, 1]
-    assert np.isnan(image.c.lo[0, 2])  # across the negative axis
+    for k in range(3):
+        ends = [np.arctan2(a, b) for a in (lo[k, 0], hi[k, 0]) for b in (lo[k, 1], hi[k, 1])]
+        assert image.c.lo[0, k] <= min(ends) <= max(ends) <= image.c.hi[0, k]
+    assert np.isnan(image.c.lo[0, 3])  # across the negative axis
 
 
 def test_products_of_vectors_are_taken_box_by_box():
