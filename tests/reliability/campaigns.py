@@ -6,7 +6,6 @@ import contextlib
 import hashlib
 import io
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -20,7 +19,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation import Tracer, trace
-from continuation.archive import Limits, PathLog, open_archive, recover, trace_many
+from continuation.archive import Limits, PathLog, open_archive, trace_many
 from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
@@ -95,32 +94,6 @@ def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
     with open_archive(file) as archive:
         rows = archive.path(0).u if len(archive) else whole.u[:0]
     return len(rows) >= least and rows.tobytes() == whole.u[: len(rows)].tobytes()
-
-
-def full(folder: Path, size: int) -> Found:
-    """A quota that is reached while a path is traced: one line, and what was committed can be read."""
-    seen, whole_file = Counter[str](), folder / "whole.h5"
-    whole = trace(HOMOTOPY, archive=PathLog(whole_file, limits=Limits(rows=5)), **OPTIONS)
-    needed = whole_file.stat().st_size
-    for k in range(size):
-        file, limit = folder / f"full{k}.h5", 1_000 + k * (needed - 1_000) // size
-
-        def work(file: Path = file, limit: int = limit) -> None:
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-            trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=5)), **OPTIONS)
-
-        status = in_child(work)
-        if status == 0:
-            seen["there was room"] += 1
-        elif status >> 8 != 7:
-            seen["WRONG: no ArchiveError"] += 1
-        elif not file.exists():
-            seen["an ArchiveError, no file"] += 1
-        else:
-            recover(file)
-            seen["an ArchiveError, and a right file" if _prefix(file, whole) else "WRONG ROWS"] += 1
-    return _counted(size, seen)
 
 
 def growing(folder: Path, size: int) -> Found:

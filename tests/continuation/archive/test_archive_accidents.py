@@ -25,7 +25,7 @@ def file(tmp_path):
     return killed(tmp_path / "run.h5", HOMOTOPY, 30, **OPTIONS)
 
 
-@pytest.mark.parametrize(("limit", "least"), [(1_000, 0), (150_000, 0), (330_000, 900)])
+@pytest.mark.parametrize(("limit", "least"), [(1_000, 0), (50_000, 0), (90_000, 0), (150_000, 0), (330_000, 900)])
 def test_a_limit_while_tracing(tmp_path, limit, least):
     options, file = {"controller": Fixed(bounds=Bounds(initial=0.002))}, tmp_path / "run.h5"
     whole = trace(HOMOTOPY, **options)
@@ -36,11 +36,12 @@ def test_a_limit_while_tracing(tmp_path, limit, least):
         trace(HOMOTOPY, archive=logged(file, 20), **options)
 
     assert in_child(work) == REFUSED
-    if least:
+    if file.exists():
         recover(file)
-        found = read(file).u
-        assert len(found) >= least
-        assert np.array_equal(found, whole.u[: len(found)])
+        found = [path.u for path in open_archive(file)]
+        rows = np.concatenate([whole.u[:0], *found])
+        assert len(rows) >= least
+        assert np.array_equal(rows, whole.u[: len(rows)])
 
 
 class Observing:
@@ -148,14 +149,3 @@ def test_a_folder_that_vanishes(tmp_path):
     (tmp_path / "folder").rmdir()
     with pytest.raises(ArchiveError, match="there is no directory"):
         trace(FreudensteinRoth(), archive=log)
-
-
-def test_a_file_that_is_shorter_than_it_says(file):
-    whole = read(file)
-    os.truncate(file, file.stat().st_size - 100)
-    with pytest.raises(ArchiveError, match="its last 100 bytes are missing; `recover` keeps the rows that are sound"):
-        open_archive(file)
-    recover(file)
-    found = read(file).u
-    assert len(found) >= 25
-    assert np.array_equal(found, whole.u[: len(found)])

@@ -151,6 +151,25 @@ def test_a_kink_is_crossed_by_one_lipschitz_curve():
     assert certify(Path(steps=steps, status=Status.REACHED_TARGET), Kink()).complete
 
 
+def test_a_comparison_that_boxes_do_not_decide_is_a_gap_there_alone():
+    class Compared:
+        target = 1.0
+
+        def start(self):
+            return np.array([0.0, 0.5]), 0.0
+
+        def residual(self, y, lam):
+            return np.stack([y[0] - np.where(lam > 0.3, np.sin(lam), np.sin(lam)), y[1] - 0.5])
+
+    path = trace(Compared())
+    proof = certify(path, Compared())
+    ((begin, end),) = {(gap.begin, gap.end) for gap in proof.gaps}
+    assert "not decided" in proof.gaps[-1].reason
+    assert path(begin)[-1] < 0.3 < path(end)[-1]
+    assert end - begin < 0.01 * path.arclength[-1]
+    assert len(proof.cells) > len(path)
+
+
 # --- the form of quadratic homotopies ---------------------------------------------------------------------
 
 MATRIX = np.array([[2.0, -1.0, 0.3], [0.7, 1.0, -0.2], [0.1, 0.4, 3.0]])
