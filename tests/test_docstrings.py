@@ -11,11 +11,8 @@ import inspect
 import re
 from functools import cache
 from pathlib import Path
-from typing import Unpack
 
 import pytest
-
-from continuation.step.options import Options
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = sorted(
@@ -110,15 +107,3 @@ def test_a_parameter_without_a_word_is_found(monkeypatch):
 
     monkeypatch.setattr(importlib.import_module("continuation"), "trace", plain)
     assert list(undocumented("continuation", protocols()))[-1] == "continuation.trace: lam"
-
-
-def test_an_option_without_a_word_is_found():
-    def bare(**options: Unpack[Options]):
-        """Parameters
-        ----------
-        preset : Preset
-        """
-
-    found = parameters(bare) - documented(bare)
-    assert "preset" not in found
-    assert {"tolerance", "metric", "budget"} <= found

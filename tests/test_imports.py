@@ -1,7 +1,4 @@
-"""No import circles, and an engine that knows no problems: all imports, those inside functions and for types too.
-
-And files that are read in one sitting.
-"""
+"""No import circles, and an engine that knows no problems: all imports, those inside functions and for types too."""
 
 import ast
 from graphlib import CycleError, TopologicalSorter
@@ -88,9 +85,3 @@ def test_a_circle_is_seen_however_it_is_written(tmp_path, one, other):
     assert set(circle(graph(tmp_path, "room"))) == {"room.one", "room.other"}
     (room / "other.py").write_text("")
     assert circle(graph(tmp_path, "room")) == []
-
-
-def test_no_file_is_longer_than_350_lines():
-    files = modules(ROOT, "continuation", "problems", "tests", "examples").values()
-    counts = {str(file.relative_to(ROOT)): len(file.read_text(encoding="utf-8").splitlines()) for file in files}
-    assert {name: count for name, count in counts.items() if count > 350} == {}

@@ -69,8 +69,9 @@ class ByIntervals:
             if count == 1:
                 return wrap(thin(np.full((len(u.c), 1, u.size - 1), np.nan)), u.algebra)
             halves = (slice(None, count // 2), slice(count // 2, None))
-            parts = [self.image(u.moved(partial(_boxes, half))) for half in halves]
-            return _side_by_side(parts)
+            parts = [self.image(u.moved(partial(_boxes, half))).c for half in halves]
+            stores = [lengthened(part, max(map(len, parts))) for part in parts]
+            return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), u.algebra)
 
     def together(self, m: int) -> int:
         """Limited by `RESIDUAL_NUMBERS`."""
@@ -274,8 +275,3 @@ class Bounded:
 
 def _boxes(some: slice, x: Array) -> Array:
     return x[:, some]
-
-
-def _side_by_side(parts: list[Interval]) -> Any:
-    stores = [lengthened(part.c, max(len(part.c) for part in parts)) for part in parts]
-    return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), parts[0].algebra)

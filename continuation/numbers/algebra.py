@@ -54,13 +54,11 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The sum of f_k d^k; d**k begins at s**k."""
-        power = d = a[1:]
+        """f_0 + f_1 d + f_2 d^2: curves through boxes have no third coefficients."""
+        d, less = a[1:], a[1:-1]
         out = f[1] * d
-        for k in range(2, len(a)):
-            less = power[:-1]
-            power = product(self, operator.mul, less, less if k == 2 else d[: len(less)])
-            out[k - 1 :] += f[k] * power
+        if len(less):
+            out[1:] += f[2] * product(self, operator.mul, less, less)
         return joined(f[0][None], out)
 
 

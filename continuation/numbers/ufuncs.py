@@ -114,11 +114,11 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
         return _angle(algebra, a, b)
     size = np.hypot(a[:1], b[:1])
     series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
+    angle, a, b = np.arctan2(a[0], b[0]), a / size, b / size
     # Rotation onto the positive axis, where arctan is analytic.
-    sine, cosine = a[:1] / size, b[:1] / size
-    along, across = _add(algebra, cosine * b, sine * a), _add(algebra, cosine * a, -sine * b)
+    along, across = _add(algebra, b[:1] * b, a[:1] * a), _add(algebra, b[:1] * a, -a[:1] * b)
     out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
-    out[0] = np.arctan2(a[0], b[0])
+    out[0] = angle
     return out
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
-from continuation.auditing import audit
 from continuation.auditing.length import arclength
 from problems.nonlinear import brown, fixed_point, newton
 
@@ -39,8 +38,3 @@ def test_the_newton_homotopy_finds_it_too():
     path = trace(newton(F, np.full(5, 0.8), F.jacobian))
     assert path.status is Status.REACHED_TARGET
     np.testing.assert_allclose(F(path.endpoint.y), 0.0, rtol=0, atol=1e-10)
-
-
-@pytest.mark.parametrize("backwards", [False, True])
-def test_the_audit_agrees(backwards):
-    assert audit(from_zero(10), trace(from_zero(10)), backwards=backwards).same

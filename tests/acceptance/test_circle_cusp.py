@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from continuation import Status, TargetValue, trace
-from continuation.auditing import audit
 from continuation.auditing.length import arclength
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
@@ -66,9 +65,3 @@ def test_a_cusp_that_does_not_turn():
     path = trace(Cusp(-0.7))
     assert path.status is Status.REACHED_TARGET
     assert path.turning_points == []
-
-
-@pytest.mark.parametrize("homotopy", [Circle(), Cusp()], ids=lambda homotopy: type(homotopy).__name__)
-@pytest.mark.parametrize("backwards", [False, True])
-def test_the_audit_agrees(homotopy, backwards):
-    assert audit(homotopy, trace(homotopy), backwards=backwards).same

@@ -9,7 +9,6 @@ from scipy.integrate import quad
 
 import continuation
 from continuation import TurningPoint, trace
-from continuation.auditing import audit
 from continuation.auditing.length import arclength
 from continuation.controllers import AllgowerGeorg, Bounds
 from problems.bifurcation import FreudensteinRoth
@@ -82,8 +81,3 @@ def test_the_length_is_that_of_the_exact_curve():
     limits = np.sort(np.concatenate(([-2.0, 4.0], dx1.roots(), dlam.roots())))
     pieces = [quad(lambda t: float(np.hypot(np.hypot(dx1(t), 1.0), dlam(t))), a, b)[0] for a, b in pairwise(limits)]
     assert arclength(FreudensteinRoth(), trace(FreudensteinRoth())) == pytest.approx(sum(pieces), rel=1e-9)
-
-
-@pytest.mark.parametrize("backwards", [False, True])
-def test_the_audit_agrees(backwards):
-    assert audit(FreudensteinRoth(), trace(FreudensteinRoth()), backwards=backwards).same

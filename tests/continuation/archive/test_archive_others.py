@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from continuation import Tracer, trace
-from continuation.archive import ArchiveError, ArchiveExistsError, Limits, PathLog, open_archive, resume
+from continuation.archive import ArchiveError, ArchiveExistsError, open_archive, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
+
+from .util import logged, observer, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.05))}
 
@@ -20,8 +22,8 @@ def path():
     return trace(HOMOTOPY, **OPTIONS)
 
 
-def logged(file, *others):
-    return Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5, seconds=3600.0)), *others), **OPTIONS)
+def tracer_to(file):
+    return Tracer(HOMOTOPY, observers=(logged(file),), **OPTIONS)
 
 
 def ends(steps, tracer):
@@ -42,7 +44,7 @@ def goes_on(steps, tracer):
 def test_a_child_never_writes(tmp_path, path, act):
     """Forked in the middle of a path: what it closes, ends or traces is its own copy."""
     file = tmp_path / "run.h5"
-    tracer = logged(file)
+    tracer = tracer_to(file)
     steps = iter(tracer)
     for step in steps:
         if step.index == 12:
@@ -65,30 +67,16 @@ def test_a_child_never_writes(tmp_path, path, act):
         assert archive.path(0).status is path.status
 
 
-class Raising:
-    """An observer that raises at the sixth step, at the first event, or at the end."""
-
-    def __init__(self, where):
-        self.where = where
-
-    def step(self, tracer, step):
-        if self.where == "step" and step.index == 6:
-            raise RuntimeError("of the observer")
-
-    def event(self, tracer, event):
-        if self.where == "event":
-            raise RuntimeError("of the observer")
-
-    def end(self, tracer):
-        if self.where == "end":
-            raise RuntimeError("of the observer")
-
-
 @pytest.mark.parametrize("where", ["step", "event", "end"])
 @pytest.mark.parametrize("first", [False, True])
 def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, first):
     file = tmp_path / "run.h5"
-    observers = [PathLog(file, limits=Limits(rows=3, seconds=3600.0)), Raising(where)]
+
+    def raises(tracer, seen=None):
+        if where != "step" or seen.index == 6:
+            raise RuntimeError("of the observer")
+
+    observers = [logged(file, 3), observer(**{where: raises})]
     with pytest.raises(RuntimeError, match="of the observer"):
         trace(HOMOTOPY, observers=observers[::-1] if first else observers, **OPTIONS)
     with open_archive(file) as archive:
@@ -101,7 +89,7 @@ def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, 
 
 def test_a_log_in_two_threads(tmp_path, path):
     file = tmp_path / "run.h5"
-    tracer, complaints = logged(file), []
+    tracer, complaints = tracer_to(file), []
     log = tracer.observers[0]
 
     def second():
@@ -116,47 +104,17 @@ def test_a_log_in_two_threads(tmp_path, path):
             thread.start()
             thread.join()
     assert complaints == [f"{file}: a path is being written already; a log writes one path after another"]
-    with open_archive(file) as archive:
-        assert np.array_equal(archive.path(0).u, path.u)
+    assert np.array_equal(read(file).u, path.u)
 
 
 def test_a_file_that_is_removed_while_it_is_written(tmp_path, path):
     file = tmp_path / "run.h5"
-    tracer = logged(file)
+    tracer = tracer_to(file)
     for step in tracer:
         if step.index == 7:
             file.unlink()
     assert np.array_equal(tracer.path.u, path.u)
     assert not file.exists()
-
-
-def test_flipped_bits_in_what_a_killed_writer_left(tmp_path, path):
-    """HDF5 waits for a checksum that is being written; nobody writes this one."""
-    file, process = tmp_path / "run.h5", os.fork()
-    if not process:
-        for step in logged(file):
-            if step.index == 20:
-                os._exit(0)
-    os.waitpid(process, 0)
-    raw, refused = file.read_bytes(), 0
-    places = [at for at in range(8, 40_000) if raw[at]]
-    places = places[:: len(places) // 200]
-    for at in places:
-        file.write_bytes(raw[:at] + bytes([raw[at] ^ 1]) + raw[at + 1 :])
-        found, complaint = read(file)
-        refused += bool(complaint)
-        assert "\n" not in complaint
-        assert np.array_equal(found, path.u[: len(found)])
-    assert refused > len(places) // 2
-
-
-def read(file):
-    """The points, or what is said instead."""
-    try:
-        with open_archive(file) as archive:
-            return archive.path(0).u, ""
-    except ArchiveError as error:
-        return np.zeros((0, 4)), str(error)
 
 
 def test_a_link_to_nothing_is_not_written_through(tmp_path):

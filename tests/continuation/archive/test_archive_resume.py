@@ -9,10 +9,12 @@ import pytest
 
 import continuation
 from continuation import Budget, Monitor, Status, TargetValue, Tracer, from_functions, trace
-from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
+from continuation.archive import ArchiveError, PathLog, open_archive, recover, resume
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
 from continuation.metric import Relative
 from problems.bifurcation import Circle, ExponentialCosine, FreudensteinRoth
+
+from .util import assert_same, interrupted, observer, read
 
 PROBLEMS = {"circle": Circle(), "freudenstein-roth": FreudensteinRoth(), "exponential cosine": ExponentialCosine(3)}
 
@@ -52,80 +54,34 @@ def identical(a, b):
     return len(a) == len(b) and all(np.array_equal(x, y, equal_nan=True) for x, y in zip(a, b))
 
 
-class Snapshots:
-    """The states along a path, as an archive would hold them."""
+def recording():
+    """An observer; the states that it sees along a path, and these as an archive holds them."""
+    states, checkpoints = [], []
 
-    def __init__(self, *, packs=True):
-        self.states, self.checkpoints, self.packs = [], [], packs
+    def step(tracer, step):
+        if step.index == tracer.state.index:
+            checkpoint = Checkpoint(1, 0, 1, tracer.state, tracer.counts.as_dict(), 0.0, describe_run(tracer, None))
+            states.append(tracer.state)
+            checkpoints.append(unpack(pack(checkpoint)))
 
-    def step(self, tracer, step):
-        if step.index != tracer.state.index:
-            return
-        self.states.append(tracer.state)
-        if self.packs:
-            run = describe_run(tracer, None)
-            checkpoint = Checkpoint(1, 0, 1, tracer.state, tracer.counts.as_dict(), 0.0, run)
-            self.checkpoints.append(unpack(pack(checkpoint)))
-
-    def event(self, tracer, event):
-        pass
-
-    def end(self, tracer):
-        pass
+    return observer(step=step), states, checkpoints
 
 
 @pytest.mark.parametrize("problem", PROBLEMS)
 @pytest.mark.parametrize("options", OPTIONS, ids=name)
 def test_each_state_leads_to_the_next_exactly(problem, options):
     """By induction from here on: the state that an archive holds gives the next state, bit for bit, at every step."""
-    homotopy, seen = PROBLEMS[problem], Snapshots()
+    homotopy, (watching, states, checkpoints) = PROBLEMS[problem], recording()
     options = {"budget": Budget(steps=20), **options}
-    tracer = Tracer(homotopy, observers=(seen,), **options)
-    for _ in tracer:
-        pass
-    if tracer.path.status is Status.REACHED_TARGET:
-        assert len(seen.states) > 3
-    for (before, after), checkpoint in zip(pairwise(seen.states), seen.checkpoints):
+    path = trace(homotopy, observers=(watching,), **options)
+    assert len(states) > 3 or path.status is not Status.REACHED_TARGET
+    for (before, after), checkpoint in zip(pairwise(states), checkpoints):
         assert identical(before, checkpoint.state)
-        again = Snapshots(packs=False)
-        steps = iter(Tracer(homotopy, state=checkpoint.state, observers=(again,), **options))
+        watching, again, _ = recording()
+        steps = iter(Tracer(homotopy, state=checkpoint.state, observers=(watching,), **options))
         next(steps, None)
         steps.close()
-        assert identical(again.states[0], after)
-
-
-def interrupt(file, homotopy, index, **options):
-    log = PathLog(file, limits=Limits(rows=5, seconds=3600.0))
-    steps = iter(Tracer(homotopy, observers=(log,), **options))
-    next(step for step in steps if step.index == index)
-    steps.close()
-
-
-def assert_same_path(found, path):
-    assert np.array_equal(found.u, path.u)
-    assert np.array_equal(found.arclength, path.arclength)
-    assert [step.kind for step in found.steps] == [step.kind for step in path.steps]
-    assert (found.status, found.message, found.counts) == (path.status, path.message, path.counts)
-    assert [(e.name, e.step, e.monitor, *e.u) for e in found.events] == [
-        (e.name, e.step, e.monitor, *e.u) for e in path.events
-    ]
-
-
-WHOLE = {name: trace(PROBLEMS[name]) for name in ("circle", "freudenstein-roth")}
-EVERY_STEP = [("circle", k) for k in range(len(WHOLE["circle"]) - 1)]
-AT_EVENTS = [("freudenstein-roth", e.step + k) for e in WHOLE["freudenstein-roth"].events for k in (-1, 0)]
-
-
-@pytest.mark.parametrize(("problem", "k"), EVERY_STEP + AT_EVENTS)
-def test_interrupted_at_every_step_through_a_file(tmp_path, problem, k):
-    path = WHOLE[problem]
-    interrupt(tmp_path / "run.h5", PROBLEMS[problem], k)
-    assert_same_path(resume(tmp_path / "run.h5"), path)
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert len(archive) == 1
-        assert archive.closed_by_writer
-        assert "resumed" in archive.attributes["history"]
-        assert_same_path(archive.path(0), path)
+        assert identical(again[0], after)
 
 
 def test_resumed_again_and_again(tmp_path):
@@ -134,10 +90,9 @@ def test_resumed_again_and_again(tmp_path):
     trace(FreudensteinRoth(), archive=tmp_path / "run.h5", budget=Budget(steps=1))
     for steps in range(2, len(path)):
         found = resume(tmp_path / "run.h5", budget=Budget(steps=steps))
-    with pytest.raises(ArchiveError, match="has ended"):
-        resume(tmp_path / "run.h5", budget=Budget())
-    assert_same_path(found, path)
+    assert_same(found, path)
     with open_archive(tmp_path / "run.h5") as archive, open_archive(tmp_path / "whole.h5") as whole:
+        assert archive.attributes["history"].count("resumed") == len(path) - 2
         for column in whole.points:
             assert np.array_equal(archive.points[column], whole.points[column], equal_nan=True), column
 
@@ -152,17 +107,17 @@ def test_events_and_options_come_from_the_file(tmp_path):
     }
     path = trace(FreudensteinRoth(), **options)
     assert path.status is Status.STOPPED_AT_EVENT
-    interrupt(tmp_path / "run.h5", FreudensteinRoth(), len(path) - 3, **options)
-    assert_same_path(resume(tmp_path / "run.h5"), path)
+    interrupted(tmp_path / "run.h5", FreudensteinRoth(), len(path) - 3, **options)
+    assert_same(resume(tmp_path / "run.h5"), path)
 
 
 def test_resume_into_another_file_leaves_the_first(tmp_path):
-    interrupt(tmp_path / "run.h5", FreudensteinRoth(), 7)
+    interrupted(tmp_path / "run.h5", FreudensteinRoth(), 7)
     before = (tmp_path / "run.h5").read_bytes()
     resume(tmp_path / "run.h5", archive=tmp_path / "more.h5")
     assert (tmp_path / "run.h5").read_bytes() == before
+    assert_same(read(tmp_path / "more.h5"), trace(FreudensteinRoth()))
     with open_archive(tmp_path / "more.h5") as archive:
-        assert_same_path(archive.path(0), trace(FreudensteinRoth()))
         assert archive.attributes["parent"].startswith("run.h5 (")
 
 
@@ -172,10 +127,10 @@ def test_the_last_of_many_paths(tmp_path):
         log.member = 17
         trace(ExponentialCosine(3, target=0.5), archive=log, budget=Budget(steps=2))
     found = resume(tmp_path / "run.h5", budget=Budget())
-    assert_same_path(found, trace(ExponentialCosine(3, target=0.5)))
+    assert_same(found, trace(ExponentialCosine(3, target=0.5)))
     with open_archive(tmp_path / "run.h5") as archive:
-        assert_same_path(archive.path(0), first)
-        assert_same_path(archive.path(1), found)
+        assert_same(archive.path(0), first)
+        assert_same(archive.path(1), found)
         assert archive.paths["member"].tolist() == [0, 17]
 
 
@@ -185,10 +140,10 @@ def _line(y, lam):
 
 def test_a_homotopy_of_functions_is_stored_by_name_and_arrays(tmp_path):
     homotopy = from_functions(_line, start=(np.array([0.3, 0.6]), 0.1), target=1.0)
-    interrupt(tmp_path / "run.h5", homotopy, 1)
+    interrupted(tmp_path / "run.h5", homotopy, 1)
     with pytest.raises(ArchiveError, match=r"_line is a function, which is not trusted: pass it in trust="):
         resume(tmp_path / "run.h5")
-    assert_same_path(resume(tmp_path / "run.h5", trust=[_line]), trace(homotopy))
+    assert_same(resume(tmp_path / "run.h5", trust=[_line]), trace(homotopy))
 
 
 class Stateful:
@@ -206,8 +161,30 @@ class Stateful:
         return y - self.slope * lam**2
 
 
+def test_a_homotopy_that_cannot_be_stored_is_asked_for(tmp_path):
+    interrupted(tmp_path / "run.h5", Stateful(2.0), 2)
+    with pytest.raises(ArchiveError, match=r"Stateful has neither archive_data nor attrs fields\); pass homotopy="):
+        resume(tmp_path / "run.h5")
+    with pytest.raises(ValueError, match="homotopy: expected the archive's residual"):
+        resume(tmp_path / "run.h5", Stateful(5.0))
+    with pytest.raises(ValueError, match="homotopy: expected 1 unknowns"):
+        resume(tmp_path / "run.h5", FreudensteinRoth())
+    assert_same(resume(tmp_path / "run.h5", Stateful(2.0)), trace(Stateful(2.0)))
+
+
+def test_a_monitor_that_cannot_be_stored_is_asked_for(tmp_path):
+    events = [Monitor(lambda u, v: u[0] - 20.0)]
+    interrupted(tmp_path / "run.h5", FreudensteinRoth(), 5, events=events)
+    with pytest.raises(ArchiveError, match=r"events cannot be made from the file.*lambda.*pass events="):
+        resume(tmp_path / "run.h5")
+    assert_same(resume(tmp_path / "run.h5", events=events), trace(FreudensteinRoth(), events=events))
+
+
 class Telling(Stateful):
-    """The same, with the capability."""
+    """With the capability, events of its own, and an exception in the middle of the path."""
+
+    events = (TargetValue(0.7, component=0, terminal=0),)
+    calls_left = math.inf
 
     def archive_data(self):
         return {"slope": np.array(self.slope), "note": "a parabola"}
@@ -216,39 +193,6 @@ class Telling(Stateful):
     def from_archive(cls, data):
         return cls(float(data["slope"]))
 
-
-def test_a_homotopy_that_cannot_be_stored_is_asked_for(tmp_path):
-    interrupt(tmp_path / "run.h5", Stateful(2.0), 2)
-    with pytest.raises(ArchiveError, match=r"Stateful has neither archive_data nor attrs fields\); pass homotopy="):
-        resume(tmp_path / "run.h5")
-    with pytest.raises(ValueError, match="homotopy: expected the archive's residual"):
-        resume(tmp_path / "run.h5", Stateful(5.0))
-    with pytest.raises(ValueError, match="homotopy: expected 1 unknowns"):
-        resume(tmp_path / "run.h5", FreudensteinRoth())
-    assert_same_path(resume(tmp_path / "run.h5", Stateful(2.0)), trace(Stateful(2.0)))
-
-
-def test_a_homotopy_that_says_what_to_store(tmp_path):
-    interrupt(tmp_path / "run.h5", Telling(2.0), 2)
-    with pytest.raises(ArchiveError, match=r"Telling is not registered: pass it in trust=.*pass homotopy="):
-        resume(tmp_path / "run.h5")
-    assert_same_path(resume(tmp_path / "run.h5", trust=[Telling]), trace(Telling(2.0)))
-
-
-def test_a_monitor_that_cannot_be_stored_is_asked_for(tmp_path):
-    events = [Monitor(lambda u, v: u[0] - 20.0)]
-    interrupt(tmp_path / "run.h5", FreudensteinRoth(), 5, events=events)
-    with pytest.raises(ArchiveError, match=r"events cannot be made from the file.*lambda.*pass events="):
-        resume(tmp_path / "run.h5")
-    assert_same_path(resume(tmp_path / "run.h5", events=events), trace(FreudensteinRoth(), events=events))
-
-
-class Winding(Telling):
-    """Events of its own, and an exception in the middle of the path."""
-
-    events = (TargetValue(0.7, component=0, terminal=0),)
-    calls_left = math.inf
-
     def residual(self, y, lam):
         self.calls_left -= 1
         if self.calls_left < 0:
@@ -256,38 +200,25 @@ class Winding(Telling):
         return super().residual(y, lam)
 
 
-def test_an_exception_of_the_homotopy_is_an_interruption(tmp_path):
-    homotopy = Winding(2.0)
-    homotopy.calls_left = trace(Winding(2.0)).counts.residuals // 2
+def test_an_exception_of_a_homotopy_that_says_what_to_store_is_an_interruption(tmp_path):
+    homotopy, file, events = Telling(2.0), tmp_path / "run.h5", [TargetValue(0.2, terminal=0)]
+    homotopy.calls_left = trace(Telling(2.0)).counts.residuals // 2
     with pytest.raises(RuntimeError, match="licence"):
-        trace(homotopy, archive=tmp_path / "run.h5", events=[TargetValue(0.2, terminal=0)])
-    path = trace(Winding(2.0), events=[TargetValue(0.2, terminal=0)])
+        trace(homotopy, archive=file, events=events)
+    with pytest.raises(ArchiveError, match=r"Telling is not registered: pass it in trust=.*pass homotopy="):
+        resume(file)
+    path = trace(Telling(2.0), events=events)
     assert len(path.events) == 2
-    assert_same_path(resume(tmp_path / "run.h5", trust=[Winding]), path)
-
-
-def test_what_has_ended_or_spent_its_budget_says_so(tmp_path):
-    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
-    with pytest.raises(ArchiveError, match=r"path 0 has ended \(REACHED_TARGET\)"):
-        resume(tmp_path / "run.h5")
-    trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))
-    with pytest.raises(ArchiveError, match="the budget of path 0 is used up; pass budget="):
-        resume(tmp_path / "short.h5")
-    with pytest.raises(FileExistsError, match="exists already"):
-        resume(tmp_path / "short.h5", archive=tmp_path / "run.h5", budget=Budget())
+    assert_same(resume(file, trust=[Telling]), path)
 
 
 def test_the_end_itself_is_decided_again(tmp_path):
     """A writer killed between the last point and the decision that it is the last."""
-    path = trace(Circle())
-    log = PathLog(tmp_path / "run.h5")
+    path, file = trace(Circle()), tmp_path / "run.h5"
+    log = PathLog(file)
     log.end = lambda tracer: log.close()
-    for _ in Tracer(Circle(), observers=(log,)):
-        pass
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.path(0).status is Status.TRACING
-        assert len(archive.path(0)) == len(path)
-    recover(tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.path(0).status is Status.INTERRUPTED
-    assert_same_path(resume(tmp_path / "run.h5"), path)
+    trace(Circle(), observers=(log,))
+    assert (read(file).status, len(read(file))) == (Status.TRACING, len(path))
+    recover(file)
+    assert read(file).status is Status.INTERRUPTED
+    assert_same(resume(file), path)

@@ -1,24 +1,37 @@
-"""Sweeps whose homotopies exit, hang, die or cannot be sent: each costs its own path."""
+"""Sweeps: the paths in order, wherever they are traced; what ends badly costs its own path."""
 
 import concurrent.futures
 import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import nullcontext
+from functools import partial
 
+import attrs
 import numpy as np
 import pytest
 
 from continuation import Status, trace
-from continuation.archive import open_archive, trace_many
+from continuation.archive import describe, open_archive, trace_many
 from problems.bifurcation import Cusp
 
 GOOD = [Cusp(splitting) for splitting in np.linspace(0.5, 2.0, 5)]
+POOLS = {
+    "serial": nullcontext,
+    "thread": partial(ThreadPoolExecutor, 1),
+    "threads": partial(ThreadPoolExecutor, 2),
+    "processes": partial(ProcessPoolExecutor, 2),
+}
 
 
-class Fatal(Cusp):
-    """Does something to its process in the middle of the path."""
+@attrs.frozen
+class Bad(Cusp):
+    """Does something in the middle of its path."""
+
+    act: Callable = None
 
     def residual(self, y, lam):
         if lam > 0.0:
@@ -26,29 +39,45 @@ class Fatal(Cusp):
         return super().residual(y, lam)
 
 
-class Exits(Fatal):
-    def act(self):
-        sys.exit("enough")
-
-
-class ExitsAtOnce(Fatal):
-    def act(self):
-        os._exit(3)
-
-
-class Dies(Fatal):
-    def act(self):
-        os.kill(os.getpid(), signal.SIGKILL)
-
-
-class Hangs(Fatal):
-    def act(self):
-        time.sleep(1000.0)
-
-
 class Unsendable(Cusp):
     def __reduce__(self):
         raise TypeError("it holds a socket")
+
+
+class NoText(Exception):
+    def __str__(self):
+        raise ValueError("no text")
+
+
+class Wide:
+    """Five unknowns where the others have one."""
+
+    target = 1.0
+
+    def start(self):
+        return np.zeros(5), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+
+class Broken(Wide):
+    """Cannot even begin."""
+
+    def start(self):
+        raise RuntimeError("no start")
+
+
+def raises(kind, *arguments):
+    raise kind(*arguments)
+
+
+def dies():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def same(found, path):
+    return np.array_equal(found.u, path.u) and (found.status, found.counts) == (path.status, path.counts)
 
 
 @pytest.fixture(scope="module")
@@ -56,13 +85,19 @@ def expected():
     return [trace(homotopy) for homotopy in GOOD]
 
 
-MESSAGES = {
-    Exits: "SystemExit: enough",
-    ExitsAtOnce: "BrokenProcessPool: ",
-    Dies: "BrokenProcessPool: ",
-    Hangs: "TimeoutError: took longer than 6 s",
-    Unsendable: "TypeError: it holds a socket",
-}
+@pytest.mark.parametrize("archived", [False, True])
+@pytest.mark.parametrize("pool", POOLS)
+def test_order_is_that_of_the_homotopies(tmp_path, expected, pool, archived):
+    calls, file = [], tmp_path / "run.h5" if archived else None
+    with POOLS[pool]() as executor:
+        paths = trace_many(GOOD, executor, file, progress=lambda done, total: calls.append((done, total)))
+    assert [same(*pair) for pair in zip(paths, expected, strict=True)] == [True] * 5
+    assert calls == [(done, 5) for done in range(6)][-len(calls) :]
+    if archived:
+        assert paths.paths["member"].tolist() == list(range(5))
+        assert paths.paths["homotopy_splitting"].tolist() == [homotopy.splitting for homotopy in GOOD]
+        paths.close()
+        assert os.listdir(tmp_path) == ["run.h5"]
 
 
 def patient(futures, timeout=None, return_when=concurrent.futures.ALL_COMPLETED):
@@ -72,48 +107,121 @@ def patient(futures, timeout=None, return_when=concurrent.futures.ALL_COMPLETED)
     return concurrent.futures.wait(futures, timeout=0.0, return_when=return_when)
 
 
-@pytest.mark.parametrize("bad", MESSAGES)
+ANYWHERE = {
+    "exits": (Bad(1.0, act=partial(sys.exit, "enough")), "SystemExit: enough"),
+    "raises": (Bad(1.0, act=partial(raises, RuntimeError, "gone")), "RuntimeError: gone"),
+    "raises what is no Exception": (Bad(1.0, act=partial(raises, GeneratorExit)), "GeneratorExit"),
+    "raises what has no text": (Bad(1.0, act=partial(raises, NoText)), "NoText: its text cannot be had (ValueError)"),
+    "does not begin": (Broken(), "RuntimeError: no start"),
+}
+IN_PROCESSES = {
+    **ANYWHERE,
+    "ends its process": (Bad(1.0, act=partial(os._exit, 3)), "BrokenProcessPool: "),
+    "kills its process": (Bad(1.0, act=dies), "BrokenProcessPool: "),
+    "hangs": (Bad(1.0, act=partial(time.sleep, 1000.0)), "TimeoutError: took longer than 6 s"),
+    "cannot be sent": (Unsendable(1.0), "TypeError: it holds a socket"),
+}
+CASES = [*(("serial", what) for what in ANYWHERE), *(("processes", what) for what in IN_PROCESSES)]
+
+
 @pytest.mark.parametrize("archived", [False, True])
-def test_it_costs_its_own_path(tmp_path, monkeypatch, expected, bad, archived):
+@pytest.mark.parametrize(("pool", "what"), CASES)
+def test_what_ends_badly_costs_its_own_path(tmp_path, monkeypatch, expected, pool, what, archived):
     monkeypatch.setattr("continuation.archive.sweep.wait", patient)
-    tasks, file = [*GOOD[:2], bad(1.0), *GOOD[2:]], tmp_path / "run.h5"
-    with ProcessPoolExecutor(2) as executor:
-        timeout = 6.0 if bad is Hangs else None
-        paths = trace_many(tasks, executor, file if archived else None, timeout=timeout)
-    assert len(paths) == 6
+    bad, message = IN_PROCESSES[what]
+    with POOLS[pool]() as executor:
+        timeout, file = 6.0 if what == "hangs" else None, tmp_path / "run.h5" if archived else None
+        paths = trace_many([*GOOD[:2], bad, *GOOD[2:]], executor, file, timeout=timeout)
     assert paths[2].status is Status.RAISED
-    assert paths[2].message.startswith(MESSAGES[bad])
-    for found, path in zip([*paths[:2], *paths[3:]], expected):
-        assert np.array_equal(found.u, path.u)
-        assert found.status is path.status
+    assert paths[2].message.startswith(message)
+    assert [same(*pair) for pair in zip([*paths[:2], *paths[3:]], expected, strict=True)] == [True] * 5
     if archived:
         assert paths.paths["member"].tolist() == list(range(6))
+        page = describe(paths)
+        assert f"path 2 (member 2): {message}" in page
+        assert "can be resumed" not in page
         paths.close()
         assert os.listdir(tmp_path) == ["run.h5"]
 
 
-def test_ctrl_c_ends_a_sweep_that_hangs(tmp_path):
-    """Within a second or so; the limit here is generous, and far from the thousand seconds that are asked for."""
+MIXED = {
+    "in the middle": [*GOOD[:2], Wide(), GOOD[2], Wide(), GOOD[3]],
+    "first": [Wide(), GOOD[0], Wide(), GOOD[1]],
+    "behind one that cannot begin": [Broken(), Wide(), *GOOD[:2], Wide()],
+}
+
+
+@pytest.mark.parametrize("pool", ["processes", "threads"])
+@pytest.mark.parametrize("tasks", MIXED)
+def test_a_homotopy_of_another_size_costs_its_own_path_wherever_it_runs(tmp_path, tasks, pool):
+    def said(executor, file):
+        with trace_many(MIXED[tasks], executor, file) as paths:
+            ends = [path.endpoint.u.tolist() if len(path) else [] for path in paths]
+            reasons = [path.message.split(" unknowns")[0] for path in paths]
+            return [path.status for path in paths], ends, paths.paths["member"].tolist(), reasons
+
+    serial = said(None, tmp_path / "serial.h5")
+    with POOLS[pool]() as executor:
+        assert said(executor, tmp_path / "spread.h5") == serial
+    assert {Status.RAISED, Status.REACHED_TARGET} == set(serial[0])
+    assert sorted(os.listdir(tmp_path)) == ["serial.h5", "spread.h5"]
+
+
+def test_what_cannot_be_swept_is_refused_and_nothing_may_be_swept(tmp_path):
+    assert trace_many([]) == []
+    with POOLS["threads"]() as executor, pytest.raises(ValueError, match="homotopies: expected at least one where"):
+        trace_many([], executor, tmp_path / "none.h5")
+    with pytest.raises(TypeError, match=r"predicter: expected one of the options box, .*; did you mean predictor\?"):
+        trace_many(GOOD, archive=tmp_path / "run.h5", predicter=None)
+    assert not os.listdir(tmp_path)
+
+
+@pytest.fixture
+def own_handler():
+    """Python's own, since a shell starts what runs in its background with the signal ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("own_handler")
+@pytest.mark.parametrize(
+    ("pool", "tasks", "after", "kept"),
+    [
+        ("serial", GOOD, 3, [0, 1, 2]),
+        ("thread", GOOD, 1, None),
+        ("processes", [*GOOD[:3], *2 * [Bad(1.0, act=partial(time.sleep, 1000.0))]], 3, [0, 1, 2]),
+    ],
+)
+def test_ctrl_c_keeps_what_is_finished(tmp_path, expected, pool, tasks, after, kept):
+    """In a pool that hangs, too: the limit here is generous, and far from the thousand seconds that are asked for."""
 
     def stop(done, total):
-        if done == 3:
+        if done >= after:
+            # To this thread: a signal to the process may reach another one first, and be noticed when all is done.
             signal.raise_signal(signal.SIGINT)
 
     begin = time.monotonic()
-    try:
-        with ProcessPoolExecutor(2) as executor, pytest.raises(KeyboardInterrupt):
-            trace_many([*GOOD[:3], Hangs(1.0), Hangs(1.0)], executor, tmp_path / "run.h5", progress=stop)
-    finally:
-        signal.signal(signal.SIGINT, before)
+    with POOLS[pool]() as executor, pytest.raises(KeyboardInterrupt):
+        trace_many(tasks, executor, tmp_path / "run.h5", progress=stop)
     assert time.monotonic() - begin < 300.0
     with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.paths["member"].tolist() == [0, 1, 2]
+        members = archive.paths["member"].tolist()
+        assert members == kept or (kept is None and 0 < len(members) <= 5 and members == sorted(members))
+        assert all(same(path, expected[member]) for path, member in zip(archive, members))
+    assert os.listdir(tmp_path) == ["run.h5"]
+
+
+def test_ctrl_c_within_a_path(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        trace_many(2 * [Bad(1.0, act=partial(raises, KeyboardInterrupt))], archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert [path.status for path in archive] == [Status.INTERRUPTED]
 
 
 def test_what_another_sweep_left_is_in_nobodys_way(tmp_path, expected):
     for name in ("run.h5.stop", "run.0001.h5", "run.sweep-00000000.0001.h5", "run.sweep-00000000.stop"):
         (tmp_path / name).write_bytes(b"left behind")
-    with ThreadPoolExecutor(2) as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
+    with POOLS["threads"]() as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
         assert [len(path) for path in paths] == [len(path) for path in expected]
     assert (tmp_path / "run.0001.h5").read_bytes() == b"left behind"

@@ -90,6 +90,12 @@ OTHERS = {
         f"keep {value!r}": ("keep", lambda value=value: PathLog("l.h5", keep=value))
         for value in ("some", "every 5", "", None, 3)
     },
+    **{
+        f"save_every {value!r}": ("save_every", lambda value=value: PathLog("l.h5", save_every=value))
+        for value in (0, -1, 2.5, "5")
+    },
+    "some steps, and the ends": ("save_every", lambda: PathLog("l.h5", save_every=2, keep="ends")),
+    "some steps of no file": ("save_every", lambda: trace(CUSP, save_every=2)),
     "a path described": ("archive", lambda: describe("good.h5")),
     "no budget": ("half.h5", lambda: resume("half.h5")),
     "ended": ("good.h5", lambda: resume("good.h5")),
@@ -133,3 +139,4 @@ def test_a_view(folder, case):
 def test_what_was_refused_has_left_nothing(folder):
     kept = {"good.h5", "half.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5"}
     assert set(os.listdir(folder)) == kept
+    assert len(open_archive("good.h5").path(0)) == len(trace(CUSP))

@@ -40,8 +40,7 @@ def test_the_front_is_what_nothing_beats():
     assert far == {
         "cheap": 1.0, "middle": 1.0, "beaten": 1.5, "exact": 1.0, "also exact": 1.0, "dearer": 1.2, "failed": math.inf
     }  # fmt: skip
-    table = chart.summary(results)
-    lines = {line[0]: line for line in table.rows}
+    lines = {line[0]: line for line in chart.summary(results).rows}
     assert lines["beaten"] == ("beaten", "1 of 1", "", 1.5)
     assert lines["failed"][:3] == ("failed", "0 of 1", "1 jump")
 

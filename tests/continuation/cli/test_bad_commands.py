@@ -94,6 +94,11 @@ SOLVE = [
     ("solve good.npz --homotopy simplex", "--homotopy: invalid choice: 'simplex' (choose from"),
     ("solve", "the following arguments are required: FILE"),
     ("solve good.npz extra", "unrecognized arguments: extra"),
+    ("solve scene", "NAME: expected the name of a scene, found none"),
+    ("solve scene blok", "blok: no scene of this name is installed; did you mean block?"),
+    ("solve scene block mass=-1", "mass: expected a positive finite number, found -1"),
+    ("solve scene block color=1", "color: expected an option of block"),
+    ("solve scene block --x0 a.npy", "--x0: expected a problem in a file, found a scene"),
 ]  # fmt: skip
 OTHERS = [
     ("", "the following arguments are required: COMMAND"),

@@ -60,11 +60,3 @@ def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):
     assert capsys.readouterr().out == "closed\n"
     with pytest.raises(UsageError, match="open: no study of this name is installed; known are closed"):
         command("open")
-
-
-def test_two_packages_with_one_name_are_an_error(installed):
-    other = type(installed[0])()
-    other.value = "other:studies"
-    installed.append(other)
-    with pytest.raises(UsageError, match=r"closed: expected one package .* package:studies .* other:studies"):
-        command("closed")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation.archive import PathLog, open_archive
+from continuation.archive import open_archive
 from continuation.arguments import plugins
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
@@ -56,23 +56,17 @@ def trace_fold(file, **options):
 
 def test_solve_prints_the_solution(run, second):
     status, out, err = run("solve", second)
-    assert status == SUCCESS
-    assert err == ""
-    lines = dict(line.split(maxsplit=1) for line in out.splitlines() if line and not line.startswith(" "))
-    assert lines["outcome"] == "SOLVED"
-    assert float(lines["residual"].split(",")[0]) < 1e-10
-    rows = [line.split() for line in out.splitlines() if line.strip()[:1] in "01" and line.startswith("  ")]
+    assert (status, err) == (SUCCESS, "")
+    assert dict(line.split(maxsplit=1) for line in out.splitlines() if line[:1].isalpha())["outcome"] == "SOLVED"
+    rows = [line.split() for line in out.splitlines() if line.startswith("  ") and line.strip()[:1] in "01"]
     assert [row[0] for row in rows] == ["0", "1"]
-    x = [float(row[1]) for row in rows]
-    np.testing.assert_allclose(x, [0.5, 0], atol=1e-10)
+    np.testing.assert_allclose([float(row[1]) for row in rows], [0.5, 0], atol=1e-10)
 
 
 def test_solve_as_json(run, second):
     status, out, _ = run("solve", second, "--json", "--homotopy", "kkt")
-    assert status == SUCCESS
     answer = json.loads(out)
-    assert answer["outcome"] == "SOLVED"
-    assert answer["homotopy"] == "kkt"
+    assert (status, answer["outcome"], answer["homotopy"]) == (SUCCESS, "SOLVED", "kkt")
     np.testing.assert_allclose(answer["x"], [0.5, 0], atol=1e-10)
     np.testing.assert_allclose(answer["w"], [0, 1.5], atol=1e-10)
     assert answer["residual"] < 1e-10
@@ -128,19 +122,14 @@ def test_a_matrix_market_file_and_q(run, tmp_path):
 # -- classify and paper ---------------------------------------------------------------------------------------
 
 
-def test_classify_prints_every_class_with_its_evidence(run, second):
-    status, out, _ = run("classify", second)
-    assert status == SUCCESS
-    answers = {line[:40].split("  ")[0].strip(): line for line in out.splitlines()}
-    assert " yes " in answers["PSD"]
-    assert " no " in answers["P"]
-
-
-def test_classify_takes_a_matrix_alone(run, tmp_path):
+def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
     np.savetxt(tmp_path / "a.txt", [[1.0, 0.0], [0.0, 1.0]])
-    status, out, _ = run("classify", tmp_path / "a.txt")
-    assert status == SUCCESS
-    assert out.startswith("PSD")
+    for file, answer in ((second, " no "), (tmp_path / "a.txt", " yes ")):
+        status, out, _ = run("classify", file)
+        assert status == SUCCESS
+        lines = {line[:40].split("  ")[0].strip(): line for line in out.splitlines()}
+        assert " yes " in lines["PSD"]
+        assert answer in lines["P"]
 
 
 # -- archives -------------------------------------------------------------------------------------------------
@@ -164,25 +153,20 @@ def test_plot_writes_a_picture(run, archive, tmp_path, options):
     assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_resume_goes_on_to_the_end(run, tmp_path):
-    file = tmp_path / "run.h5"
+def test_resume_goes_on(run, tmp_path):
+    file, trust = tmp_path / "run.h5", ("--trust", f"{__name__}:Fold")
     trace_fold(file, budget=continuation.Budget(steps=3))
     status, _, err = run("resume", file, "--steps", 100)
     assert status == BAD_INPUT
     assert "Fold is not registered: pass it in trust=[...]" in err
-    status, out, _ = run("resume", file, "--steps", 100, "--trust", f"{__name__}:Fold")
+    status, out, _ = run("resume", file, "--budget-steps", 4, "--budget-seconds", 60, *trust)
+    assert status == FAILURE
+    assert out.startswith("BUDGET_EXHAUSTED")
+    status, out, _ = run("resume", file, "--steps", 100, *trust)
     assert status == SUCCESS
     assert out.startswith("STOPPED_AT_EVENT")
     with open_archive(file) as stored:
         assert stored.path(0).endpoint.y[0] == 0.9
-
-
-def test_resume_that_does_not_arrive_exits_with_one(run, tmp_path):
-    file = tmp_path / "run.h5"
-    trace_fold(file, budget=continuation.Budget(steps=3))
-    status, out, _ = run("resume", file, "--budget-steps", 4, "--budget-seconds", 60, "--trust", f"{__name__}:Fold")
-    assert status == FAILURE
-    assert out.startswith("BUDGET_EXHAUSTED")
 
 
 def test_recover_leaves_a_whole_file_as_it_is(run, archive):
@@ -206,15 +190,6 @@ def test_export_and_merge(run, archive, tmp_path):
     status, _, err = run("merge", tmp_path / "again.h5", tmp_path / "both.h5", other)
     assert status == BAD_INPUT
     assert err.endswith(f"its path 0 is path 1 of {tmp_path / 'both.h5'} as well; expected each path once\n")
-
-
-def test_one_log_may_be_inspected_while_it_grows(run, tmp_path):
-    file = tmp_path / "growing.h5"
-    with PathLog(file) as log:
-        continuation.trace(Fold(), observers=(log,), direction=1, events=[continuation.TargetValue(0.9, component=0)])
-        status, out, _ = run("inspect", file)
-    assert status == SUCCESS
-    assert "STOPPED_AT_EVENT" in out
 
 
 # -- the program itself ---------------------------------------------------------------------------------------

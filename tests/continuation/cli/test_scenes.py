@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
+from continuation.cli import FAILURE, SUCCESS
 
 
 def test_a_scene_by_its_name(run, tmp_path):
@@ -36,24 +36,6 @@ def test_a_path_that_ends_in_a_collapse_is_an_answer(run):
     assert "the bars bear 2.1 at most, found 3" in err
 
 
-@pytest.mark.parametrize(
-    ("words", "complaint"),
-    [
-        (["scene"], "NAME: expected the name of a scene, found none"),
-        (["scene", "blok"], "blok: no scene of this name is installed; did you mean block?"),
-        (["scene", "block", "mass=-1"], "mass: expected a positive finite number, found -1"),
-        (["scene", "block", "color=1"], "color: expected an option of block"),
-        (["scene", "block", "--x0", "a.npy"], "--x0: expected a problem in a file, found a scene"),
-        (["file.npz", "block"], "unrecognized arguments: block"),
-    ],
-)
-def test_bad_input_is_one_line(run, words, complaint):
-    status, out, err = run("solve", *words)
-    assert (status, out) == (BAD_INPUT, "")
-    assert complaint in err
-    assert err.count("\n") == 1
-
-
 def test_scenes_are_listed_beside_homotopies(run):
     status, out, err = run("plugins")
     assert (status, err) == (SUCCESS, "")
@@ -63,10 +45,9 @@ def test_scenes_are_listed_beside_homotopies(run):
     assert "options: mass=1.0, friction=0.5, speed=1.0" in out
 
 
-def test_the_scene_of_the_tutorial_is_short_and_runs_by_its_name(run, tmp_path, monkeypatch):
+def test_the_scene_of_the_tutorial_runs_by_its_name(run, tmp_path, monkeypatch):
     page = (Path(__file__).parents[3] / "docs" / "own_scene.md").read_text(encoding="utf-8")
     code = re.search(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]
-    assert len(code.splitlines()) <= 40
     (tmp_path / "reservoirs.py").write_text(code)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)

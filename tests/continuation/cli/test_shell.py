@@ -16,58 +16,10 @@ from continuation.cli.parser import paint
 from continuation.step.progress import SweepProgress
 from problems.bifurcation import Cusp
 
-OWN = """
-import numpy as np
-
-
-class Own:
-    target = 1.0
-
-    def __init__(self, n=3, slope=2.0):
-        self.n, self.slope = n, slope
-
-    def start(self):
-        return np.zeros(self.n), 0.0
-
-    def residual(self, y, lam):
-        return y - self.slope * lam + 0.2 * y**3
-
-
-class Broken(Own):
-    def residual(self, y, lam):
-        return {}["nothing"]
-
-
-class Half(Own):
-    def jacobian(self, y, lam):
-        return np.eye(self.n)
-
-
-class Unmade(Own):
-    def __init__(self):
-        raise RuntimeError("no data")
-
-
-class Table(Own):
-    def residual(self, y, lam):
-        if lam > 0.5:
-            raise ValueError("the table ends")
-        return y - lam
-"""
-
 
 class Terminal(io.StringIO):
     def isatty(self):
         return True
-
-
-@pytest.fixture
-def own(tmp_path, monkeypatch):
-    (tmp_path / "own_for_shell.py").write_text(OWN)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(tmp_path)
-    yield "own_for_shell"
-    sys.modules.pop("own_for_shell", None)
 
 
 def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
@@ -86,12 +38,13 @@ def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
 
 def test_options_given_again_hold_over_those_of_the_file(run, own):
     run("trace", f"{own}:Own", "slope=3", "--archive", "run.h5", "--budget-steps", 2)
-    status, _, err = run("resume", "run.h5", "slope=5", "--homotopy", f"{own}:Own", "--steps", 50)
-    assert status == BAD_INPUT
-    assert "expected the archive's residual" in err
-    status, _, err = run("resume", "run.h5", "slope=5")
-    assert status == BAD_INPUT
-    assert err == "continuation: KEY=VALUE: expected no options without --homotopy\n"
+    for words, said in (
+        (("slope=5", "--homotopy", f"{own}:Own", "--steps", 50), "expected the archive's residual"),
+        (("slope=5",), "continuation: KEY=VALUE: expected no options without --homotopy\n"),
+    ):
+        status, _, err = run("resume", "run.h5", *words)
+        assert status == BAD_INPUT
+        assert said in err
 
 
 @pytest.mark.parametrize(

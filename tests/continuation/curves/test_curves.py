@@ -5,8 +5,6 @@ import re
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
-from attrs import evolve
 
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
@@ -15,30 +13,25 @@ from continuation.counts import Counts
 from continuation.evaluation.errors import RaisedError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import difference_along
-from continuation.events.singularity import full_derivative
-from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
 
 from .util import (
     Bent,
-    Coupled,
-    CoupledSparse,
-    CuspForm,
-    Diffusing,
-    GelfandBanded,
-    Imperfect,
     Lorenz,
-    Ring,
+    coupled,
+    cusp_form,
     first_fold,
+    imperfect,
     named,
+    ring,
+    wing,
 )
 
 
 def folds():
-    homotopy = Imperfect()
-    return Curve(Family(homotopy, "eps"), first_fold(homotopy, direction=-1))
+    return Curve(imperfect, first_fold(imperfect(), direction=-1), mu=0.1)
 
 
 def unit_circle(u, v):
@@ -53,17 +46,6 @@ def not_homogeneous(u, v):
     return v[0] ** 2 - 0.3 * u[0] ** 2 * v[1]
 
 
-@pytest.mark.parametrize("family", [Coupled, CoupledSparse], ids=["dense", "sparse"])
-def test_branch_points_of_a_symmetric_problem(family):
-    trunk = continuation.trace(family(), direction=-1, box={"lam": (2.5, None)})
-    (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
-    path = continuation.trace(Curve(Family(family(), "mu"), point), box={"lam": (None, 5.0)}, tolerance=1e-12)
-    y1, y2, lam, mu = path.u.T
-    assert np.abs(lam - 3.0 * mu).max() <= 1e-10
-    assert np.abs(np.stack([y1, -y2]) ** 2 - mu).max() <= 1e-10
-    assert mu[-1] == 5.0
-
-
 def test_the_pitchfork_of_the_lorenz_equations_stays():
     path = continuation.trace(
         Curve(Family(Lorenz(), "b"), Kind.BRANCH_POINT, (np.full(3, 1e-3), 0.95)), box={"lam": (None, 8.0)}
@@ -73,7 +55,7 @@ def test_the_pitchfork_of_the_lorenz_equations_stays():
 
 
 def test_branch_points_that_part_are_refused():
-    curve = Curve(Family(Imperfect(0.0), "eps"), Kind.BRANCH_POINT, (np.zeros(1), 0.0))
+    curve = Curve(imperfect, Kind.BRANCH_POINT, (np.zeros(1), 0.0), mu=0.0)
     with pytest.raises(ValueError, match="family: expected branch points for every mu, as in symmetric problems"):
         continuation.trace(curve)
 
@@ -93,13 +75,14 @@ def test_kinks_until_another_switch_vanishes():
 
 
 def test_values_and_monitors():
-    family, tolerance = Family(Imperfect(), "eps"), 1e-12
-    value = Curve(family, TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07)
+    tolerance = 1e-12
+    value = Curve(imperfect, TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07)
     path = continuation.trace_both(value, box={"lam": (-1.0, 1.0), "y": (-5.0, 5.0)}, tolerance=tolerance)
+    assert continuation.certify(path, value).complete
     assert np.abs(path.y[:, 1] - 1.5).max() <= 1e-12
     assert np.abs(1.5 * path.y[:, 0] - path.y[:, 0] ** 3 + path.lam).max() <= 1e-10
     assert len(path.turning_points) == 2
-    circle = Curve(family, Monitor(unit_circle), (np.array([0.2]), 1.0))
+    circle = Curve(imperfect, Monitor(unit_circle), (np.array([0.2]), 1.0), mu=0.1)
     path = continuation.trace_both(circle, box={"lam": (-1.0, 1.0)}, tolerance=tolerance)
     y, lam, eps = path.u.T
     assert np.abs(y**2 + lam**2 - 1.0).max() <= 1e-10
@@ -121,18 +104,19 @@ def test_a_family_with_a_factorisation_of_its_own():
     np.testing.assert_allclose(path.endpoint.y[:-1], there, rtol=1e-7)
 
 
+def topmost(a):
+    """Where y_1 turns on the ring."""
+    path = continuation.trace(ring(a), events=[TurningPoint(1)], box={"y": (-3.0, 3.0)})
+    return named(path, "turning point of component 1")
+
+
 def test_what_looks_at_the_tangent():
-    homotopy = Ring()
-    path = continuation.trace(homotopy, events=[TurningPoint(1)], box={"y": (-3.0, 3.0)})
-    event = named(path, "turning point of component 1")[0]
-    curve = Curve(Family(homotopy, "a"), TurningPoint(1), event)
+    curve = Curve(ring, TurningPoint(1), topmost(1.0)[0], mu=1.0)
     path = continuation.trace(curve, box={"lam": (None, 3.0)}, tolerance=1e-12)
     # The members themselves say where it turns.
     for u in path.u[1:]:
-        member = continuation.trace(Ring(u[-1]), start=(u[:2] * 0.999, u[2] * 0.999), events=[TurningPoint(1)])
-        nearest = min(named(member, "turning point of component 1"), key=lambda e: abs(e.u - u[:-1]).max())
-        assert np.abs(nearest.u - u[:-1]).max() <= 1e-10
-    own = Curve(Family(Imperfect(), "eps"), Monitor(steep), (np.array([-1.2]), 1.4))
+        assert min(np.abs(event.u - u[:-1]).max() for event in topmost(u[-1])) <= 1e-10
+    own = Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1)
     path = continuation.trace(own, box={"lam": (None, 1.0)}, tolerance=1e-12)
     # dy/dlam = y / (3 y^2 - lam) = -0.4 there.
     y, lam, _ = path.u.T
@@ -140,16 +124,15 @@ def test_what_looks_at_the_tangent():
 
 
 def test_elimination_is_the_bordered_matrix():
-    homotopy = Lorenz()
     generator = np.random.default_rng(5)
-    trunk = continuation.trace(Coupled(), direction=-1, box={"lam": (2.5, None)})
+    trunk = continuation.trace(coupled(), direction=-1, box={"lam": (2.5, None)})
     (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
     for curve in (
         folds(),
-        Curve(Family(homotopy, "b"), Kind.HOPF, homotopy.wing(25.0)),
-        Curve(Family(Coupled(), "mu"), point),
-        Curve(Family(Imperfect(), "eps"), Monitor(steep), (np.array([-1.2]), 1.4)),
-        Curve(Family(Imperfect(), "eps"), Monitor(not_homogeneous), (np.array([-1.2]), 1.4)),
+        Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
+        Curve(coupled, point, mu=1.0),
+        Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
+        Curve(imperfect, Monitor(not_homogeneous), (np.array([-1.2]), 1.4), mu=0.1),
     ):
         y, mu = curve.start()
         for aside in (0.0, 0.03):
@@ -167,55 +150,16 @@ def test_elimination_is_the_bordered_matrix():
         np.testing.assert_allclose(whole[:-1] @ (1e-2 * r), difference, atol=1e-8)
 
 
-def test_a_border_nearly_orthogonal_is_replaced():
-    generator = np.random.default_rng(8)
-    for sparse in (np.array, sp.csc_array):
-        matrix = generator.standard_normal((7, 7))
-        left, sizes, right = np.linalg.svd(matrix)
-        matrix = matrix - (sizes[-1] - 1e-3) * np.outer(left[:, -1], right[-1])
-        for b, c in ((left[:, 0] + 1e-4 * left[:, -1], right[-1]), (left[:, -1], right[2] + 1e-4 * right[-1])):
-            near = null_vectors(sparse(matrix), b, c)
-            assert np.linalg.norm(near.right) <= 10.0
-            assert np.linalg.norm(near.left) <= 10.0
-            assert near.factors.sign * np.sign(near.s) == np.sign(np.linalg.det(matrix))
-            np.testing.assert_allclose(abs(right[-1] @ near.right), np.linalg.norm(near.right), rtol=1e-5)
-
-
-def test_the_fold_is_one_whatever_the_border():
-    member = GelfandBanded(n=12)
-    curve = Curve(Family(member, "eps"), first_fold(member))
-    condition, u = curve._condition, np.append(*curve.at)
-    away = np.roll(condition.c, 3) * (-1.0) ** np.arange(12)
-    found = evolve(condition, c=away / np.linalg.norm(away)).at(u, 0.0, curve.mu)
-    usual = condition.at(u, 0.0, curve.mu)
-    assert abs(found.values[0]) <= 1e-12
-    ratio = found.rows[0] / usual.rows[0]
-    np.testing.assert_allclose(ratio, ratio[0], rtol=1e-8)
-    assert ratio[0] > 0.0
-
-
-def test_the_border_does_not_fill_sparse_factors():
-    homotopy = Diffusing(n=300)
-    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
-    condition = curve._condition
-    y, mu = curve.start()
-    matrix = condition.matrix(full_derivative(Evaluator(curve.family(mu), Counts()), y[:-1]), y[-1])
-    near = null_vectors(matrix, condition.b, condition.c)
-    assert near.factors.lu.nnz <= 30 * 600
-    np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)
-    np.testing.assert_allclose(matrix.conj().T @ near.left, -np.conj(near.s) * condition.c, atol=1e-9)
-
-
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
     curve, box = folds(), {"lam": (-1.0, 0.4)}
     continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=3), box=box, direction=-1)
     whole = continuation.trace(curve, budget=Budget(steps=8), box=box, direction=-1)
-    again = resume(tmp_path / "a.h5", trust=[Imperfect], budget=Budget(steps=8))
+    again = resume(tmp_path / "a.h5", trust=[imperfect], budget=Budget(steps=8))
     assert named(again, "cusp")
     assert np.array_equal(again.u, whole.u)
     assert [event.name for event in again.events] == [event.name for event in whole.events]
     with open_archive(tmp_path / "a.h5") as stored:
-        assert stored.path(0).labels.parameter_name == "eps"
+        assert stored.path(0).labels.parameter_name == "mu"
 
 
 def test_a_curve_is_pickled_drawn_and_named():
@@ -225,25 +169,11 @@ def test_a_curve_is_pickled_drawn_and_named():
     assert np.array_equal(again.residual(y, mu), curve.residual(y, mu))
     path = continuation.trace(curve, budget=Budget(steps=3))
     axes = plot_bifurcation(path, value=1)
-    assert axes.get_xlabel() == "eps"
-
-
-def test_a_curve_of_values_is_proved():
-    curve = Curve(Family(Imperfect(), "eps"), TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07)
-    path = continuation.trace(curve, box={"lam": (-1.0, 1.0), "y": (-5.0, 5.0)})
-    assert continuation.certify(path, curve).complete
+    assert axes.get_xlabel() == "mu"
 
 
 def test_the_suite_passes():
     check_homotopy(folds(), steps=5)
-
-
-def test_a_function_is_a_family():
-    path = continuation.trace(
-        Curve(CuspForm, first_fold(CuspForm(2.0)), mu=2.0), box={"lam": (0.5, 2.5)}, direction=-1, tolerance=1e-12
-    )
-    assert np.abs(27.0 * path.u[:, 1] ** 2 - 4.0 * path.u[:, 2] ** 3).max() <= 1e-10
-    assert path.labels.parameter_name == "mu"
 
 
 class Plain:
@@ -271,38 +201,37 @@ def test_attributes_of_plain_objects():
 
 WRONG = {
     "no family": (lambda: Curve(3.0, Kind.HOPF, (np.zeros(1), 0.0)), TypeError, "family: expected a function"),
-    "no mu": (lambda: Curve(CuspForm, Kind.TURNING_POINT, (np.zeros(1), 0.0)), ValueError, "mu: expected a number"),
+    "no mu": (lambda: Curve(cusp_form, Kind.HOPF, (np.zeros(1), 0.0)), ValueError, "mu: expected a number"),
     "an infinite mu": (
-        lambda: Curve(CuspForm, Kind.TURNING_POINT, (np.zeros(1), 0.0), mu=np.inf), ValueError, "mu: expected a finite",
+        lambda: Curve(cusp_form, Kind.HOPF, (np.zeros(1), 0.0), mu=np.inf), ValueError, "mu: expected a finite",
     ),
-    "no point": (lambda: Curve(Family(CuspForm(), "mu"), Kind.HOPF), TypeError, "at: expected a located event, a step"),
+    "no point": (lambda: Curve(cusp_form, Kind.HOPF, mu=1.0), TypeError, "at: expected a located event, a step"),
     "half a point": (
-        lambda: Curve(Family(CuspForm(), "mu"), Kind.HOPF, (np.zeros(1), np.nan)), ValueError, "at: expected finite",
+        lambda: Curve(cusp_form, Kind.HOPF, (np.zeros(1), np.nan), mu=1.0), ValueError, "at: expected finite",
     ),
     "a kind without a condition": (
-        lambda: Curve(Family(CuspForm(), "mu"), Kind.EVENT, (np.zeros(1), 0.0)), TypeError, "event: expected a turning",
+        lambda: Curve(cusp_form, Kind.EVENT, (np.zeros(1), 0.0), mu=1.0), TypeError, "event: expected a turning",
     ),
     "a turn of an unknown": (
         lambda: Curve(
-            Family(Ring(), "a"), named(continuation.trace(Ring(), events=[TurningPoint(1)], box={"y": (-3.0, 3.0)}),
-                                       "turning point of component 1")[0],
+            ring, topmost(1.0)[0], mu=1.0,
         ), ValueError, "give TurningPoint(component), and the point as `at`",
     ),
     "sizes of another number": (
-        lambda: Curve(Family(CuspForm(), "mu"), Kind.TURNING_POINT, (np.zeros(1), 0.0), size=[1.0]),
+        lambda: Curve(cusp_form, Kind.TURNING_POINT, (np.zeros(1), 0.0), mu=1.0, size=[1.0]),
         ValueError, "size: expected 2 positive numbers",
     ),
     "another number of unknowns": (
-        lambda: Curve(Family(CuspForm(), "mu"), Kind.TURNING_POINT, (np.zeros(2), 0.0)),
+        lambda: Curve(cusp_form, Kind.TURNING_POINT, (np.zeros(2), 0.0), mu=1.0),
         ValueError, "at: expected 1 unknowns, as the family has, found 2",
     ),
     "no kinks": (
-        lambda: Curve(Family(CuspForm(), "mu"), Kind.KINK, (np.zeros(1), 0.0)),
+        lambda: Curve(cusp_form, Kind.KINK, (np.zeros(1), 0.0), mu=1.0),
         TypeError, "family: expected piecewise smooth homotopies",
     ),
-    "no such attribute": (lambda: Family(CuspForm(), "nu"), ValueError, "name: expected an attribute of CuspForm"),
-    "an attribute that is no number": (lambda: Family(CuspForm(), "target"), TypeError, "target: expected a number to"),
-    "no name": (lambda: Family(CuspForm(), 3), TypeError, "name: expected the name of an attribute"),
+    "no such attribute": (lambda: Family(Plain(1.0), "nu"), ValueError, "name: expected an attribute of Plain"),
+    "an attribute that is no number": (lambda: Family(Plain(1.0), "start"), TypeError, "start: expected a number to"),
+    "no name": (lambda: Family(Plain(1.0), 3), TypeError, "name: expected the name of an attribute"),
 }  # fmt: skip
 
 
@@ -321,9 +250,9 @@ def test_an_exception_of_the_family_is_said():
     def family(mu):
         if mu > 1.5:
             return continuation.from_functions(raising, start=([0.0], 0.0))
-        return CuspForm(mu)
+        return cusp_form(mu)
 
-    curve = Curve(family, first_fold(CuspForm(1.0)), mu=1.0)
+    curve = Curve(family, first_fold(cusp_form(1.0)), mu=1.0)
     path = continuation.trace(curve, target=3.0, budget=Budget(steps=60))
     assert path.status is continuation.Status.RAISED
     assert "no such state" in path.message

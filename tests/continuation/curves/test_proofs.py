@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,22 +15,23 @@ from continuation.archive import recheck
 
 from ..certificate import second
 from .util import (
-    Brusselator,
-    Coupled,
-    CuspForm,
-    Gelfand,
-    Imperfect,
     Lorenz,
-    Ring,
-    TakensBogdanov,
-    VanDerPol,
+    brusselator,
+    coupled,
+    cusp_form,
     first_fold,
+    gelfand,
+    imperfect,
     named,
+    ring,
+    takens_bogdanov,
+    van_der_pol,
+    wing,
 )
 
 
-def folds(homotopy, name):
-    return Curve(Family(homotopy, name), first_fold(homotopy))
+def folds(family, mu, **options):
+    return Curve(family, first_fold(family(mu), **options), mu=mu)
 
 
 def steep(u, v):
@@ -37,19 +39,20 @@ def steep(u, v):
     return v[0] + 0.4 * v[1]
 
 
+small = partial(gelfand, n=4)
 CASES = {
-    "a cusp": (folds(CuspForm(1.0), "mu"), {"lam": (-4.0, 4.0), "y": (-16.0, 16.0)}, 1),
-    "a slab that heats itself": (folds(Gelfand(n=4), "eps"), {"lam": (0.0, None), "y": (None, 12.0)}, 1),
-    "folds that stand still": (folds(TakensBogdanov(), "mu"), {"lam": (-2.0, 2.0)}, 0),
+    "a cusp": (folds(cusp_form, 1.0), {"lam": (-4.0, 4.0), "y": (-16.0, 16.0)}, 1),
+    "a slab that heats itself": (folds(small, 0.2), {"lam": (0.0, None), "y": (None, 12.0)}, 1),
+    "folds that stand still": (folds(takens_bogdanov, 1.0), {"lam": (-2.0, 2.0)}, 0),
     "Hopf points where nothing moves but mu": (
-        Curve(Family(VanDerPol(), "k"), Kind.HOPF, (np.zeros(2), 0.05)), {"lam": (0.5, 1.5)}, 0,
+        Curve(van_der_pol, Kind.HOPF, (np.zeros(2), 0.05), mu=1.0), {"lam": (0.5, 1.5)}, 0,
     ),
-    "Hopf points": (Curve(Family(Brusselator(), "A"), Kind.HOPF, (np.array([1.0, 2.0]), 2.0)), {"lam": (0.5, 3.0)}, 0),
-    "Lorenz": (Curve(Family(Lorenz(), "b"), Kind.HOPF, Lorenz().wing(24.0)), {"lam": (2.0, 8.0)}, 0),
+    "Hopf points": (Curve(brusselator, Kind.HOPF, (np.array([1.0, 2.0]), 2.0), mu=1.0), {"lam": (0.5, 3.0)}, 0),
+    "Lorenz": (Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(24.0)), {"lam": (2.0, 8.0)}, 0),
     "an unknown turns": (
-        Curve(Family(Ring(), "a"), TurningPoint(1), (np.array([0.7, 0.5]), 0.6)), {"lam": (0.2, 5.0)}, 0,
+        Curve(ring, TurningPoint(1), (np.array([0.7, 0.5]), 0.6), mu=1.0), {"lam": (0.2, 5.0)}, 0,
     ),
-    "a slope": (Curve(Family(Imperfect(), "eps"), Monitor(steep), (np.array([-1.2]), 1.4)), {"lam": (0.05, 1.0)}, 0),
+    "a slope": (Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1), {"lam": (0.05, 1.0)}, 0),
 }  # fmt: skip
 
 
@@ -88,13 +91,12 @@ def test_what_is_proved_is_that_curve():
             off = np.abs(np.array([t, -2.0 * t**3, 3.0 * t**2]) - path(s))
             assert (off <= 20.0 * proof.radius(s) + 1e-9).all()
     # That of another family is not, with the same points or with the same tubes.
-    other = Curve(lambda mu: CuspForm(1.001 * mu), Kind.TURNING_POINT, curve.at, mu=1.0)
+    other = Curve(lambda mu: cusp_form(1.001 * mu), Kind.TURNING_POINT, curve.at, mu=1.0)
     assert not certify(path, other).complete
 
 
 def test_a_hopf_curve_is_proved_up_to_where_it_meets_the_folds():
-    homotopy = TakensBogdanov()
-    curve = Curve(Family(homotopy, "mu"), Kind.HOPF, (np.array([-1.0, 0.0]), -1.0))
+    curve = Curve(takens_bogdanov, Kind.HOPF, (np.array([-1.0, 0.0]), -1.0), mu=1.0)
     path = continuation.trace_both(curve, box={"lam": (-3.0, 3.0)})
     (end,) = named(path, "Bogdanov-Takens")
     proof = certify(path, curve)
@@ -118,7 +120,7 @@ def test_an_archive_holds_the_proof(tmp_path):
 
 
 def test_branch_points_are_not_proved_and_that_is_said():
-    curve = Curve(Family(Coupled(), "mu"), Kind.BRANCH_POINT, (np.array([1.0, -1.0]), 3.0))
+    curve = Curve(coupled, Kind.BRANCH_POINT, (np.array([1.0, -1.0]), 3.0), mu=1.0)
     path = continuation.trace(curve, box={"lam": (0.5, 2.0)})
     with pytest.raises(TypeError, match="residual of a branch point curve is not plain arithmetic: it takes a factor"):
         certify(path, curve)

@@ -1,5 +1,7 @@
 """The same answers in other units, drawn over twelve orders: y -> D y + c, H -> D H, lam -> lam / a, mu -> mu / m."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -9,17 +11,18 @@ from continuation import Curve, Family, Kind
 from continuation.linear import Banded
 
 from .util import (
-    Brusselator,
-    Coupled,
-    CuspForm,
-    Gelfand,
     GelfandBanded,
-    Imperfect,
     Lorenz,
-    TakensBogdanov,
-    VanDerPol,
+    brusselator,
+    coupled,
+    cusp_form,
     first_fold,
+    gelfand,
+    imperfect,
     named,
+    takens_bogdanov,
+    van_der_pol,
+    wing,
 )
 
 TIGHT = {"tolerance": 1e-12}
@@ -30,13 +33,13 @@ class Units:
 
     parameter_name = "mu"
 
-    def __init__(self, homotopy, name, seed, shifted=True):
-        generator, n = np.random.default_rng(seed), np.size(homotopy.start()[0])
-        self.family = Family(homotopy, name)
+    def __init__(self, family, value, seed, shifted=True):
+        generator, n = np.random.default_rng(seed), np.size(family(value).start()[0])
+        self.family = family
         self.d = 10.0 ** generator.uniform(-6, 6, n)
         self.c = self.d * generator.uniform(-3, 3, n) * shifted
         self.a, self.m = 10.0 ** generator.uniform(-6, 6, 2)
-        self.value = self.family.value / self.m
+        self.value = value / self.m
 
     def __call__(self, mu):
         return Member(self, self.family(mu * self.m))
@@ -62,7 +65,7 @@ class Member:
 
     def __init__(self, units, own):
         self.by, self.own = units, own
-        if hasattr(own, "jacobian"):
+        if getattr(own, "jacobian", None) is not None:
             self.jacobian = self.derivative
 
     def start(self):
@@ -81,49 +84,51 @@ class Member:
 
 
 @pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize(("homotopy", "name", "columns"), [(CuspForm(), "mu", (1, 2)), (Imperfect(), "eps", (2, 1))])
-def test_the_fold_curve_through_a_cusp(seed, homotopy, name, columns):
-    units = Units(homotopy, name, seed)
-    fold = first_fold(units(units.value), direction=0 if name == "mu" else -1)
+@pytest.mark.parametrize(("family", "value", "columns"), [(cusp_form, 1.0, (1, 2)), (imperfect, 0.1, (2, 1))])
+def test_the_fold_curve_through_a_cusp(seed, family, value, columns):
+    units = Units(family, value, seed)
+    fold = first_fold(units(units.value), direction=0 if family is cusp_form else -1)
     path = continuation.trace_both(Curve(units, fold), box=units.box(-4.0, 4.0), **TIGHT)
     a, b = units.back(path.u)[:, columns].T
     assert np.abs(27.0 * a**2 - 4.0 * b**3).max() <= 1e-10
+    assert a.min() < 0.0 < a.max()
     (cusp,) = named(path, "cusp")
     assert np.abs(units.back(cusp.u)).max() <= 1e-10
 
 
-@pytest.mark.parametrize("seed", [0])
-def test_the_cusp_and_the_end_of_the_perturbed_gelfand_problem(seed):
-    units = Units(Gelfand(), "eps", seed, shifted=False)
+def test_the_cusp_and_the_end_of_the_perturbed_gelfand_problem():
+    units = Units(gelfand, 0.2, 0, shifted=False)
     curve = Curve(units, first_fold(units(units.value)))
-    (cusp,) = named(continuation.trace(curve, box=units.box(0.15, None), **TIGHT), "cusp")
-    ((*_, height, delta, eps),) = units.back(cusp.u)
-    # By Gauss' formula for the time map, in 50 digits.
-    assert abs(eps - 0.245780427232365629) <= 1e-11
-    assert abs(delta - 1.30737356367320925) <= 1e-11
-    assert abs(height - 4.89654789987477872) <= 1e-9
+    path = continuation.trace(curve, box=units.box(0.15, None), **TIGHT)
+    (cusp,), (turn,) = named(path, "cusp"), path.turning_points
+    for event in (cusp, turn):
+        ((*_, height, delta, eps),) = units.back(event.u)
+        # By Gauss' formula for the time map, in 50 digits.
+        assert abs(eps - 0.245780427232365629) <= 1e-11
+        assert abs(delta - 1.30737356367320925) <= 1e-11
+        assert abs(height - 4.89654789987477872) <= 1e-9
     end = continuation.trace(curve, target=0.0, **TIGHT).endpoint
     assert abs(end.u[-2] * units.a - 0.8784576797812903) <= 1e-11
 
 
 def test_a_sparse_family_has_the_same_cusp():
-    plain, units = GelfandBanded(n=8, kind="sparse"), Units(GelfandBanded(n=8, kind="sparse"), "eps", 5, shifted=False)
+    plain = Family(GelfandBanded(n=8, kind="sparse"), "eps")
+    units = Units(plain, 0.2, 5, shifted=False)
     ours, theirs = (
         named(continuation.trace(Curve(family, first_fold(family(family.value))), box=box, **TIGHT), "cusp")[0].u
-        for family, box in ((Family(plain, "eps"), {"lam": (0.15, None)}), (units, units.box(0.15, None)))
+        for family, box in ((plain, {"lam": (0.15, None)}), (units, units.box(0.15, None)))
     )
     np.testing.assert_allclose(units.back(theirs)[0], ours, rtol=1e-10)
 
 
-@pytest.mark.parametrize("seed", [0])
-def test_hopf_curves(seed):
-    units = Units(Lorenz(), "b", seed)
-    curve = Curve(units, Kind.HOPF, units.told(*Lorenz().wing(25.0)))
+def test_hopf_curves():
+    units = Units(Family(Lorenz(), "b"), 8.0 / 3.0, 0)
+    curve = Curve(units, Kind.HOPF, units.told(*wing(25.0)))
     r, frequency, b = units.back(continuation.trace(curve, box=units.box(None, 8.0), **TIGHT).u)[:, 3:].T
     np.testing.assert_allclose(r, 10.0 * (13.0 + b) / (9.0 - b), rtol=1e-11)
     np.testing.assert_allclose(frequency, np.sqrt(b * (r + 10.0)), rtol=1e-11)
     assert (abs(r[0] - 470.0 / 19.0), abs(b[-1] - 8.0)) <= (1e-10, 1e-12)
-    units = Units(Brusselator(), "A", seed)
+    units = Units(brusselator, 1.0, 0)
     curve = Curve(units, Kind.HOPF, units.told(np.array([1.0, 2.0]), 2.1))
     B, frequency, A = units.back(continuation.trace_both(curve, box=units.box(0.25, 4.0), **TIGHT).u)[:, 2:].T
     assert np.abs(B - 1.0 - A**2).max() <= 1e-10
@@ -134,7 +139,7 @@ def test_hopf_curves(seed):
 @pytest.mark.parametrize("seed", [0, 1, 10, 12, 17, 25, 53, 54, 144])
 def test_what_stands_still_is_not_measured_by_round_off(seed):
     # All but k and the frequency keep their values, which are no round numbers here.
-    units = Units(VanDerPol(), "k", seed)
+    units = Units(van_der_pol, 1.0, seed)
     path = continuation.trace(Curve(units, Kind.HOPF, units.told(np.zeros(2), 0.05)), box=units.box(None, 1.5))
     found = units.back(path.u)
     assert np.abs(found[:, :3]).max() <= 1e-10
@@ -144,16 +149,16 @@ def test_what_stands_still_is_not_measured_by_round_off(seed):
 
 @pytest.mark.parametrize("seed", range(2))
 def test_a_fold_curve_meets_a_hopf_curve_once(seed):
-    units = Units(TakensBogdanov(), "mu", seed)
+    units = Units(takens_bogdanov, 1.0, seed)
     fold = first_fold(units(units.value), target=0.5 / units.a)
     path = continuation.trace(Curve(units, fold), direction=-1, box=units.box(-1.0, None), **TIGHT)
     (point,) = named(path, "Bogdanov-Takens")
     assert np.abs(units.back(point.u)).max() <= 1e-10
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_branch_points_of_a_symmetric_problem(seed):
-    units = Units(Coupled(), "mu", seed, shifted=False)
+@pytest.mark.parametrize(("seed", "sparse"), [(0, False), (1, False), (0, True)])
+def test_branch_points_of_a_symmetric_problem(seed, sparse):
+    units = Units(partial(coupled, sparse=sparse), 1.0, seed, shifted=False)
     trunk = continuation.trace(units(units.value), direction=-1, box={"lam": (2.5 / units.a, None)})
     (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
     path = continuation.trace(Curve(units, point), box=units.box(None, 5.0), **TIGHT)

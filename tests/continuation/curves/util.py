@@ -1,39 +1,24 @@
-"""Families with known curves: a second parameter is an attribute of each."""
+"""Families with known curves: functions of a second parameter, each with the start of one member."""
+
+from functools import cache
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
+from attrs import frozen
 
 import continuation
+from continuation import from_functions
 from continuation.linear import Banded, Operator, Symmetric
 
 
-@frozen
-class CuspForm:
+def cusp_form(mu=1.0):
     """lam + mu y - y^3: folds where 27 lam^2 = 4 mu^3."""
-
-    mu: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([-2.0]), -8.0 + 2.0 * self.mu
-
-    def residual(self, y, lam):
-        return lam + self.mu * y - y**3
+    return from_functions(lambda y, lam: lam + mu * y - y**3, start=([-2.0], -6.0), target=None)
 
 
-@frozen
-class Imperfect:
+def imperfect(eps=0.1):
     """The pitchfork lam y - y^3 + eps: folds at 27 eps^2 = 4 lam^3, through the pitchfork itself at eps = 0."""
-
-    eps: float = 0.1
-    target = None
-
-    def start(self):
-        return np.array([-2.0]), 4.05
-
-    def residual(self, y, lam):
-        return lam * y - y**3 + self.eps
+    return from_functions(lambda y, lam: lam * y - y**3 + eps, start=([-2.0], 4.05), target=None)
 
 
 @frozen
@@ -50,113 +35,68 @@ class Lorenz:
     def residual(self, y, lam):
         return np.stack([self.sigma * (y[1] - y[0]), y[0] * (lam - y[2]) - y[1], y[0] * y[1] - self.b * y[2]])
 
-    def wing(self, r):
-        """An equilibrium that is not the origin."""
-        x = np.sqrt(self.b * (r - 1.0))
-        return np.array([x, x, r - 1.0]), r
+
+def wing(r, b=8.0 / 3.0):
+    """An equilibrium of Lorenz that is not the origin."""
+    x = np.sqrt(b * (r - 1.0))
+    return np.array([x, x, r - 1.0]), r
 
 
-@frozen
-class Brusselator:
+def brusselator(A=1.0):
     """Continued in B: Hopf points at B = 1 + A^2, frequency A."""
-
-    A: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([self.A, 1.0 / self.A]), 1.0
-
-    def residual(self, y, lam):
-        x, z = y[0], y[1]
-        return np.stack([self.A - (lam + 1.0) * x + x * x * z, lam * x - x * x * z])
+    return from_functions(
+        lambda y, lam: np.stack([A - (lam + 1.0) * y[0] + y[0] ** 2 * y[1], lam * y[0] - y[0] ** 2 * y[1]]),
+        start=([1.0, 1.0], 1.0),
+        target=None,
+    )
 
 
-@frozen
-class VanDerPol:
+def van_der_pol(k=1.0):
     """x'' = lam (1 - x^2) x' - k x: Hopf points at lam = 0, frequency the root of k."""
-
-    k: float = 1.0
-    target = None
-
-    def start(self):
-        return np.zeros(2), -1.0
-
-    def residual(self, y, lam):
-        return np.stack([y[1], lam * (1.0 - y[0] * y[0]) * y[1] - self.k * y[0]])
+    return from_functions(
+        lambda y, lam: np.stack([y[1], lam * (1.0 - y[0] * y[0]) * y[1] - k * y[0]]),
+        start=(np.zeros(2), -1.0),
+        target=None,
+    )
 
 
-@frozen
-class TakensBogdanov:
-    """The normal form: folds at lam = 0, Hopf points at lam = -mu^2 with frequency (2 mu)^(1/2); both meet at 0."""
-
-    mu: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([-2.0, 0.0]), -4.0
-
-    def residual(self, y, lam):
-        return np.stack([y[1], lam + self.mu * y[1] + y[0] ** 2 + y[0] * y[1]])
+def takens_bogdanov(mu=1.0):
+    """The normal form: folds at lam = 0, Hopf points at lam = -mu^2, frequency (2 mu)^(1/2); they meet at 0."""
+    return from_functions(
+        lambda y, lam: np.stack([y[1], lam + mu * y[1] + y[0] ** 2 + y[0] * y[1]]),
+        start=([-2.0, 0.0], -4.0),
+        target=None,
+    )
 
 
-@frozen
-class ZeroHopf:
+def zero_hopf(mu=1.0):
     """Folds at lam = 0, Hopf points where lam = mu^2 with frequency 2: they meet at mu = 0."""
-
-    mu: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([2.0, 0.0, 0.0]), 4.0
-
-    def residual(self, y, lam):
-        growth = self.mu + y[0]
-        return np.stack([lam - y[0] ** 2, growth * y[1] - 2.0 * y[2], 2.0 * y[1] + growth * y[2]])
+    return from_functions(
+        lambda y, lam: np.stack([lam - y[0] ** 2, (mu + y[0]) * y[1] - 2.0 * y[2], 2.0 * y[1] + (mu + y[0]) * y[2]]),
+        start=([2.0, 0.0, 0.0], 4.0),
+        target=None,
+    )
 
 
-@frozen
-class Coupled:
+def coupled(mu=1.0, sparse=False):
     """Two pitchforks, coupled: from the branch y_1 = -y_2 another one leaves at lam = 3 mu, where y_1^2 = mu."""
-
-    mu: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([2.0, -2.0]), 4.0 + 2.0 * self.mu
-
-    def residual(self, y, lam):
-        return lam * y - y**3 + self.mu * (y[::-1] - y)
-
-
-@frozen
-class CoupledSparse:
-    """The same with a sparse derivative."""
-
-    mu: float = 1.0
-    target = None
-
-    def start(self):
-        return Coupled(self.mu).start()
-
-    def residual(self, y, lam):
-        return Coupled(self.mu).residual(y, lam)
-
-    def jacobian(self, y, lam):
-        return sp.csc_array(np.diag(lam - 3.0 * y**2 - self.mu) + self.mu * np.eye(2)[::-1]), y.copy()
+    return from_functions(
+        lambda y, lam: lam * y - y**3 + mu * (y[::-1] - y),
+        (lambda y, lam: (sp.csc_array(np.diag(lam - 3.0 * y**2 - mu) + mu * np.eye(2)[::-1]), y.copy()))
+        if sparse
+        else None,
+        start=([2.0, -2.0], 6.0),
+        target=None,
+    )
 
 
-@frozen
-class Ring:
+def ring(a=1.0):
     """y_0^2 / a + y_1^2 + lam^2 = 1, y_1 = a lam y_0: where y_1 is largest moves with a."""
-
-    a: float = 1.0
-    target = None
-
-    def start(self):
-        return np.array([np.sqrt(self.a), 0.0]), 0.0
-
-    def residual(self, y, lam):
-        return np.stack([y[0] ** 2 / self.a + lam**2 + y[1] ** 2 - 1.0, y[1] - self.a * lam * y[0]])
+    return from_functions(
+        lambda y, lam: np.stack([y[0] ** 2 / a + lam**2 + y[1] ** 2 - 1.0, y[1] - a * lam * y[0]]),
+        start=([1.0, 0.0], 0.0),
+        target=None,
+    )
 
 
 @frozen
@@ -177,11 +117,12 @@ class Bent:
 
     def piece(self, signs):
         slope = 0.3 * (signs[0] > 0)
-        return continuation.from_functions(
+        return from_functions(
             lambda y, lam: y - 2.0 * lam + slope * self.switches(y, lam)[:1], start=self.start(), target=None
         )
 
 
+@cache
 def second_derivative(n):
     """Of even functions on (-1, 1) that vanish at the ends, at the Chebyshev points of (0, 1]: shape (n, n)."""
     k = np.arange(2 * n + 1)
@@ -195,24 +136,12 @@ def second_derivative(n):
     return even
 
 
-@frozen(eq=False)
-class Gelfand:
+def gelfand(eps=0.2, n=16):
     """u'' + lam exp(u / (1 + eps u)) = 0, u(-1) = u(1) = 0, by collocation: u(0) is the last unknown."""
-
-    eps: float = 0.2
-    n: int = 16
-    target = None
-    D2: np.ndarray | None = field(default=None, repr=False)
-
-    def __attrs_post_init__(self):
-        if self.D2 is None:
-            object.__setattr__(self, "D2", second_derivative(self.n))
-
-    def start(self):
-        return np.zeros(self.n), 0.0
-
-    def residual(self, y, lam):
-        return self.D2 @ y + lam * np.exp(y / (1.0 + self.eps * y))
+    D2 = second_derivative(n)
+    return from_functions(
+        lambda y, lam: D2 @ y + lam * np.exp(y / (1.0 + eps * y)), start=(np.zeros(n), 0.0), target=None
+    )
 
 
 @frozen
@@ -297,25 +226,6 @@ class Diffusing:
         slope = np.stack([-x, x], axis=1)
         slope[[0, -1], 1] += 2.0 * k / self.A
         return matrix, slope.ravel()
-
-
-@frozen(eq=False)
-class Rescaled:
-    """A member of a family in other units: y by the factors d, lam by a, the equations by e."""
-
-    family: object
-    d: np.ndarray
-    e: np.ndarray
-    a: float
-    mu: float
-    target = None
-
-    def start(self):
-        y, lam = self.family(self.mu).start()
-        return y * self.d, lam / self.a
-
-    def residual(self, y, lam):
-        return self.e * self.family(self.mu).residual(y / self.d, self.a * lam)
 
 
 def first_fold(homotopy, **options):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from continuation import intervals, jets
+from continuation import jets
 from continuation.intervals import Interval, UndecidedError, enclose, jacobian
 from continuation.numbers.ends import Ends, thin
 
@@ -22,11 +22,6 @@ def test_no_value_lies_outside_of_its_interval(name):
     outside, told = against_mpmath.violations(name, 600, seed=1)
     assert outside == 0
     assert told > (0.2 if name in ("tan", "divide", "reciprocal", "log1p", "cbrt", "arctan2") else 0.6)
-
-
-@pytest.mark.parametrize("name", against_mpmath.ONE)
-def test_no_derivative_lies_outside_of_its_interval(name):
-    assert against_mpmath.slopes_outside(name, 100, seed=2) == 0
 
 
 def test_sums_and_products_of_all_sizes_are_enclosed():
@@ -68,31 +63,18 @@ def _assigned(y):
     return out
 
 
+@pytest.mark.parametrize("radius", [0.0, 1e-9, 1e-3])
 @pytest.mark.parametrize("name", RESIDUALS)
-def test_a_residual_in_plain_numpy_runs_on_boxes_as_on_jets(name):
+def test_a_residual_in_plain_numpy_runs_on_boxes_as_on_jets_and_holds_every_point(name, radius):
     f = RESIDUALS[name]
-    exact, slopes = np.asarray(f(X), dtype=float), jets.jacobian(f, X)
-    for radius in (0.0, 1e-9, 1e-3):
-        value, slope = enclose(f, X - radius, X + radius), jacobian(f, X - radius, X + radius)
-        slack = 1e-14 * (1.0 + np.abs(exact))  # of the plain evaluation and of the jets, which round
-        assert (value.lo <= exact + slack).all()
-        assert (exact - slack <= value.hi).all()
-        assert (value.hi - value.lo <= 2e3 * radius + 1e-12).all()
-        room = 1e-12 * (1.0 + np.abs(slopes))
-        assert (slope.lo <= slopes + room).all()
-        assert (slopes - room <= slope.hi).all()
-        assert (slope.hi - slope.lo <= 2e4 * radius + 1e-11).all()
-
-
-def test_a_box_holds_every_point_of_it():
-    for f in RESIDUALS.values():
-        value = enclose(f, X - 0.01, X + 0.01)
-        slope = jacobian(f, X - 0.01, X + 0.01)
-        for _ in range(20):
-            x = X + 0.01 * RNG.uniform(-1.0, 1.0, 6)
-            image, matrix = np.asarray(f(x), dtype=float), jets.jacobian(f, x)
-            assert ((value.lo <= image) & (image <= value.hi)).all()
-            assert ((slope.lo <= matrix) & (matrix <= slope.hi)).all()
+    value, slope = enclose(f, X - radius, X + radius), jacobian(f, X - radius, X + radius)
+    assert (value.hi - value.lo <= 2e3 * radius + 1e-12).all()
+    assert (slope.hi - slope.lo <= 2e4 * radius + 1e-11).all()
+    for x in X + radius * RNG.uniform(-1.0, 1.0, (10, 6)):
+        image, slopes = np.asarray(f(x), dtype=float), jets.jacobian(f, x)
+        for box, exact, digits in ((value, image, 1e-14), (slope, slopes, 1e-12)):
+            slack = digits * (1.0 + np.abs(exact))  # of the plain evaluation and of the jets, which round
+            assert ((box.lo <= exact + slack) & (exact - slack <= box.hi)).all()
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -174,4 +156,3 @@ def test_what_cannot_be_done_says_so():
         float(y[0])
     with pytest.raises(ValueError, match="lo <= hi"):
         Interval(1.0, 0.0)
-    assert intervals.__all__ == ["Interval", "UndecidedError", "enclose", "jacobian"]

@@ -1,6 +1,7 @@
 """For every check of the conformance suite there is a fault that it finds."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,79 +19,33 @@ def test_the_checks_serve_parametrize(check):
     check()
 
 
-class OwnArray(Interior):
-    Y0 = np.array([0.5 + math.sqrt(1.25), -0.5 + math.sqrt(1.25)])
-
-    def start(self):
-        return self.Y0, 1.0
-
-
-class Spoiling(Interior):
-    def residual(self, y, lam):
-        value = super().residual(y, lam)
-        y[1] += 1e-3
-        return value
+def spoiling(self, y, lam):
+    """It changes its argument."""
+    value = Interior.residual(self, y, lam)
+    y[1] += 1e-3
+    return value
 
 
-class Drifting(Interior):
-    """Each residual a little larger than the one before."""
-
-    calls = 0
-
-    def residual(self, y, lam):
-        self.calls += 1
-        return super().residual(y, lam) + 1e-13 * self.calls
+def drifting(self, y, lam):
+    """Each residual is a little larger than the one before."""
+    self.calls = getattr(self, "calls", 0) + 1
+    return Interior.residual(self, y, lam) + 1e-13 * self.calls
 
 
-class Reusing(Interior):
-    BUFFER = np.zeros((2, 2))
-
-    def jacobian(self, y, lam):
-        self.BUFFER[:] = [[y[1], y[0]], [1.0, -1.0]]
-        return self.BUFFER, np.array([-1.0, 0.0])
+def reusing(self, y, lam):
+    """All matrices are one."""
+    self.buffer[:] = [[y[1], y[0]], [1.0, -1.0]]
+    return self.buffer, np.array([-1.0, 0.0])
 
 
-class Flipped(Interior):
-    def bordered(self, y, lam, border):
-        system = super().bordered(y, lam, border)
-
-        class Wrong:
-            sign = -1.0 * system.sign
-            solve = staticmethod(system.solve)
-
-        return Wrong()
+def flipped(self, y, lam, border):
+    """The determinant's sign is wrong."""
+    system = Interior.bordered(self, y, lam, border)
+    return SimpleNamespace(sign=-system.sign, solve=system.solve)
 
 
-class Deaf(Interior):
-    """Solves with one and the same border."""
-
-    def bordered(self, y, lam, border):
-        return super().bordered(y, lam, np.array([0.0, 0.0, 1.0]))
-
-
-class Double(NoSolution):
-    """y^2 = (lam - 1)^2, at the crossing."""
-
-    def start(self):
-        return np.array([0.0]), 1.0
-
-    def residual(self, y, lam):
-        return y**2 - (lam - 1.0) ** 2
-
-
-class Wandering(Interior):
-    def observe(self, y, lam):
-        return {"gap": 0.0} if lam == 1.0 else {"distance": 0.0}
-
-
-class Unreachable:
-    """y = sqrt(lam - 1/2), asked for at lam = 0."""
-
-    def start(self):
-        return np.array([math.sqrt(0.5)]), 1.0
-
-    def residual(self, y, lam):
-        return y - np.sqrt(lam - 0.5)
+def plain(residual, y0):
+    return continuation.from_functions(residual, start=([y0], 1.0), target=0.0)
 
 
 class OneWay(Interior):
@@ -172,6 +127,7 @@ class Bent:
         )
 
 
+INSIDE = np.array([0.5 + math.sqrt(1.25), -0.5 + math.sqrt(1.25)])
 FAULTS = [
     (
         "repeatable",
@@ -185,16 +141,24 @@ FAULTS = [
     ("start", interior(start=lambda self: [1.0, 2.0, 3.0]), r"expected a tuple \(y0, lam0\), found list"),
     ("start", interior(start=lambda self: (np.full(2, np.nan), 1.0)), "expected finite numbers, found NaN"),
     ("start", interior(start=lambda self: 1 / 0), "it raises ZeroDivisionError"),
-    ("repeatable", OwnArray(), "it returns its own array"),
+    ("repeatable", interior(own=INSIDE, start=lambda self: (self.own, 1.0)), "it returns its own array"),
     ("start", interior(residual=lambda self, y, lam: y[:1]), r"expected shape \(2,\), that of y0, found \(1,\)"),
     (
         "residual",
         interior(residual=lambda self, y, lam: y.astype(np.float32)),
         "at the start expected one finite number of float64 for each unknown, found",
     ),
-    ("repeatable", Spoiling(), r"residual: at the start it changes its arguments, by up to 0\.001"),
-    ("repeatable", Drifting(), "residual: at the start a second call .* differs from the first, by up to"),
-    ("repeatable", Reusing(), "jacobian: .* an answer changes when the method is called again: return new arrays"),
+    ("repeatable", interior(residual=spoiling), r"residual: at the start it changes its arguments, by up to 0\.001"),
+    (
+        "repeatable",
+        interior(residual=drifting),
+        "residual: at the start a second call .* differs from the first, by up to",
+    ),
+    (
+        "repeatable",
+        interior(jacobian=reusing, buffer=np.zeros((2, 2))),
+        "jacobian: .* an answer changes when the method is called again: return new arrays",
+    ),
     ("target", interior(target="zero"), "expected a finite number or None, found 'zero'"),
     ("target", interior(target=math.inf), "expected a finite number or None, found inf"),
     (
@@ -223,10 +187,18 @@ FAULTS = [
         interior(differential=lambda self, y, lam, v: self.jacobian(y, lam)[0] @ v[:-1]),
         "differential: at the start component 0 is .*, expected .*, a difference of",
     ),
-    ("bordered", Flipped(), r"the sign is [+-]1, but the determinant is"),
-    ("bordered", Deaf(), "the solution's equation 2 is .*, expected"),
+    ("bordered", interior(bordered=flipped), r"the sign is [+-]1, but the determinant is"),
+    (
+        "bordered",
+        interior(bordered=lambda *given: Interior.bordered(*given[:3], np.array([0.0, 0.0, 1.0]))),
+        "the solution's equation 2 is .*, expected",
+    ),
     ("start_on_path", NoSolution(), "START_NOT_ON_PATH: The start is not on the path"),
-    ("start_on_path", Double(), "SINGULAR_START: The Jacobian .* has no full rank at the start"),
+    (
+        "start_on_path",
+        plain(lambda y, lam: y**2 - (lam - 1.0) ** 2, 0.0),
+        "SINGULAR_START: The Jacobian .* has no full rank at the start",
+    ),
     (
         "metric",
         interior(metric=type("Flat", (), {"weights": lambda self, u, v, current: np.array([1.0, 0.0, 1.0])})()),
@@ -250,7 +222,7 @@ FAULTS = [
     ),
     (
         "observe",
-        Wandering(),
+        interior(observe=lambda self, y, lam: {"gap" if lam == 1.0 else "distance": 0.0}),
         "beside the start expected a dictionary of real numbers with names that are the same everywhere, found",
     ),
     ("observe", interior(observe=lambda self, y, lam: {"gap": "small"}), "expected a dictionary of real numbers"),
@@ -270,7 +242,11 @@ FAULTS = [
     ("picklable", interior(), "picklable: .*PicklingError"),
     ("taylor", WrongSeries(), r"the residual along the series falls like h\^[23]\.?\d*, expected h\^7"),
     ("taylor", interior(taylor=lambda self, point, order: np.zeros((order, 3))), r"expected shape \(7, 3\)"),
-    ("trace", Unreachable(), "the path ended after .* steps, (LEFT_DOMAIN|STEP_TOO_SMALL)"),
+    (
+        "trace",
+        plain(lambda y, lam: y - np.sqrt(lam - 0.5), math.sqrt(0.5)),
+        "the path ended after .* steps, (LEFT_DOMAIN|STEP_TOO_SMALL)",
+    ),
     ("refinement", Ageing(drift=1e-3), r"step refinement: The retrace does not pass through step \d+ \(arclength"),
     ("reversal", OneWay(), "reversal: The retrace does not pass through step"),
     ("archive", Forgetful(), "the homotopy read back has another residual, by up to"),

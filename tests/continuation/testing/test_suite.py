@@ -33,11 +33,7 @@ def test_only_the_capabilities_that_are_there_are_checked():
 
 
 def test_nothing_is_called_while_the_checks_are_collected():
-    def explode(*arguments):
-        raise AssertionError("called")
-
-    faulty = interior(start=explode, residual=explode)
-    assert len(homotopy_checks(faulty)) == len(SMOOTH)
+    assert len(homotopy_checks(interior(start=pytest.fail, residual=pytest.fail))) == len(SMOOTH)
 
 
 def test_what_depends_on_a_failed_check_is_not_run():
@@ -54,25 +50,22 @@ def test_a_failure_may_be_expected_with_its_reason():
     assert outcome.message.endswith("(known, issue 12)")
 
 
-def test_a_failure_that_does_not_come_is_reported():
-    with pytest.raises(CheckFailure, match=r"taylor: expected to fail .* but it passes: take it off the list"):
-        check_homotopy(Interior(), expected_failed_checks={"taylor": "known"})
-
-
-def test_a_check_that_does_not_exist_cannot_be_expected_to_fail():
-    with pytest.raises(ValueError, match=r"expected_failed_checks: expected names among .*, found 'tailor'"):
-        check_homotopy(Interior(), expected_failed_checks={"tailor": "typing"})
+@pytest.mark.parametrize(
+    ("name", "error", "said"),
+    [
+        ("taylor", CheckFailure, r"taylor: expected to fail .* but it passes: take it off the list"),
+        ("tailor", ValueError, r"expected_failed_checks: expected names among .*, found 'tailor'"),
+    ],
+)
+def test_a_failure_that_cannot_come_is_reported(name, error, said):
+    with pytest.raises(error, match=said):
+        check_homotopy(Interior(), expected_failed_checks={name: "known"})
 
 
 @pytest.mark.parametrize(("steps", "few"), [(2, True), (None, False)])
 def test_fewer_steps_are_looked_at_when_asked(steps, few):
     seen = set()
-
-    class Watched(Interior):
-        def observe(self, y, lam):
-            seen.add(lam)
-            return super().observe(y, lam)
-
-    next(check for check in homotopy_checks(Watched(), steps=steps) if str(check) == "trace")()
+    watched = interior(observe=lambda self, y, lam: seen.add(lam) or Interior.observe(self, y, lam))
+    next(check for check in homotopy_checks(watched, steps=steps) if str(check) == "trace")()
     # A path is traced once to see how long it is, and once with short steps.
     assert (len(seen) <= 6) is few
