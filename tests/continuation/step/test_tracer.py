@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation import (
+    CONSERVATIVE,
+    DEFAULT,
+    FAST,
+    SERIES,
+    Budget,
+    Kind,
+    Status,
+    TargetValue,
+    Tracer,
+    from_functions,
+    trace,
+)
 from continuation.correctors import NaturalParameter
 from continuation.metric import Euclidean
 from continuation.rejection import Rejection
@@ -66,8 +78,9 @@ def test_the_records_of_a_path_agree():
         assert step.residual_norm == np.abs(homotopy.residual(step.y, step.lam)).max() <= 1e-6
 
 
-def test_dense_output_is_close_to_the_path():
-    path = trace(Circle(), metric=Euclidean())
+@by_preset(DEFAULT, SERIES)
+def test_dense_output_is_close_to_the_path(preset):
+    path = trace(Circle(), metric=Euclidean(), preset=preset)
     s = np.linspace(0.0, path.endpoint.arclength, 200)
     np.testing.assert_allclose(np.hypot(*path(s).T), 1.0, rtol=0, atol=2e-4)
     np.testing.assert_allclose(path(s), np.column_stack((np.cos(s), np.sin(s))), rtol=0, atol=5e-3)
