@@ -15,8 +15,7 @@ from continuation import Budget, Interrupted, Stability, diagram
 from continuation.archive import ArchiveError, open_archive
 from problems.bifurcation import Pitchfork
 
-from ..kinks.util import Folded
-from .util import Forks
+from .util import CROSSED, Forks
 
 BOX = {"lam": (0.0, 5.0)}
 
@@ -56,7 +55,7 @@ def ends(found):
 
 
 def same(found, whole):
-    assert found.complete, found.message
+    assert (found.complete, found.message) == (whole.complete, whole.message)
     assert [(b.origin, b.generation) for b in found.branches] == [(b.origin, b.generation) for b in whole.branches]
     assert [(p.label, p.branches) for p in found.points] == [(p.label, p.branches) for p in whole.points]
     assert [p.event.lam for p in found.points] == pytest.approx([p.event.lam for p in whole.points], abs=1e-9)
@@ -117,7 +116,7 @@ def test_a_killed_diagram_leaves_its_branches_and_goes_on(tmp_path, whole):
     assert again.calls < 0.6 * calls
     # What is finished is finished: a third time nothing is traced.
     third = Stopping()
-    same(diagram(third, box=BOX, archive=file, resume=True), found)
+    assert diagram(third, box=BOX, archive=file, resume=True).complete
     assert third.calls < 0.2 * calls
 
 
@@ -130,38 +129,40 @@ def test_threads_are_interrupted_and_go_on_too(tmp_path, whole):
         same(diagram(Stopping(), box=BOX, archive=file, executor=workers, resume=True), found)
 
 
-def test_kinks_and_what_deflation_found_go_on_too(tmp_path):
-    crossed = Folded(((0, 0),), ((1, -1),), ((1, 0), (0, 1)), (0,), (0, 0), (-1, 1))
-    box = {"lam": (-2.0, 2.0)}
-    first = diagram(crossed, box=box, archive=tmp_path / "k.h5")
-    with open_archive(tmp_path / "k.h5") as archive:
-        assert [e.rays is None for path in archive for e in path.events if e.kind.name == "KINK"] == [False]
-    same(diagram(crossed, box=box, archive=tmp_path / "k.h5", resume=True), first)
-    imperfect = Pitchfork(imperfection=0.01)
-    asked = {"box": box, "deflate": [1.0], "archive": tmp_path / "i.h5", "stability": Stability()}
-    first = diagram(imperfect, **asked)
-    assert len(first) == 2
-    same(diagram(imperfect, **asked, resume=True), first)
+@pytest.mark.parametrize(
+    ("homotopy", "options"),
+    [
+        (CROSSED, {"box": {"lam": (-2.0, 2.0)}}),
+        (
+            Pitchfork(imperfection=0.01),
+            {"box": {"lam": (-2.0, 2.0)}, "deflate": [1.0], "stability": Stability()},
+        ),
+        (Forks((1.0, 2.0)), {"box": BOX, "budget": Budget(steps=6)}),
+    ],
+    ids=["kinks", "what deflation found", "what ended early"],
+)
+def test_a_diagram_that_was_finished_is_the_same_again(tmp_path, homotopy, options):
+    first, again = (diagram(homotopy, archive=tmp_path / "d.h5", resume=k, **options) for k in (False, True))
+    same(again, first)
+    assert first.complete == ("budget" not in options)
 
 
-def test_what_ended_early_is_said_again(tmp_path):
-    asked = {"box": BOX, "archive": tmp_path / "d.h5", "budget": Budget(steps=6)}
-    first = diagram(Forks((1.0, 2.0)), **asked)
-    again = diagram(Forks((1.0, 2.0)), **asked, resume=True)
-    assert not first.complete
-    assert (again.message, len(again)) == (first.message, len(first))
-
-
-def test_another_diagram_is_not_gone_on_with(tmp_path):
-    file = tmp_path / "d.h5"
-    diagram(Forks((1.0, 2.0)), box=BOX, archive=file)
-    with pytest.raises(ArchiveError, match=r"d\.h5"):
-        diagram(Forks((1.0, 2.0)), box=BOX, archive=file)
-    with pytest.raises(ValueError, match="homotopy: expected 2 unknowns, as in the archive, found 1"):
-        diagram(Forks((1.0,)), box=BOX, archive=file, resume=True)
-    with pytest.raises(ValueError, match="homotopy: expected the archive's residual"):
-        diagram(Forks((1.0, 3.0)), box=BOX, archive=file, resume=True)
-    with open_archive(file) as archive:
+@pytest.mark.parametrize(
+    ("homotopy", "resume", "error", "words"),
+    [
+        (Forks((1.0, 2.0)), False, ArchiveError, r"d\.h5"),
+        (Forks((1.0,)), True, ValueError, "homotopy: expected 2 unknowns, as in the archive, found 1"),
+        (Forks((1.0, 3.0)), True, ValueError, "homotopy: expected the archive's residual"),
+    ],
+)
+def test_another_diagram_is_not_gone_on_with(tmp_path, homotopy, resume, error, words):
+    diagram(Forks((1.0, 2.0)), box=BOX, archive=tmp_path / "d.h5")
+    with pytest.raises(error, match=words):
+        diagram(homotopy, box=BOX, archive=tmp_path / "d.h5", resume=resume)
+    with open_archive(tmp_path / "d.h5") as archive:
         assert len(archive) == 5
+
+
+def test_resuming_needs_an_archive():
     with pytest.raises(ValueError, match="resume: expected True with an archive"):
         diagram(Forks((1.0, 2.0)), box=BOX, resume=True)
