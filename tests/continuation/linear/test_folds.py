@@ -1,50 +1,28 @@
-"""Bordered systems at the folds of the discrete Bratu problem, L y + lam exp(y) = 0, where H_y is singular."""
-
-from functools import cache
+"""Bordered systems where H_y is singular, as at the folds of discrete boundary value problems."""
 
 import numpy as np
 import pytest
 from scipy.linalg import lu_factor, lu_solve
-from scipy.sparse import block_array, csc_array, diags_array, eye_array, kron
-from scipy.sparse.linalg import LinearOperator, aslinearoperator, splu, spsolve
+from scipy.sparse import csc_array, diags_array, eye_array, kron
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, splu
 
 from continuation.linear import Banded, Operator, SingularError, Symmetric, factor_bordered
 from continuation.linear.elimination import BlockElimination
 
 
-def laplacian(n):
-    second = diags_array([np.ones(n - 1), -2 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1])
-    return csc_array(second * (n + 1) ** 2)
-
-
-@cache
-def fold(dimensions, n):
-    """(H_y, H_lam, null vector) at the fold, by Newton's method on the extended system of Seydel and Moore & Spence."""
-    sine, along = np.sin(np.pi * np.arange(1, n + 1) / (n + 1)), laplacian(n)
-    square = csc_array(kron(along, eye_array(n)) + kron(eye_array(n), along))
-    y, lam, operator = (1.19 * sine, 3.51, along) if dimensions == 1 else (1.39 * np.kron(sine, sine), 6.8, square)
-    first = phi = y / np.linalg.norm(y)
-    for _ in range(8):
-        e = np.exp(y)
-        jacobian = operator + diags_array(lam * e)
-        gap = np.concatenate([operator @ y + lam * e, jacobian @ phi, [first @ phi - 1]])
-        extended = block_array(
-            [
-                [jacobian, None, e[:, None]],
-                [diags_array(lam * e * phi), jacobian, (e * phi)[:, None]],
-                [None, first[None, :], None],
-            ],
-            format="csc",
-        )
-        step = -spsolve(extended, gap)
-        y, phi, lam = y + step[: y.size], phi + step[y.size : -1], lam + step[-1]
-    return csc_array(operator + diags_array(lam * np.exp(y))), np.exp(y), phi
+def at_fold(dimensions, n):
+    """(H_y, H_lam, null vector): second differences less their eigenvalue nearest to zero, as at a fold of Bratu's."""
+    second = diags_array([np.ones(n - 1), -2 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]) * (n + 1.0) ** 2
+    sine, value = np.sin(np.pi * np.arange(1, n + 1) / (n + 1)), 4.0 * ((n + 1) * np.sin(0.5 * np.pi / (n + 1))) ** 2
+    if dimensions == 2:
+        second, sine, value = kron(second, eye_array(n)) + kron(eye_array(n), second), np.kron(sine, sine), 2.0 * value
+    return csc_array(second + value * eye_array(sine.size)), np.exp(sine), sine / np.linalg.norm(sine)
 
 
 def bordered_at(dimensions, n, shift):
     """(H_y, H_lam, border, right-hand side) so far from the fold, and the whole matrix."""
-    at_fold, column, phi = fold(dimensions, n)
-    matrix, row = csc_array(at_fold + shift * eye_array(phi.size)), np.append(phi, 0.1)
+    matrix, column, phi = at_fold(dimensions, n)
+    matrix, row = csc_array(matrix + shift * eye_array(phi.size)), np.append(phi, 0.1)
     rhs = np.append(np.sin(np.arange(phi.size)), 1.0)
     return matrix, column, row, rhs, np.block([[matrix.toarray(), column[:, None]], [row[None, :]]])
 
@@ -94,14 +72,14 @@ def test_regular_points_are_solved_in_the_band():
 
 def test_krylov_uses_its_preconditioner():
     """With the exact inverse of H_y - I the bordered operator is solved in a handful of products."""
-    at_fold, column, row, rhs, whole = bordered_at(1, 1000, 0.0)
+    matrix, column, row, rhs, whole = bordered_at(1, 1000, 0.0)
     n, products = len(column), []
 
     def product(x):
         products.append(x)
-        return at_fold @ x
+        return matrix @ x
 
-    near = splu(csc_array(at_fold - eye_array(n)))
+    near = splu(csc_array(matrix - eye_array(n)))
     operator = LinearOperator((n, n), matvec=product, dtype=float)
     preconditioned = Operator(operator, LinearOperator((n, n), matvec=near.solve, dtype=float))
     z = factor_bordered(preconditioned, column, row).solve(rhs[:-1], rhs[-1])

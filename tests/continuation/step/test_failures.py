@@ -9,7 +9,6 @@ from continuation import Budget, Status, Tracer, from_functions, trace
 from continuation.controllers import Fixed
 from continuation.evaluation.errors import EvaluationError
 from continuation.predictors import Tangent
-from continuation.rejection import Rejection
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
 from ..util import scalar
@@ -87,41 +86,33 @@ def test_what_turns_nan_ends_the_domain(residual, slope):
     assert "not finite" in path.message
 
 
-@pytest.mark.parametrize("target", [-1.0, 0.0])
-def test_the_edge_of_the_domain(target):
-    # Beyond lam = 0 there is no square root; H_lam is infinite on the edge itself.
-    @np.errstate(all="ignore")
-    def slope(y, lam):
-        return 1.0, -0.5 / np.sqrt(lam)
+def root(y, lam):
+    return 1.0, -0.5 / np.sqrt(lam)
 
-    @np.errstate(all="ignore")
-    def residual(y, lam):
-        return y - np.sqrt(lam)
 
-    path = trace(scalar(residual, slope, start=(1.0, 1.0), target=target))
-    if target == 0.0 and path.status is Status.REACHED_TARGET:
-        np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-6)
-    else:
-        assert path.status is Status.LEFT_DOMAIN
-        assert 0.0 <= path.endpoint.lam <= 1e-8
+def by_math(y, lam):
+    return np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))])
 
 
 @pytest.mark.parametrize(
-    ("residual", "status"),
+    ("residual", "slope", "start", "target", "statuses", "within"),
     [
-        (lambda y, lam: y - np.sqrt(1.0 - lam), Status.LEFT_DOMAIN),
-        (lambda y, lam: y + np.log(1.0 - lam), Status.DIVERGED),
-        (lambda y, lam: np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))]), Status.LEFT_DOMAIN),
+        (lambda y, lam: y - np.sqrt(1.0 - lam), None, (1.0, 0.0), 2.0, [Status.LEFT_DOMAIN], 1e-4),
+        (by_math, None, (1.0, 0.0), 2.0, [Status.LEFT_DOMAIN], 1e-4),
+        # A logarithm is named before the edge is met.
+        (lambda y, lam: y + np.log(1.0 - lam), None, (0.0, 0.0), 2.0, [Status.DIVERGED], 1e-4),
+        # H_lam is infinite on the edge itself.
+        (lambda y, lam: y - np.sqrt(lam), root, (1.0, 1.0), -1.0, [Status.LEFT_DOMAIN], 1e-8),
+        (lambda y, lam: y - np.sqrt(lam), root, (1.0, 1.0), 0.0, [Status.LEFT_DOMAIN, Status.REACHED_TARGET], 1e-8),
     ],
-    ids=["sqrt", "log", "math.sqrt"],
+    ids=["sqrt", "math.sqrt", "log", "sqrt with a derivative", "target on the edge"],
 )
-def test_the_edge_of_the_domain_without_a_derivative_and_without_a_warning(residual, status):
-    y0 = -residual(np.zeros(1), 0.0)
-    path = trace(from_functions(residual, start=(y0, 0.0), target=2.0), budget=Budget(steps=300))
-    assert path.status is status
-    assert 1.0 - 1e-4 <= path.endpoint.lam <= 1.0 + 1e-12
-    # A logarithm is named before the edge is met.
-    assert status is Status.DIVERGED or any(attempt.reason is Rejection.NO_VALUE for attempt in path.rejected)
+def test_the_edge_of_the_domain_is_met_without_a_warning(residual, slope, start, target, statuses, within):
+    path = trace(scalar(residual, slope, start, target), budget=Budget(steps=300))
+    assert path.status in statuses
+    assert abs(path.endpoint.lam - (0.0 if slope else 1.0)) <= within
+    reasons = [attempt.reason for attempt in path.rejected]
+    assert path.status is not Status.LEFT_DOMAIN or reasons[-1].leaves_domain
 
 
 def test_overflow_in_a_residual_makes_no_noise():
