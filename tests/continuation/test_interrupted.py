@@ -2,11 +2,10 @@
 
 import pickle
 
-import numpy as np
 import pytest
 
-from continuation import Interrupted, Status, Tracer, trace
-from continuation.archive import open_archive, resume, trace_many
+from continuation import Interrupted, Status, Tracer
+from continuation.archive import trace_many
 from continuation.cli import main
 from problems import lcp
 from problems.bifurcation import Cusp
@@ -19,18 +18,6 @@ class Pressed(Cusp):
         if lam > 0.2:
             raise KeyboardInterrupt
         return super().residual(y, lam)
-
-
-def test_the_path_so_far_comes_with_the_interrupt_and_is_in_the_archive(tmp_path):
-    with pytest.raises(KeyboardInterrupt) as interrupt:
-        trace(Pressed(), archive=tmp_path / "0.h5")
-    path = interrupt.value.path
-    assert path.status is Status.INTERRUPTED
-    assert len(path) > 1
-    with open_archive(tmp_path / "0.h5") as archive:
-        assert archive.path(0).status is Status.INTERRUPTED
-        np.testing.assert_array_equal(archive.path(0).u, path.u)
-    np.testing.assert_array_equal(resume(tmp_path / "0.h5", Cusp()).u, trace(Cusp()).u)
 
 
 def test_a_sweep_hands_over_what_it_has():

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from attrs import frozen
 
-from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, switch_branch, trace, trace_both
+from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, trace, trace_both
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -32,10 +32,6 @@ def brusselator(A):
         return np.stack([A - (B + 1.0) * y[0] + made, B * y[0] - made])
 
     return from_functions(rates, start=([A, 0.5 / A], 0.5), target=3.0 + A * A)
-
-
-def lorenz(y, r):
-    return np.stack([10.0 * (y[1] - y[0]), r * y[0] - y[1] - y[0] * y[2], y[0] * y[1] - 8.0 / 3.0 * y[2]])
 
 
 def van_der_pol(y, mu):
@@ -82,18 +78,6 @@ def test_the_brusselator_oscillates_from_one_plus_a_squared_on(preset, A):
     (event,) = hopf_points(path)
     assert (event.lam, event.observed["frequency"]) == pytest.approx((1.0 + A * A, A), abs=1e-10)
     assert unstable(path) == [2.0 * (lam > 1.0 + A * A) for lam in path.lam]
-
-
-def test_lorenz_has_its_pitchfork_and_its_hopf_points():
-    homotopy = from_functions(lorenz, start=(np.zeros(3), 0.2), target=30.0)
-    trunk = trace(homotopy, observers=[Stability()])
-    (fork,) = trunk.events
-    assert abs(fork.lam - 1.0) < 1e-10
-    assert {step.observed["unstable"] for step in trunk.steps if step.lam > 1.0} == {1.0}
-    for start in switch_branch(homotopy, fork):
-        (event,) = hopf_points(trace(homotopy, start=start, target=30.0, observers=[Stability()]))
-        frequency = np.sqrt(8.0 / 3.0 * (470.0 / 19.0 + 10.0))
-        assert (event.lam, event.observed["frequency"]) == pytest.approx((470.0 / 19.0, frequency), abs=1e-10)
 
 
 @pytest.mark.parametrize("side", [1, -1])

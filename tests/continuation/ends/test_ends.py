@@ -33,10 +33,15 @@ def grown(n):
         *((power(p), 0.0, 10.0 * EPS ** (1.0 / p)) for p in (3, 5)),
         (power(3, target=-1.0), -1.0, 1e-9),
         *((grown(n), 1e10, 1.0) for n in (1, 3)),
+        # A start near the path is brought on it; one unknown may be a number; and overflow makes no noise.
+        (scalar(lambda y, lam: y * y - 1.0 - lam, lambda y, lam: (2.0 * y, -1.0), (1.2, 0.0)), math.sqrt(2.0), 1e-10),
+        (from_functions(lambda y, lam: y**3 + y - lam, start=(0.0, 0.0), target=2.0), 1.0, 1e-10),
+        (from_functions(lambda y, lam: np.sinh(y) - lam, start=([0.0], 0.0), target=1e6), math.asinh(1e6), 1e-5),
     ],
     ids=[
         "start on it", "fold", "fold from afar", "fold from below", "fold 1e-3 behind", "fold 1e-6 behind",
         "fold 1e-10 behind", "inflection", "flat inflection", "behind an inflection", "growth", "growth of three",
+        "start beside the path", "a number", "overflow",
     ],
 )  # fmt: skip
 def test_a_target_is_reached_exactly(homotopy, y, within):
@@ -44,8 +49,14 @@ def test_a_target_is_reached_exactly(homotopy, y, within):
     assert path.status is Status.REACHED_TARGET
     assert path.endpoint.lam == homotopy.target
     assert abs(path.endpoint.y[0] - y) <= within
+    assert path.steps[0].residual_norm <= 1e-8
     # A fold on the target itself may be seen or not.
     assert path.events == (path.turning_points if within == 1e-7 else [])
+
+
+def test_a_start_in_a_fold_is_regular():
+    path = trace(power(2, (0.0, 0.0), 1.0))
+    assert (path.status, abs(path.endpoint.y[0])) == (Status.REACHED_TARGET, pytest.approx(1.0, abs=1e-10))
 
 
 def test_a_fold_just_before_the_target_is_no_end():

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.sparse.linalg import LinearOperator
 
 from continuation import Budget, Status, from_functions, trace
 from continuation.evaluation.jacobian_check import check_jacobian
@@ -65,19 +64,6 @@ def test_derivatives_from_any_residual_are_paid_for_in_residuals(function):
     # Choosing the way costs a few residuals more, once.
     assert path.counts.residuals <= len(calls) <= path.counts.residuals + 20
     assert path.counts.residuals >= (6 if function is filled else 1) * path.counts.factorizations
-
-
-def test_an_operator_without_a_determinant():
-    n = 30
-
-    def jacobian(y, lam):
-        return LinearOperator((n, n), matvec=lambda v: (1.0 + 0.3 * np.cos(y)) * v, dtype=float), -np.ones(n)
-
-    homotopy = from_functions(lambda y, lam: y + 0.3 * np.sin(y) - lam, jacobian, start=(np.zeros(n), 0.0), target=1.0)
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
-    assert np.abs(homotopy.residual(path.endpoint.y, 1.0)).max() <= 1e-9
-    assert {step.orientation for step in path.steps} == {0}
 
 
 class Spoiled(ExponentialCosine):

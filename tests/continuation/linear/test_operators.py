@@ -30,5 +30,6 @@ def test_the_fold_is_that_of_the_matrix_for_half_the_products(preset):
     homotopy = from_functions(bratu.residual, jacobian, start=bratu.start(), target=None)
     by_matrix, path = (trace(one, preset=preset, events=[TurningPoint(terminal=1)]) for one in (bratu, homotopy))
     assert path.turning_points[0].lam == pytest.approx(by_matrix.turning_points[0].lam, rel=1e-12)
+    assert {step.orientation for step in path.steps} == {0}
     # Each solve to round-off took 18 of them.
     assert len(products) <= 10 * path.counts.solves

@@ -169,11 +169,6 @@ def test_accepted_and_rejected_are_counted():
         assert all(attempt.contraction > 0.0 for attempt in step.rejected)
 
 
-def test_one_unknown_given_as_a_number():
-    path = trace(from_functions(lambda y, lam: y * y * y + y - lam, start=(0.0, 0.0), target=2.0))
-    assert path.endpoint.u == pytest.approx([1.0, 2.0], abs=1e-10)
-
-
 def test_five_thousand_sparse_unknowns():
     n = 5000
     laplacian = diags_array([np.ones(n - 1), np.full(n, -2.0), np.ones(n - 1)], offsets=[-1, 0, 1], format="csc")
