@@ -8,6 +8,7 @@ import pytest
 from continuation import Budget, Kind, Status, from_functions, trace
 from problems.bifurcation import Circle
 
+from ...util import every_preset
 from ..util import scalar
 
 EPS = np.finfo(float).eps
@@ -23,12 +24,13 @@ def grown(n):
     return from_functions(lambda y, lam: y - lam**2 * np.arange(1.0, n + 1), start=(np.zeros(n), 0.0), target=1e5)
 
 
+@every_preset
 @pytest.mark.parametrize(
     ("homotopy", "y", "within"),
     [
         (power(1, (0.0, 0.0)), 0.0, 1e-12),
         *((power(2, start), 0.0, 1e-7) for start in ((1.0, 1.0), (3.0, 9.0), (-1.0, 1.0))),
-        *((power(2, target=behind), math.sqrt(behind), 1e-6 * math.sqrt(behind)) for behind in (1e-3, 1e-6, 1e-10)),
+        *((power(2, target=d), math.sqrt(d), 1e-6 * math.sqrt(d)) for d in (1e-2, 1e-5, 1e-8, 1e-14)),
         # Of multiplicity p: an error of round-off in lam is one of its p-th root in y.
         *((power(p), 0.0, 10.0 * EPS ** (1.0 / p)) for p in (3, 5)),
         (power(3, target=-1.0), -1.0, 1e-9),
@@ -39,13 +41,13 @@ def grown(n):
         (from_functions(lambda y, lam: np.sinh(y) - lam, start=([0.0], 0.0), target=1e6), math.asinh(1e6), 1e-5),
     ],
     ids=[
-        "start on it", "fold", "fold from afar", "fold from below", "fold 1e-3 behind", "fold 1e-6 behind",
-        "fold 1e-10 behind", "inflection", "flat inflection", "behind an inflection", "growth", "growth of three",
-        "start beside the path", "a number", "overflow",
+        "start on it", "fold", "fold from afar", "fold from below", "fold 1e-2 behind", "fold 1e-5 behind",
+        "fold 1e-8 behind", "fold 1e-14 behind", "inflection", "flat inflection", "behind an inflection", "growth",
+        "growth of three", "start beside the path", "a number", "overflow",
     ],
 )  # fmt: skip
-def test_a_target_is_reached_exactly(homotopy, y, within):
-    path = trace(homotopy)
+def test_a_target_is_reached_exactly(homotopy, y, within, preset):
+    path = trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
     assert path.endpoint.lam == homotopy.target
     assert abs(path.endpoint.y[0] - y) <= within

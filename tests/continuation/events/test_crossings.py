@@ -107,19 +107,6 @@ def test_neighbouring_circles_do_not_cross(preset, a):
     np.testing.assert_allclose(np.hypot(path.y[:, 0], path.lam), 1.0, rtol=0, atol=1e-9)
 
 
-@every_preset
-@pytest.mark.parametrize("delta", [0.0, 1e-14, 1e-8, 1e-5, 1e-2])
-@pytest.mark.parametrize("a", np.random.default_rng(3).uniform(0.1, 1.2, 4))
-def test_a_target_just_before_a_fold(preset, delta, a):
-    """The unit circle takes the value 1 - delta twice, within one step."""
-    homotopy = from_functions(
-        lambda y, lam: y**2 + lam**2 - 1.0, start=([-np.cos(a)], np.sin(a)), target=1.0 - delta
-    )
-    path = trace(homotopy, preset=preset, budget=Budget(steps=60))
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.y[0] == pytest.approx(-np.sqrt(delta * (2.0 - delta)), abs=2e-7)
-
-
 @by_preset(DEFAULT, CONSERVATIVE)
 @pytest.mark.parametrize("family", ["transversal", "pitchfork", "arm", "transcritical"])
 def test_random_crossings_in_random_units(family, preset):
