@@ -68,26 +68,19 @@ def systems(draw, symmetric=False, singular=None):
     return matrix, draw(integers(n)), draw(integers(n + 1)), draw(integers(n + 1))
 
 
-def check(structure, system, rows=1.0, columns=1.0):
-    """Compare with the exact solution of the system whose rows and columns were scaled by powers of two."""
+def check(structure, system, rows=1.0):
+    """Compare with the exact solution of the system whose rows were scaled by powers of two."""
     matrix, column, row, rhs = system
     square = whole(matrix, column, row)
     truth, sign = exact(square, rhs)
     assume(sign != 0)
     condition = np.linalg.cond(square, np.inf)
     assume(condition < 1e9)
-    scaled = whole(matrix, column, row) * np.reshape(rows, (-1, 1)) * np.reshape(columns, (1, -1))
+    scaled, right = square * np.reshape(rows, (-1, 1)), rhs * rows
     factored = factor_bordered(structure(scaled[:-1, :-1]), scaled[:-1, -1], scaled[-1])
-    scaled_rhs = rhs * rows
-    z = factored.solve(scaled_rhs[:-1], float(scaled_rhs[-1])) * columns
+    z = factored.solve(right[:-1], float(right[-1]))
     assert factored.sign in ({0} if structure is aslinearoperator else {sign})
     assert np.abs(z - truth).max() <= 200 * EPS * condition * np.abs(truth).max()
-
-
-@given(systems(), st.sampled_from(sorted(GENERAL)))
-@share(60)
-def test_general_structures_are_exact_to_round_off(system, name):
-    check(GENERAL[name], system)
 
 
 @pytest.mark.parametrize("singular", [None, True], ids=["any", "singular H_y"])
