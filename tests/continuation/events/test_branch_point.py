@@ -113,8 +113,8 @@ def test_the_other_branch_is_followed_both_ways(homotopy, curve, options, ends):
     assert ends in (None, found)
 
 
-def test_a_start_that_falls_back_is_refused_also_of_an_event_of_a_file(tmp_path):
-    """An event is one of its own homotopy: with another, a line that nothing crosses, only that is found."""
+def test_an_event_of_a_file_is_switched_at_with_its_own_homotopy_alone(tmp_path):
+    """With a line that nothing crosses, only that is found; and where H' vanishes altogether, nothing."""
     homotopy = pitchfork(start=(-1.0, 1.0), target=None)
     trace(homotopy, direction=-1, events=[TargetValue(0.5, component=0)], archive=tmp_path / "path.h5")
     with open_archive(tmp_path / "path.h5") as archive:
@@ -122,8 +122,10 @@ def test_a_start_that_falls_back_is_refused_also_of_an_event_of_a_file(tmp_path)
     for u, _ in switch_branch(homotopy, event, 0.1):
         assert abs(u[0]) < 1e-12
         assert abs(u[1]) > 0.01
-    with pytest.raises(ArithmeticError):
-        switch_branch(from_functions(lambda y, lam: y - lam, start=([0.0], 0.0)), event, 0.1)
+    flat = evolve(event, u=np.zeros(3), tangent=np.eye(3)[2], weights=np.ones(3), rays=None)
+    for function, at in ((lambda y, lam: y - lam, event), (lambda y, lam: y**2 * lam, flat)):
+        with pytest.raises(ArithmeticError):
+            switch_branch(from_functions(function, start=(at.u[:-1], 0.0)), at, 0.1)
 
 
 @pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3])

@@ -35,6 +35,9 @@ def test_a_start_from_which_no_path_leaves(homotopy, status, words):
     path = trace(homotopy)
     assert (path.status, len(path)) == (status, 0)
     assert words in path.message
+    # Nor does one in a direction.
+    u = np.append(*homotopy.start())
+    assert not trace(homotopy, start=(u, np.ones(u.size))).success
     with pytest.raises(IndexError, match="no point"):
         _ = path.endpoint
 
