@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from continuation import Kind, KinkPoint, Monitor, Status, TargetValue, TurningPoint, trace
+from continuation import EvaluationError, Kind, KinkPoint, Monitor, Status, TargetValue, TurningPoint, trace
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp, ExponentialCosine, FreudensteinRoth
@@ -29,6 +29,13 @@ def values(*places, **options):
     return [TargetValue(place, **{"terminal": 0, **options}) for place in places]
 
 
+def hidden(u, v):
+    """A monitor that vanishes at 0.5, and has no values near there."""
+    if 0.1 < u[-1] < 0.9:
+        raise EvaluationError("it has no value")
+    return u[-1] - 0.5
+
+
 def monitor(*places):
     """One that vanishes at these parameter values."""
     return [Monitor(lambda u, v: float(np.prod(u[-1] - np.array(places))), "monitor")]
@@ -47,12 +54,17 @@ def monitor(*places):
         (FLAT, monitor(0.25, 0.4), QUARTERS, [0.25, 0.4]),
         (FLAT, values(0.5, direction=1), QUARTERS, [0.5]),
         (FLAT, values(0.5, direction=-1), QUARTERS, []),
+        # The end stands for a crossing that cannot be looked at.
+        (LINE, [Monitor(hidden)], ONE, [1.0]),
+        (LINE, [Monitor(hidden, direction=1)], ONE, [1.0]),
+        (LINE, [Monitor(hidden, direction=-1)], ONE, []),
         (LINE, [Monitor(lambda u, v: 0.3 - u[-1], direction=1)], ONE, []),
         (LINE, [Monitor(lambda u, v: 0.3 - u[-1], direction=-1)], ONE, [0.3]),
     ],
     ids=[
         "several in order", "three zeros of one", "a pair", "a narrow pair", "the target",
         "behind a terminal one", "knots", "behind a knot", "rising in a knot", "falling in a knot",
+        "hidden", "hidden, rising", "hidden, falling",
         "rising only", "falling only",
     ],
 )  # fmt: skip

@@ -81,6 +81,14 @@ def root(y, lam):
     return 1.0, -0.5 / np.sqrt(lam)
 
 
+def test_the_first_step_is_the_same_part_of_the_way_to_the_edge_of_any_domain():
+    parts = []
+    for edge in (1e-3, 0.37, 0.5, 3.1):
+        homotopy = scalar(lambda y, lam, edge=edge: y - lam if lam < edge else y * np.nan, lambda y, lam: (1.0, -1.0))
+        parts.append(trace(homotopy, target=None, direction=1, budget=Budget(steps=1)).endpoint.lam / edge)
+    np.testing.assert_allclose(parts, parts[0], rtol=1e-3)
+
+
 def by_math(y, lam):
     return np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))])
 
