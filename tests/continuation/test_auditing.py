@@ -18,7 +18,7 @@ CROSSED = two_graphs(graph((1.0, 0.2, 0.1)), graph((0.7, 0.1, 0.3)), -1.5, 1.5)
 
 
 @pytest.mark.parametrize("backwards", [False, True])
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_branch_switched_in_silence(seed, backwards):
     rng = np.random.default_rng(seed)
     a = rng.normal(0.0, 1.0, 3)

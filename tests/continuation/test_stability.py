@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 from attrs import frozen
 
-from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, trace, trace_both
+from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, trace
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -32,10 +32,6 @@ def brusselator(A):
         return np.stack([A - (B + 1.0) * y[0] + made, B * y[0] - made])
 
     return from_functions(rates, start=([A, 0.5 / A], 0.5), target=3.0 + A * A)
-
-
-def van_der_pol(y, mu):
-    return np.stack([y[1], mu * (1.0 - y[0] * y[0]) * y[1] - y[0]])
 
 
 def catalyst(u, q2):
@@ -78,17 +74,6 @@ def test_the_brusselator_oscillates_from_one_plus_a_squared_on(preset, A):
     (event,) = hopf_points(path)
     assert (event.lam, event.observed["frequency"]) == pytest.approx((1.0 + A * A, A), abs=1e-10)
     assert unstable(path) == [2.0 * (lam > 1.0 + A * A) for lam in path.lam]
-
-
-@pytest.mark.parametrize("side", [1, -1])
-def test_van_der_pol_starts_to_oscillate_at_zero(side):
-    homotopy = from_functions(van_der_pol, start=([0.0, 0.0], -0.7), target=None)
-    path = trace_both(homotopy, events=Stability(side).events, box={"lam": (-1.0, 1.5)})
-    (event,) = hopf_points(path)
-    assert abs(event.lam) < 1e-10
-    assert unstable(path)[0] == (0.0 if side == 1 else 2.0)
-    # Eigenvalues of +-[[0, 1], [-1, mu]], real from |mu| = 2 on.
-    assert path.steps[-1].observed["rightmost"] == pytest.approx(0.75 * side, abs=1e-12)
 
 
 @pytest.mark.parametrize(("options", "count"), [({"terminal": 1}, 1), ({"direction": -1}, 0), ({"direction": 1}, 1)])

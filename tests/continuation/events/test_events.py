@@ -112,17 +112,6 @@ def test_any_component_is_landed_on_exactly(component, value):
     assert np.abs(FreudensteinRoth().residual(path.endpoint.y, path.endpoint.lam)).max() <= 1e-11
 
 
-def test_a_value_between_knots_of_long_steps():
-    places = (0.9, 0.1, -0.99)
-    path = trace(Circle(), events=values(*places, component=0), **GIANT)
-    assert path.status is Status.CLOSED
-    assert len(path) < 20
-    for x in places:
-        y = np.sqrt(1.0 - x * x)
-        found = [event.u for event in named(path, f"component 0 = {x:g}")]
-        np.testing.assert_allclose(found, [(x, y), (x, -y)], rtol=0, atol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("function", "direction", "angles"),
     [

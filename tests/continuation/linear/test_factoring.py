@@ -67,15 +67,6 @@ def test_what_is_singular_has_no_factors(dense):
     assert str(Factoring()) == ""
 
 
-def test_a_look_at_a_matrix():
-    A, units = laplacian(6), sp.diags_array(10.0 ** np.linspace(-6, 6, 36))
-    rounded = sp.csc_array(units @ (A * (1.0 / 3.0)) @ units)
-    rounded.data *= 1.0 + 1e-16 * np.random.default_rng(1).integers(-3, 4, rounded.nnz)
-    skew = sp.csc_array(A + sp.csc_array(([1e-9, -1e-9], ([0, 1], [1, 0])), shape=A.shape))
-    assert all(Look(matrix).symmetric_pattern for matrix in (A, rounded, skew))
-    assert [Look(matrix).definite_perhaps for matrix in (A, rounded, skew, -A)] == [True, True, False, False]
-
-
 def test_a_method_is_asked_for_by_a_name_and_must_be_installed(monkeypatch):
     assert [check_method("sparse", name) for name in ("auto", "superlu")] == ["auto", "superlu"]
     with pytest.raises(ValueError, match=r"^sparse: expected one of auto, superlu, cholmod, found 'umfpack'$"):
