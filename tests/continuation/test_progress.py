@@ -33,6 +33,11 @@ def test_without_a_terminal_only_the_end_of_a_short_trace_is_shown(monkeypatch):
     assert text.count("\n") == 1
 
 
+def test_of_a_path_without_points_none_is_shown(monkeypatch):
+    nowhere = continuation.from_functions(lambda y, lam: y**2 + 1.0, start=([1.0], 0.0))
+    assert shown(monkeypatch, nowhere, io.StringIO())[1].startswith("one: 0 steps, no point, START_NOT_ON_PATH in ")
+
+
 def test_lines_in_between_when_it_takes_long_count_turning_points(monkeypatch):
     path, text = shown(monkeypatch, FOLD, io.StringIO())
     lines = text.splitlines()

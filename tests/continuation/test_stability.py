@@ -12,6 +12,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Symmetric, factor_bordered
 
 from ..util import every_preset
+from .diagrams.util import Forks
 
 
 def hopf_points(path):
@@ -144,35 +145,25 @@ def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(pre
 # -- what a count shows ---------------------------------------------------------------------------------------
 
 
-@frozen
-class Unseen:
-    """Three pitchforks on a trunk with factors of its own, so that no product with H' shows what crosses."""
+class Unseen(Forks):
+    """Pitchforks on a trunk with factors of their own, so that no product with H' shows what crosses."""
 
-    places: tuple[float, ...] = (0.5, 0.503, 2.0)
-    target: float = 1.0
-
-    def start(self):
-        return np.zeros(3), 0.0
-
-    def residual(self, y, lam):
-        return (lam - np.array(self.places)) * y - y**3
-
-    def jacobian(self, y, lam):
-        return np.diag(lam - np.array(self.places) - 3.0 * y * y), y.copy()
+    target = 1.5
 
     def bordered(self, y, lam, border):
         return factor_bordered(*self.jacobian(y, lam), border)
 
 
 def test_a_pair_of_branch_points_within_a_step_is_told_apart_by_the_count():
-    assert trace(Unseen()).events == []
-    path = trace(Unseen(), observers=[Stability()])
-    np.testing.assert_allclose([event.lam for event in path.events], [0.5, 0.503], rtol=0, atol=1e-10)
+    homotopy = Unseen((1.0, 1.003, 2.5))
+    assert trace(homotopy).events == []
+    path = trace(homotopy, observers=[Stability()])
+    np.testing.assert_allclose([event.lam for event in path.events], [1.0, 1.003], rtol=0, atol=1e-10)
     assert any("change sides" in str(failed) for step in path.steps for failed in step.rejected)
 
 
 def test_what_never_can_be_told_apart_does_not_stop_the_path():
-    path = trace(Unseen((0.5, 0.5, 2.0)), observers=[Stability()])
+    path = trace(Unseen((1.0, 1.0, 2.5)), observers=[Stability()])
     assert (path.status, unstable(path)[-1]) == (Status.REACHED_TARGET, 2.0)
 
 

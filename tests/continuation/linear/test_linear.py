@@ -206,27 +206,17 @@ def test_sparse_matrices_of_any_format_are_taken_and_one_wrongly_called_symmetri
 
 
 @pytest.mark.parametrize(
-    ("matrix", "column", "row", "error", "words"),
-    [
-        ([[1.0]], [1.0], [1.0, 1.0], TypeError, "list"),
-        (np.ones((2, 3)), np.ones(2), np.ones(3), ValueError, r"\(2, 3\)"),
-        (np.ones((2, 2)), np.ones((2, 1)), np.ones(3), ValueError, r"\(2, 1\)"),
-        (np.ones((2, 2)), np.ones(2), np.ones(2), ValueError, r"\(2,\)"),
-        (np.ones((0, 0)), np.ones(0), np.ones(1), ValueError, "N >= 1"),
-        (np.ones((1, 1)) * 1j, np.ones(1), np.ones(2), TypeError, "H_y.*complex"),
-        (csc_array([[1j]]), np.ones(1), np.ones(2), TypeError, "H_y.*complex"),
-        (np.ones((1, 1)), np.array([1j]), np.ones(2), TypeError, "H_lam.*complex"),
-        (np.ones((1, 1)), np.ones(1), np.array(["a", "b"]), TypeError, "border"),
-    ],
-)
-def test_bad_arguments_are_named(matrix, column, row, error, words):
-    with pytest.raises(error, match=words):
-        factor_bordered(matrix, column, row)
-
-
-@pytest.mark.parametrize(
     ("make", "error", "words"),
     [
+        (lambda: factor_bordered([[1.0]], np.ones(1), np.ones(2)), TypeError, "list"),
+        (lambda: factor_bordered(np.ones((2, 3)), np.ones(2), np.ones(3)), ValueError, r"\(2, 3\)"),
+        (lambda: factor_bordered(np.ones((2, 2)), np.ones((2, 1)), np.ones(3)), ValueError, r"\(2, 1\)"),
+        (lambda: factor_bordered(np.ones((2, 2)), np.ones(2), np.ones(2)), ValueError, r"\(2,\)"),
+        (lambda: factor_bordered(np.ones((0, 0)), np.ones(0), np.ones(1)), ValueError, "N >= 1"),
+        (lambda: factor_bordered(np.ones((1, 1)) * 1j, np.ones(1), np.ones(2)), TypeError, "H_y.*complex"),
+        (lambda: factor_bordered(csc_array([[1j]]), np.ones(1), np.ones(2)), TypeError, "H_y.*complex"),
+        (lambda: factor_bordered(np.ones((1, 1)), np.array([1j]), np.ones(2)), TypeError, "H_lam.*complex"),
+        (lambda: factor_bordered(np.ones((1, 1)), np.ones(1), np.array(["a", "b"])), TypeError, "border"),
         (lambda: Banded(np.ones((2, 4)), 1, 1), ValueError, "ab of Banded"),
         (lambda: Banded(np.ones((1, 4)), -1, 1), ValueError, "lower"),
         (lambda: Banded(np.ones((1, 4)) * 1j, 0, 0), TypeError, "ab of Banded"),
@@ -235,7 +225,7 @@ def test_bad_arguments_are_named(matrix, column, row, error, words):
         (lambda: banded(np.eye(3), 0, 0) @ np.ones(2), ValueError, "operand"),
     ],
 )
-def test_bad_structures_are_refused(make, error, words):
+def test_bad_arguments_and_structures_are_named(make, error, words):
     with pytest.raises(error, match=words):
         make()
 
