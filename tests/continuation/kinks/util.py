@@ -118,25 +118,6 @@ class Folded:
                     found.setdefault(tuple(Fraction(x, size) for x in w), signs)
         return found
 
-    def kinks(self, u, v, most):
-        """The path from u along v, kink by kink, up to where it is no simple one any more, or comes again."""
-        met = []
-        while len(met) < most:
-            at = [Fraction(-value) / slope for value, slope in zip(self.values(u), self.slopes(v)) if slope]
-            t = min((t for t in at if t > 0), default=None)
-            if t is None:
-                break
-            u = [x + t * w for x, w in zip(u, v)]
-            if u in met:
-                break
-            met.append(u)
-            rays = self.rays(u)
-            if rays is None or len(rays) != 2 or sum(value == 0 for value in self.values(u)) > 1:
-                break
-            size = sum(abs(x) for x in v)
-            v = next(list(ray) for ray in rays if list(ray) != [Fraction(-x) / size for x in v])
-        return met
-
 
 def determinant(rows):
     """By the first row; matrices here have three rows at most."""
