@@ -16,43 +16,56 @@ ROUND_ABOUT = from_functions(
 )
 
 
-def forks(ranks, structure=np.asarray):
+def forks(ranks, structure=np.asarray, unit=1.0):
     places = np.array(ranks * [0.0] + [5.0])
     return from_functions(
-        lambda y, lam: (lam - places) * y - y**3,
-        lambda y, lam: (structure(np.diag(lam - places - 3.0 * y * y)), y.copy()),
+        lambda y, lam: (lam - places) * y / unit - (y / unit) ** 3,
+        lambda y, lam: (structure(np.diag(lam - places - 3.0 * (y / unit) ** 2) / unit), y / unit),
         start=(np.zeros(places.size), -1.0),
         target=1.0,
     )
 
 
-def cross(homotopy):
+def cross(homotopy, within=1e-10):
     (event,) = trace(homotopy).events
     assert event.kind == Kind.SINGULAR_POINT
-    assert np.abs(event.u).max() < 1e-10
+    assert np.abs(event.u).max() < within
     return event
 
 
-@pytest.mark.parametrize(("ranks", "structure"), [(2, sp.csc_array), (3, np.asarray)], ids=["2, sparse", "3, dense"])
-def test_the_branches_of_pitchforks_at_one_place_are_in_all_signs(ranks, structure):
-    homotopy = forks(ranks, structure)
+@pytest.mark.parametrize(
+    ("ranks", "structure", "unit"), [(2, sp.csc_array, 10.0), (3, np.asarray, 1.0)]
+)
+def test_the_branches_of_pitchforks_at_one_place_are_in_all_signs(ranks, structure, unit):
+    homotopy = forks(ranks, structure, unit)
     event = cross(homotopy)
     known, *others = branch_directions(homotopy, event)
-    np.testing.assert_allclose(np.abs(known), np.eye(ranks + 2)[-1], atol=1e-4)
+    np.testing.assert_allclose(np.abs(known / np.linalg.norm(known)), np.eye(ranks + 2)[-1], atol=1e-4)
     assert len(others) == (3**ranks - 1) // 2
     ends = [trace(homotopy, start=start).endpoint.u for start in switch_branch(homotopy, event)]
-    states = {tuple(np.round(end, 8) + 0.0) for end in ends}
+    states = {tuple(np.round(end / np.append(np.full(ranks + 1, unit), 1.0), 6) + 0.0) for end in ends}
     signs = np.array(np.meshgrid(*ranks * [[-1.0, 0.0, 1.0]])).reshape(ranks, -1).T
     assert states == {(*s, 0.0, 1.0) for s in signs.tolist() if any(s)}
 
 
-def test_transcritical_branches_have_the_directions_of_the_quadratic_equations():
-    # y1 (lam - y1 - 0.3 y2) = 0, y2 (lam - y2 - 0.6 y1) = 0: three lines besides the trunk.
-    _, *others = branch_directions(TRANSCRITICAL, cross(TRANSCRITICAL))
-    assert len(others) == 3
-    both = np.linalg.solve([[1.0, 0.3], [0.6, 1.0]], np.ones(2))
-    for line in ([1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [*both, 1.0]):
-        assert max(abs(float(line @ v)) / np.linalg.norm(line) for v in others) == pytest.approx(1.0, abs=1e-8)
+# y1 (lam - y1 - 0.3 y2) = 0, y2 (lam - y2 - 0.6 y1) = 0: three lines besides the trunk; y_k (y_k^2 - lam^2) = 0: eight.
+BOTH = np.linalg.solve([[1.0, 0.3], [0.6, 1.0]], np.ones(2))
+EIGHT = [[a, b, 1.0] for a in (-1.0, 0.0, 1.0) for b in (-1.0, 0.0, 1.0) if a or b]
+
+
+@pytest.mark.parametrize(
+    ("homotopy", "lines", "within"),
+    [
+        (TRANSCRITICAL, [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [*BOTH, 1.0]], 1e-8),
+        (from_functions(lambda y, lam: y * (y**2 - lam**2), start=(np.zeros(2), -1.0), target=1.0), EIGHT, 1e-6),
+    ],
+    ids=["three lines", "eight lines"],
+)
+def test_branches_have_the_directions_of_the_branching_equations(homotopy, lines, within):
+    _, *others = branch_directions(homotopy, cross(homotopy, within))
+    assert len(others) == len(lines)
+    for line in lines:
+        assert max(abs(line @ v) / np.linalg.norm(line) for v in others) == pytest.approx(1.0, abs=within)
 
 
 @pytest.mark.parametrize(

@@ -89,6 +89,19 @@ def test_the_first_step_is_the_same_part_of_the_way_to_the_edge_of_any_domain():
     np.testing.assert_allclose(parts, parts[0], rtol=1e-3)
 
 
+@pytest.mark.parametrize("target", [None, 10.0, 1e3])
+@pytest.mark.parametrize("n", [1, 3, 40])
+def test_the_first_step_knows_nothing_of_unknowns_that_stand_still(n, target):
+    def residual(y, lam):
+        return np.concatenate([y[:1] - np.exp(lam) + 1.0, y[1:] * (1.0 + y[0] ** 2)])
+
+    alone, path = (
+        trace(from_functions(residual, start=(np.zeros(size), 0.0), target=target), direction=1, budget=Budget(steps=1))
+        for size in (1, n + 1)
+    )
+    assert 1.0 <= path.endpoint.lam / alone.endpoint.lam <= 2.5
+
+
 def by_math(y, lam):
     return np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))])
 

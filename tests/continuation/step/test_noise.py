@@ -49,6 +49,19 @@ def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
     assert len(path) < 150  # it took 1,300 steps, and found one fold
 
 
+def test_noise_that_a_start_at_zero_does_not_show_is_measured_ahead_of_it():
+    """The domain ends behind the start: noise that is looked for there takes 18 points, and not 7."""
+
+    def residual(y, lam):
+        y, lam = float(y[0]), float(lam)
+        return np.array([y - lam + 1e-6 * lam * np.sin(1e11 * (y + lam)) if lam >= -1e-4 else np.nan])
+
+    path = trace(from_functions(residual, start=([0.0], 0.0), target=1.0))
+    assert path.status is Status.REACHED_TARGET
+    assert "The residual is noisy" in path.message
+    assert len(path) <= 12
+
+
 @pytest.mark.parametrize("level", [growing, lambda t: 1e-7, lambda t: 1e-8 * (t > -1.5)], ids=["grows", "is", "begins"])
 @pytest.mark.parametrize("steps", [2, 8])
 def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tmp_path, level, steps):
