@@ -80,6 +80,14 @@ def test_steps_that_would_creep_up_to_the_branch_point_pass_it():
     assert path.counts.rejected < 10
 
 
+@pytest.mark.parametrize("beside", [0.0, 1e-2, -1e-2, 1e-6, -1e-11])
+def test_no_step_ends_beside_a_branch_point(beside):
+    """There the next factors are nearly singular."""
+    path = trace(pitchfork(beside), **steps(0.5))
+    (event,) = branch_points(path)
+    assert np.abs(path.arclength - event.arclength).min() > 0.05
+
+
 def test_it_may_end_the_trace():
     path = trace(pitchfork(), events=[BranchPoint()])
     assert (path.status, path.endpoint.kind) == (Status.STOPPED_AT_EVENT, Kind.BRANCH_POINT)

@@ -80,9 +80,12 @@ def test_all_zeros_are_found_once_in_order_and_none_behind_a_terminal_one(homoto
         assert event.arclength - before.arclength == pytest.approx(share * (after.arclength - before.arclength))
 
 
-@pytest.mark.parametrize("events", [values(0.5), values(0.3, component=0), monitor(0.4)])
+FIFTH = Monitor(lambda u, v: (u[0] - u[1]) ** 5, "of fifth order")
+
+
+@pytest.mark.parametrize("events", [values(0.5), values(0.3, component=0), monitor(0.4), [FIFTH]])
 def test_two_events_on_long_arcs_cost_few_residuals(events):
-    """23 to 38; an arc that is divided though its ends tell one zero costs four times as many."""
+    """23 to 38; an arc that is divided though its ends tell one zero, or a search that does not end, costs 130."""
     alone, path = (trace(Circle(), events=watched) for watched in ([], events))
     assert len(path.events) == 4
     assert path.counts.residuals - alone.counts.residuals <= 42
