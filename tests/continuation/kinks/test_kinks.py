@@ -50,6 +50,7 @@ GRAZED = Joined(
     target=1.0,
 )
 TORN = Joined(lambda a: lambda y, lam: y - lam - 0.1 * a, lambda y, lam: y, (-1.0, -0.9), target=1.0)
+TERMINAL = {"direction": -1, "events": [KinkPoint()]}
 TURNING = ["turning kink", "kink", "turning kink", "kink"]
 ROUND = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)]
 
@@ -68,12 +69,13 @@ ROUND = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)]
         # A target, an end and a start in a kink, or a start beside it.
         (attrs.evolve(VEE, target=0.0), {}, Status.REACHED_TARGET, [], [], (0.0, 0.0)),
         (attrs.evolve(VEE, at=(0.5, 0.5)), {"direction": 1}, Status.REACHED_TARGET, [], [], (2.0, 2.0)),
-        (VEE, {"direction": -1, "events": [KinkPoint()]}, Status.STOPPED_AT_EVENT, TURNING[:1], [(0, 0)], (0, 0)),
+        (VEE, TERMINAL, Status.STOPPED_AT_EVENT, TURNING[:1], [(0, 0)], (0, 0)),
+        (VEE, {**TERMINAL, "examine": False}, Status.STOPPED_AT_EVENT, TURNING[:1], [(0, 0)], (0, 0)),
         (attrs.evolve(SQUARE, at=(1.0, 0.0)), {"direction": 1}, Status.CLOSED, TURNING, ROUND, (1.0, 0.0)),
     ],
     ids=[
         "vee", "diode", "dead end", "torn", "two in a step", "touched", "grazed", "square", "target in a kink",
-        "start beside", "terminal kink", "square from a kink",
+        "start beside", "terminal kink", "alone", "square from a kink",
     ],
 )  # fmt: skip
 def test_kinks_are_where_they_are_and_the_path_goes_on_behind(homotopy, options, status, names, places, end):
