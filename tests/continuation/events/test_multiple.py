@@ -17,12 +17,13 @@ ROUND_ABOUT = from_functions(
 
 
 def forks(ranks, structure=np.asarray, unit=1.0):
+    """Pitchforks at 0 and one elsewhere, of a parameter in such a unit."""
     places = np.array(ranks * [0.0] + [5.0])
     return from_functions(
-        lambda y, lam: (lam - places) * y / unit - (y / unit) ** 3,
-        lambda y, lam: (structure(np.diag(lam - places - 3.0 * (y / unit) ** 2) / unit), y / unit),
-        start=(np.zeros(places.size), -1.0),
-        target=1.0,
+        lambda y, lam: (lam / unit - places) * y - y**3,
+        lambda y, lam: (structure(np.diag(lam / unit - places - 3.0 * y * y)), y / unit),
+        start=(np.zeros(places.size), -unit),
+        target=unit,
     )
 
 
@@ -34,16 +35,16 @@ def cross(homotopy, within=1e-10):
 
 
 @pytest.mark.parametrize(
-    ("ranks", "structure", "unit"), [(2, sp.csc_array, 10.0), (3, np.asarray, 1.0)]
+    ("ranks", "structure", "unit"), [(2, sp.csc_array, 0.01), (3, np.asarray, 1.0)]
 )
 def test_the_branches_of_pitchforks_at_one_place_are_in_all_signs(ranks, structure, unit):
     homotopy = forks(ranks, structure, unit)
     event = cross(homotopy)
     known, *others = branch_directions(homotopy, event)
-    np.testing.assert_allclose(np.abs(known / np.linalg.norm(known)), np.eye(ranks + 2)[-1], atol=1e-4)
+    np.testing.assert_allclose(np.abs(known) / np.linalg.norm(known), np.eye(ranks + 2)[-1], atol=1e-4)
     assert len(others) == (3**ranks - 1) // 2
     ends = [trace(homotopy, start=start).endpoint.u for start in switch_branch(homotopy, event)]
-    states = {tuple(np.round(end / np.append(np.full(ranks + 1, unit), 1.0), 6) + 0.0) for end in ends}
+    states = {tuple(np.round(end / np.append(np.ones(ranks + 1), unit), 8) + 0.0) for end in ends}
     signs = np.array(np.meshgrid(*ranks * [[-1.0, 0.0, 1.0]])).reshape(ranks, -1).T
     assert states == {(*s, 0.0, 1.0) for s in signs.tolist() if any(s)}
 
