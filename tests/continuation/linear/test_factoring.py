@@ -31,6 +31,10 @@ def laplacian(m, shift=0.0):
     return sp.csc_array(sp.kron(T, sp.eye_array(m)) + sp.kron(sp.eye_array(m), T) - shift * sp.eye_array(m * m))
 
 
+UNITS = sp.diags_array(10.0 ** np.linspace(-1, 1, 25))
+ROUNDED = sp.csc_array(UNITS @ (laplacian(5) * (1.0 / 3.0)) @ UNITS)
+ROUNDED.data *= 1.0 + 1e-16 * np.random.default_rng(1).integers(-3, 4, ROUNDED.nnz)
+SKEW = laplacian(5) + sp.csc_array(([1e-9, -1e-9], ([0, 1], [1, 0])), shape=(25, 25))
 LOPSIDED = laplacian(5) + sp.csc_array(([0.5], ([0], [7])), shape=(25, 25))
 
 
@@ -42,13 +46,18 @@ LOPSIDED = laplacian(5) + sp.csc_array(([0.5], ([0], [7])), shape=(25, 25))
         (laplacian(3), {}, "SuperLU"),
         (laplacian(3), {"method": "cholmod"}, "dense"),
         (LOPSIDED, {}, "SuperLU"),
+        (SKEW, {}, "SuperLU"),
+        (ROUNDED, {}, "dense"),
         # A negative definite one is factored with its sign changed.
         (-laplacian(5), {}, "dense"),
         (-laplacian(6), {}, "dense"),
         (laplacian(5, 1.5), {}, "SuperLU"),
     ],
-    ids=["suits", "asked for", "small", "small, asked for", "lopsided", "negative", "negative, even", "indefinite"],
-)
+    ids=[
+        "suits", "asked for", "small", "small, asked for", "lopsided", "skew", "rounded", "negative", "negative, even",
+        "indefinite",
+    ],
+)  # fmt: skip
 def test_what_suits_is_chosen_if_it_is_installed(dense, monkeypatch, matrix, options, name):
     factoring = Factoring(**options)
     factor, b = factoring.factor(sp.csc_array(matrix)), np.linspace(1.0, 2.0, matrix.shape[0])
