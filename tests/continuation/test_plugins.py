@@ -7,6 +7,9 @@ import pytest
 
 from continuation.arguments import plugins
 from continuation.arguments.plugins import PluginError, available, describe, find, make, options
+from problems.bifurcation import Cusp
+
+NOISY = "noisy_plugin:Noisy"
 
 
 @pytest.fixture
@@ -43,88 +46,62 @@ def spring(power: int = 3) -> Spring:
     return Spring(1.0, power)
 
 
-def test_listing_imports_nothing(installed):
-    installed(("noisy", "noisy_plugin:Noisy"), ("bad", "broken_plugin:Homotopy"))
+def awkward(size: int = 0):
+    """Fails."""
+    raise ValueError(size)
+
+
+def test_listing_imports_nothing_and_a_broken_plugin_hides_no_other(installed):
+    installed(("noisy", NOISY), ("bad", "broken_plugin:Homotopy"), ("noisy", NOISY))
     assert list(available()) == ["bad", "noisy"]
     assert "noisy_plugin" not in sys.modules
+    # The same entry found twice is one; a module and object need no registration.
+    assert find("noisy") is find(NOISY)
 
 
-def test_a_broken_plugin_hides_no_other_and_is_named(installed):
-    installed(("bad", "broken_plugin:Homotopy"), ("noisy", "noisy_plugin:Noisy"))
-    assert find("noisy").__name__ == "Noisy"
-    with pytest.raises(PluginError, match=r"bad: broken_plugin:Homotopy .*RuntimeError: half installed"):
-        find("bad")
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("bad", r"bad: broken_plugin:Homotopy .*RuntimeError: half installed"),
+        ("same", r"same: expected one package .* noisy_plugin:Noisy.* and other_plugin:Noisy"),
+        ("bratu", r"bratu: no homotopy of this name is installed; did you mean bratu-1d\?"),
+        ("zzz", r"zzz: .* known are bad, bratu-1d, number, same"),
+        ("number", "number: expected a class or function that makes a homotopy, found int"),
+        ("broken_plugin:Homotopy", "broken_plugin:Homotopy: cannot be loaded: RuntimeError"),
+        ("noisy_plugin:Missing", "noisy_plugin:Missing: cannot be loaded: AttributeError"),
+    ],
+)
+def test_what_is_no_plugin_is_named(installed, name, words):
+    installed(
+        ("bad", "broken_plugin:Homotopy"), ("same", NOISY), ("same", "other_plugin:Noisy"), ("bratu-1d", NOISY),
+        ("number", "noisy_plugin:number"),
+    )  # fmt: skip
+    with pytest.raises(PluginError, match=words):
+        find(name)
 
 
-def test_one_name_from_two_packages_names_both(installed):
-    installed(("same", "noisy_plugin:Noisy"), ("same", "other_plugin:Noisy"))
-    with pytest.raises(PluginError, match=r"same: expected one package .* noisy_plugin:Noisy.* and other_plugin:Noisy"):
-        find("same")
+@pytest.mark.parametrize(
+    ("made", "summary", "said", "references"),
+    [
+        (Spring, "A spring that hardens.", ["stiffness", "power=3", "name='k'"], Spring.references),
+        (spring, "A spring without a choice of stiffness.", ["power=3"], Spring.references),
+        (awkward, "Fails.", ["size=0"], ()),
+    ],
+)
+def test_a_class_describes_itself_and_a_function_what_it_makes(made, summary, said, references):
+    described = describe(made)
+    assert described.summary == summary
+    assert [str(option) for option in described.options] == said
+    assert [option.required for option in described.options] == ["=" not in option for option in said]
+    assert described.references == references
+    assert (described.problem_class == "one degree of freedom") == (made is not awkward)
 
 
-def test_the_same_entry_found_twice_is_one(installed):
-    installed(("same", "noisy_plugin:Noisy"), ("same", "noisy_plugin:Noisy"))
-    assert find("same").__name__ == "Noisy"
-
-
-def test_an_unknown_name_gets_suggestions(installed):
-    installed(("bratu-1d", "noisy_plugin:Noisy"))
-    with pytest.raises(PluginError, match=r"bratu: no homotopy of this name is installed; did you mean bratu-1d\?"):
-        find("bratu")
-    with pytest.raises(PluginError, match=r"zzz: .* known are bratu-1d"):
-        find("zzz")
-
-
-def test_what_cannot_be_called_is_no_plugin(installed):
-    installed(("number", "noisy_plugin:number"))
-    with pytest.raises(PluginError, match="number: expected a class or function that makes a homotopy, found int"):
-        find("number")
-
-
-def test_a_module_and_object_need_no_registration(installed):
-    installed()
-    assert find("noisy_plugin:Noisy").__name__ == "Noisy"
-    with pytest.raises(PluginError, match="broken_plugin:Homotopy: cannot be loaded: RuntimeError"):
-        find("broken_plugin:Homotopy")
-    with pytest.raises(PluginError, match="noisy_plugin:Missing: cannot be loaded: AttributeError"):
-        find("noisy_plugin:Missing")
-
-
-def test_a_class_describes_itself():
-    described = describe(Spring)
-    assert described.summary == "A spring that hardens."
-    assert [str(option) for option in described.options] == ["stiffness", "power=3", "name='k'"]
-    assert described.options[0].required
-    assert described.problem_class == "one degree of freedom"
-    assert described.references == Spring.references
-
-
-def test_a_function_is_described_by_what_it_makes():
-    described = describe(spring)
-    assert described.summary == "A spring without a choice of stiffness."
-    assert described.problem_class == "one degree of freedom"
-
-
-def test_a_function_that_fails_without_arguments_is_still_described():
-    def awkward(size: int = 0):
-        """Fails."""
-        raise ValueError(size)
-
-    assert describe(awkward).summary == "Fails."
-    assert describe(awkward).references == ()
-
-
-def test_options_are_given_by_name(installed, monkeypatch):
-    installed(("spring", "noisy_plugin:Spring"))
+def test_options_are_given_by_name(monkeypatch):
     monkeypatch.setattr(plugins, "find", lambda name: Spring)
     assert make("spring", {"stiffness": 2.0}).stiffness == 2.0
     with pytest.raises(TypeError, match=r"size: expected an option of spring \(stiffness, power=3, name='k'\)"):
         make("spring", {"size": 1})
     with pytest.raises(TypeError, match="stiffness: expected a value, since spring has no default"):
         make("spring")
-
-
-def test_a_default_that_is_computed_is_said_to_be():
-    from problems.bifurcation import Cusp
-
     assert [str(option) for option in options(Cusp)] == ["splitting=1.0", "target=(computed)"]

@@ -1,21 +1,32 @@
-"""Stability along paths: Hopf points in closed form, counts that are stored, kept and drawn, and what a count shows."""
+"""Stability along a path: how many eigenvalues are unstable, Hopf points, and what a count shows."""
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 from attrs import frozen
 
-from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, switch_branch, trace, trace_both
+from continuation import Budget, HopfPoint, Kind, Stability, Status, TargetValue, from_functions, trace
 from continuation.archive import open_archive, resume
+from continuation.controllers import Bounds, Fixed
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Symmetric, factor_bordered
+from continuation.metric import Euclidean
 
 from ..util import every_preset
+from .diagrams.util import Forks
 
 
 def hopf_points(path):
     return [event for event in path.events if event.kind == Kind.HOPF]
+
+
+def unstable(path):
+    return [step.observed["unstable"] for step in path.steps]
+
+
+def events(path):
+    return [(event.kind, event.lam, event.observed) for event in path.events]
 
 
 def brusselator(A):
@@ -26,12 +37,11 @@ def brusselator(A):
     return from_functions(rates, start=([A, 0.5 / A], 0.5), target=3.0 + A * A)
 
 
-def lorenz(y, r):
-    return np.stack([10.0 * (y[1] - y[0]), r * y[0] - y[1] - y[0] * y[2], y[0] * y[1] - 8.0 / 3.0 * y[2]])
-
-
-def van_der_pol(y, mu):
-    return np.stack([y[1], mu * (1.0 - y[0] * y[0]) * y[1] - y[0]])
+def catalyst(u, q2):
+    z = 1.0 - u[0] - u[1] - u[2]
+    oxidised = 10.0 * u[0] * u[1]
+    first, second = 5.0 * z * z - 2.0 * u[0] ** 2 - oxidised, q2 * z - 0.1 * u[1] - oxidised
+    return np.stack([first, second, 0.0675 * (z - 0.4 * u[2])])
 
 
 @frozen
@@ -39,28 +49,25 @@ class Diffusing:
     """Two species on n points, (d - lam) z + turning, both ends held at 0: z = 0, and a Hopf point for each mode."""
 
     n: int = 20
-    diffusion: float = 0.02
-    target: float = 1.0
-
-    @property
-    def laplacian(self):
-        return (self.n + 1) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.n, self.n))
+    target: float = 2.5
+    side: int = 1
 
     def rate(self, mode):
-        return self.diffusion * 4.0 * (self.n + 1) ** 2 * np.sin(0.5 * mode * np.pi / (self.n + 1)) ** 2
+        return 0.08 * (self.n + 1) ** 2 * np.sin(0.5 * mode * np.pi / (self.n + 1)) ** 2
 
     def start(self):
         return np.zeros(2 * self.n), 0.0
 
     def matrix(self, lam):
-        grow, turn = self.diffusion * self.laplacian + lam * sp.eye_array(self.n), 3.0 * sp.eye_array(self.n)
-        return sp.csc_array(sp.block_array([[grow, -turn], [turn, grow]]))
+        laplacian = (self.n + 1) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.n, self.n))
+        grow, turn = 0.02 * laplacian + lam * sp.eye_array(self.n), 3.0 * sp.eye_array(self.n)
+        return self.side * sp.csc_array(sp.block_array([[grow, -turn], [turn, grow]]))
 
     def residual(self, y, lam):
-        return self.matrix(lam) @ y - y**3
+        return self.matrix(lam) @ y - self.side * y**3
 
     def jacobian(self, y, lam):
-        return sp.csc_array(self.matrix(lam) - sp.diags_array(3.0 * y * y)), y.copy()
+        return sp.csc_array(self.matrix(lam) - self.side * sp.diags_array(3.0 * y * y)), self.side * y
 
 
 @every_preset
@@ -68,107 +75,53 @@ class Diffusing:
 def test_the_brusselator_oscillates_from_one_plus_a_squared_on(preset, A):
     path = trace(brusselator(A), observers=[Stability()], preset=preset)
     (event,) = hopf_points(path)
-    assert abs(event.lam - 1.0 - A * A) < 1e-10
-    assert abs(event.observed["frequency"] - A) < 1e-10
-    assert [step.observed["unstable"] for step in path.steps] == [2.0 * (lam > 1.0 + A * A) for lam in path.lam]
+    assert (event.lam, event.observed["frequency"]) == pytest.approx((1.0 + A * A, A), abs=1e-10)
+    assert unstable(path) == [2.0 * (lam > 1.0 + A * A) for lam in path.lam]
 
 
-def test_lorenz_has_its_pitchfork_and_its_hopf_points():
-    homotopy = from_functions(lorenz, start=(np.zeros(3), 0.2), target=30.0)
-    trunk = trace(homotopy, observers=[Stability()])
-    (fork,) = trunk.events
-    assert abs(fork.lam - 1.0) < 1e-10
-    assert {step.observed["unstable"] for step in trunk.steps if step.lam > 1.0} == {1.0}
-    for start in switch_branch(homotopy, fork):
-        arm = trace(homotopy, start=start, target=30.0, observers=[Stability()])
-        (event,) = hopf_points(arm)
-        assert abs(event.lam - 470.0 / 19.0) < 1e-10
-        assert abs(event.observed["frequency"] - np.sqrt(8.0 / 3.0 * (470.0 / 19.0 + 10.0))) < 1e-10
+@pytest.mark.parametrize(("options", "count"), [({"terminal": 1}, 1), ({"direction": -1}, 0), ({"direction": 1}, 1)])
+def test_a_hopf_point_may_end_the_path_and_only_one_way_of_crossing_may_count(options, count):
+    path = trace(brusselator(1.0), events=[HopfPoint(**options)])
+    assert len(hopf_points(path)) == count
+    assert (path.endpoint.kind == Kind.HOPF) == ("terminal" in options) == (path.status is Status.STOPPED_AT_EVENT)
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_van_der_pol_starts_to_oscillate_at_zero(side):
-    path = trace_both(
-        from_functions(van_der_pol, start=([0.0, 0.0], -0.7), target=None),
-        events=Stability(side).events,
-        box={"lam": (-1.0, 1.5)},
-    )
-    (event,) = hopf_points(path)
-    assert abs(event.lam) < 1e-10
-    assert path.steps[0].observed["unstable"] == (0.0 if side == 1 else 2.0)
-    # Eigenvalues of +-[[0, 1], [-1, mu]], real from |mu| = 2 on.
-    assert path.steps[-1].observed["rightmost"] == pytest.approx(0.75 * side, abs=1e-12)
-
-
-def test_a_hopf_point_may_end_the_path_and_only_one_way_of_crossing_may_count():
-    path = trace(brusselator(1.0), events=[HopfPoint(terminal=1)])
-    assert path.status is Status.STOPPED_AT_EVENT
-    assert abs(path.endpoint.lam - 2.0) < 1e-10
-    assert path.endpoint.kind == Kind.HOPF
-    assert hopf_points(trace(brusselator(1.0), events=[HopfPoint(direction=-1)])) == []
-    assert len(hopf_points(trace(brusselator(1.0), events=[HopfPoint(direction=1)]))) == 1
-
-
 @pytest.mark.parametrize("k", [None, 8])
-def test_several_pairs_that_cross_within_one_step_are_all_found(k):
-    homotopy = Diffusing()
-    path = trace(homotopy, observers=[Stability(k=k)], target=2.5)
-    found = hopf_points(path)
+def test_several_pairs_that_cross_within_one_step_are_all_found(k, side):
+    homotopy = Diffusing(side=side)
+    path = trace(homotopy, observers=[Stability(k=k, side=side)])
+    found = [(event.lam, event.observed["frequency"]) for event in hopf_points(path)]
     assert len(found) == 3
     for mode, event in enumerate(found, start=1):
-        assert abs(event.lam - homotopy.rate(mode)) < 1e-10
-        assert abs(event.observed["frequency"] - 3.0) < 1e-10
+        assert event == pytest.approx((homotopy.rate(mode), 3.0), abs=1e-10)
     assert len(path) < 8
-    assert path.endpoint.observed["unstable"] == 6.0
+    assert unstable(path)[-1] == 6.0
     assert all(step.observed["covered"] for step in path.steps)
 
 
-def test_what_stability_costs_on_a_large_sparse_branch():
-    homotopy = Diffusing(1000)
-    alone = trace(homotopy, target=0.15)
-    watched = trace(homotopy, target=0.15, observers=[Stability()])
+@pytest.mark.parametrize(("target", "found"), [(0.15, 0), (0.25, 1)])
+def test_what_stability_and_a_hopf_point_cost_on_a_large_sparse_branch(target, found):
+    homotopy = Diffusing(1000, target)
+    alone, watched = trace(homotopy), trace(homotopy, observers=[Stability()])
+    assert [event.lam for event in hopf_points(watched)] == pytest.approx(found * [homotopy.rate(1)], abs=1e-10)
     np.testing.assert_array_equal(watched.u, alone.u)
     # One factorisation a point, none to find out that nothing crosses, and no H_y beyond those of the steps: it is kept
-    # there, so that an arc which is looked at again needs it once.
-    assert watched.counts.factorizations == alone.counts.factorizations + len(alone)
-    assert alone.counts.jacobians - 1 <= watched.counts.jacobians <= alone.counts.jacobians
-    assert watched.counts.solves <= alone.counts.solves + 40 * len(alone)
-    assert {step.observed["unstable"] for step in watched.steps} == {0.0}
+    # there, so that an arc which is looked at again needs it once. A secant needs three spectra: two on the way, and
+    # that of the point.
+    assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 3 * found
+    more = watched.counts.jacobians - alone.counts.jacobians
+    assert 4 * found - 1 <= more <= 4 * found
+    assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + found)
     assert all(step.observed["covered"] for step in watched.steps)
-
-
-def test_what_a_hopf_point_costs_on_a_large_sparse_branch():
-    homotopy = Diffusing(1000)
-    alone = trace(homotopy, target=0.25)
-    watched = trace(homotopy, target=0.25, observers=[Stability()])
-    (event,) = hopf_points(watched)
-    assert abs(event.lam - homotopy.rate(1)) < 1e-10
-    # A secant needs three spectra: two on the way, and that of the point.
-    assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 3
-    assert alone.counts.jacobians + 3 <= watched.counts.jacobians <= alone.counts.jacobians + 4
-    assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + 1)
-
-
-def test_a_pair_is_found_where_the_flow_is_minus_h_too():
-    homotopy = Diffusing(60)
-
-    def turned(y, lam):
-        H_y, H_lam = homotopy.jacobian(y, lam)
-        return -H_y, -H_lam
-
-    minus = from_functions(lambda y, lam: -homotopy.residual(y, lam), turned, start=homotopy.start(), target=0.25)
-    (event,) = hopf_points(trace(minus, observers=[Stability(side=-1)]))
-    assert abs(event.lam - homotopy.rate(1)) < 1e-10
 
 
 def test_a_jacobian_that_is_one_array_all_the_time_does_no_harm():
     whole, J, column = brusselator(1.0), np.empty((2, 2)), np.empty(2)
 
     def filled(y, B):
-        J[:], column[:] = (
-            [[2.0 * y[0] * y[1] - B - 1.0, y[0] ** 2], [B - 2.0 * y[0] * y[1], -(y[0] ** 2)]],
-            [-y[0], y[0]],
-        )
+        made = 2.0 * y[0] * y[1]
+        J[:], column[:] = [[made - B - 1.0, y[0] ** 2], [B - made, -(y[0] ** 2)]], [-y[0], y[0]]
         return J, column
 
     one = from_functions(whole.residual, filled, start=([1.0, 0.5], 0.5), target=4.0)
@@ -180,21 +133,13 @@ def test_a_jacobian_that_is_one_array_all_the_time_does_no_harm():
 @every_preset
 def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(preset):
     # MatCont's catalytic oscillator: long steps have a Hopf point, the split of its pair and a turning point in one.
-    def catalyst(u, q2):
-        z = 1.0 - u[0] - u[1] - u[2]
-        oxidised = 10.0 * u[0] * u[1]
-        return np.stack(
-            [5.0 * z * z - 2.0 * u[0] ** 2 - oxidised, q2 * z - 0.1 * u[1] - oxidised, 0.0675 * (z - 0.4 * u[2])]
-        )
-
     homotopy = from_functions(catalyst, start=([0.001137, 0.891483, 0.062345], 2.204678), target=None)
     options = {"box": {"lam": (0.95, 2.5), 0: (None, 0.12)}, "direction": -1, "preset": preset}
     path = trace(homotopy, observers=[Stability()], **options)
     places = [event.lam for event in path.events if event.kind in (Kind.HOPF, Kind.TURNING_POINT)]
     np.testing.assert_allclose(places, [1.051558, 1.042049, 1.052200, 1.040991], atol=1e-6)
-    found = hopf_points(path)
-    assert len(found) == 2
-    for event in found:
+    assert len(hopf_points(path)) == 2
+    for event in hopf_points(path):
         values = np.linalg.eigvals(Evaluator(homotopy, Counts()).derivative(event.y, event.lam)[0])
         assert np.abs(values.real).min() < 1e-10
 
@@ -202,99 +147,83 @@ def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(pre
 # -- what a count shows ---------------------------------------------------------------------------------------
 
 
-@frozen
-class Unseen:
-    """Three pitchforks on a trunk with factors of its own, so that no product with H' shows what crosses."""
+class Unseen(Forks):
+    """Pitchforks on a trunk with factors of their own, so that no product with H' shows what crosses."""
 
-    places: tuple[float, ...] = (0.5, 0.503, 2.0)
-    target: float = 1.0
-
-    def start(self):
-        return np.zeros(3), 0.0
-
-    def residual(self, y, lam):
-        return (lam - np.array(self.places)) * y - y**3
-
-    def jacobian(self, y, lam):
-        return np.diag(lam - np.array(self.places) - 3.0 * y * y), y.copy()
+    target = 1.5
 
     def bordered(self, y, lam, border):
         return factor_bordered(*self.jacobian(y, lam), border)
 
 
 def test_a_pair_of_branch_points_within_a_step_is_told_apart_by_the_count():
-    assert trace(Unseen()).events == []
-    path = trace(Unseen(), observers=[Stability()])
-    np.testing.assert_allclose([event.lam for event in path.events], [0.5, 0.503], rtol=0, atol=1e-10)
+    homotopy = Unseen((1.0, 1.003, 2.5))
+    assert trace(homotopy).events == []
+    path = trace(homotopy, observers=[Stability()])
+    np.testing.assert_allclose([event.lam for event in path.events], [1.0, 1.003], rtol=0, atol=1e-10)
     assert any("change sides" in str(failed) for step in path.steps for failed in step.rejected)
 
 
+def test_what_lies_before_a_terminal_event_is_accounted_for():
+    options = {"controller": Fixed(Bounds(initial=1.0)), "metric": Euclidean(), "target": 3.0}
+    path = trace(Forks((1.0,)), observers=[Stability()], events=[TargetValue(1.2)], **options)
+    assert [event.name for event in path.events] == ["branch point", "lam = 1.2"]
+    assert [step.rejections for step in path.steps] == [0, 0]
+
+
 def test_what_never_can_be_told_apart_does_not_stop_the_path():
-    path = trace(Unseen((0.5, 0.5, 2.0)), observers=[Stability()])
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.observed["unstable"] == 2.0
+    path = trace(Unseen((1.0, 1.0, 2.5)), observers=[Stability()])
+    assert (path.status, unstable(path)[-1]) == (Status.REACHED_TARGET, 2.0)
 
 
 # -- stored, resumed, drawn -----------------------------------------------------------------------------------
 
+PLACES = np.array([0.3, 0.6, 2.0])
+SYMMETRIC = from_functions(
+    lambda y, lam: (lam - PLACES) * y - y**3,
+    lambda y, lam: (Symmetric(np.diag(lam - PLACES - 3.0 * y * y)), y.copy()),
+    start=(np.zeros(3), 0.0),
+    target=1.0,
+)
 
-def test_counts_and_frequencies_are_kept_in_archives_and_resuming_goes_on_with_them(tmp_path):
-    whole = trace(Diffusing(), observers=[Stability()], target=2.5, archive=tmp_path / "whole.h5", max_step=0.1)
-    part = tmp_path / "part.h5"
-    trace(Diffusing(), observers=[Stability()], target=2.5, archive=part, max_step=0.1, budget=Budget(steps=3))
-    resumed = resume(part, Diffusing(), budget=Budget())
+
+@pytest.mark.parametrize(("homotopy", "kinds"), [(Diffusing(), 3 * [Kind.HOPF]), (SYMMETRIC, 2 * [Kind.BRANCH_POINT])])
+def test_counts_and_frequencies_are_kept_in_archives_and_resuming_goes_on_with_them(tmp_path, homotopy, kinds):
+    options = {"observers": [Stability()], "max_step": 0.1}
+    whole = trace(homotopy, archive=tmp_path / "whole.h5", **options)
+    trace(homotopy, archive=tmp_path / "part.h5", budget=Budget(steps=3), **options)
+    resumed = resume(tmp_path / "part.h5", homotopy, budget=Budget())
+    assert [event.kind for event in whole.events] == kinds
     with open_archive(tmp_path / "whole.h5") as archive:
-        stored = archive.path(0)
-        for other in (stored, resumed):
+        for other in (archive.path(0), resumed):
             assert [step.observed for step in other.steps] == [step.observed for step in whole.steps]
-            assert [(e.name, e.kind, e.lam) for e in other.events] == [(e.name, e.kind, e.lam) for e in whole.events]
-        assert [event.observed["frequency"] for event in hopf_points(stored)] == pytest.approx([3.0] * 3, abs=1e-10)
+            assert events(other) == events(whole)
+    # A symmetric derivative has a count and no more.
+    if homotopy is SYMMETRIC:
+        assert [step.observed for step in whole.steps] == [{"unstable": (lam > PLACES).sum()} for lam in whole.lam]
 
 
-def test_a_symmetric_derivative_has_a_count_and_no_more_also_when_resumed(tmp_path):
-    places = np.array([0.3, 0.6, 2.0])
-
-    def jacobian(y, lam):
-        return Symmetric(np.diag(lam - places - 3.0 * y * y)), y.copy()
-
-    homotopy = from_functions(lambda y, lam: (lam - places) * y - y**3, jacobian, start=(np.zeros(3), 0.0), target=1.0)
-    file = tmp_path / "run.h5"
-    short = Budget(steps=2)
-    trace(homotopy, observers=[Stability()], archive=file, max_step=0.1, budget=short)
-    path = resume(file, homotopy, budget=Budget())
-    assert path.status is Status.REACHED_TARGET
-    assert [event.kind for event in path.events] == 2 * [Kind.BRANCH_POINT]
-    assert [step.observed for step in path.steps] == [{"unstable": float((lam > places).sum())} for lam in path.lam]
+def drawn(axes):
+    return [(line.get_linestyle(), line.get_xdata()) for line in axes.lines if line.get_linestyle() in ("-", "--")]
 
 
-def lines(axes):
-    return [
-        (line.get_linestyle(), np.asarray(line.get_xdata(), dtype=float))
-        for line in axes.lines
-        if line.get_linestyle() in ("-", "--")
-    ]
-
-
-def test_a_path_is_drawn_solid_up_to_the_event_at_which_it_becomes_unstable():
+@pytest.mark.parametrize("options", [{"components": [1]}, {"value": 1}])
+def test_a_path_is_drawn_solid_up_to_the_event_at_which_it_becomes_unstable(options):
     pyplot = pytest.importorskip("matplotlib.pyplot")
-    path = trace(brusselator(1.0), observers=[Stability()])
-    for drawn in (path.plot(components=[1]), path.plot(value=1)):
-        solid, dashed = lines(drawn)
-        assert solid[0] == "-"
-        assert dashed[0] == "--"
-        assert solid[1][-1] == dashed[1][0] == pytest.approx(2.0, abs=1e-2)
-        assert "*" in {line.get_marker() for line in drawn.lines}
+    axes = trace(brusselator(1.0), observers=[Stability()]).plot(**options)
+    (solid, before), (dashed, behind) = drawn(axes)
+    assert (solid, dashed) == ("-", "--")
+    assert before[-1] == behind[0] == pytest.approx(2.0, abs=1e-2)
+    assert "*" in {line.get_marker() for line in axes.lines}
+    assert [style for style, _ in drawn(trace(brusselator(1.0)).plot(**options))] == ["-"]
     pyplot.close("all")
-    (alone,) = lines(trace(brusselator(1.0)).plot(components=[1]))
-    assert alone[0] == "-"
-    pyplot.close("all")
+
+
+class Counting(Diffusing):
+    def observe(self, y, lam):
+        return {"unstable": 1.0}
 
 
 def test_a_scalar_of_the_homotopy_with_the_same_name_is_refused():
-    @frozen
-    class Counting(Diffusing):
-        def observe(self, y, lam):
-            return {"unstable": 1.0}
-
     with pytest.raises(ValueError, match="observe: expected each name once, found 'unstable' of an event too"):
         trace(Counting(), observers=[Stability()])

@@ -12,36 +12,27 @@ CONTROLLERS = [Fixed(), AllgowerGeorg()]
 every_controller = pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda c: type(c).__name__)
 
 GOOD = StepMeasures(h=0.1, iterations=3, contraction=0.01, distance=1e-4, angle=0.05, order=3, rejections=0)
+EASY = evolve(GOOD, angle=1e-9, distance=1e-12, contraction=1e-9, iterations=1)
 FAILED = StepMeasures(h=0.1, order=3, rejections=0, rejection=Rejection.NOT_CONTRACTING)
+PAPER = AllgowerGeorg(contraction=0.3, distance=0.1, angle=0.3, deceleration=1.5)
 
 
 @every_controller
-def test_the_state_is_a_tuple_of_floats(controller):
+def test_a_state_is_a_tuple_of_floats_and_updates_are_pure(controller):
     state = controller.init()
     for attempt in (GOOD, FAILED, evolve(GOOD, rejections=1)):
-        assert isinstance(state, tuple)
         assert all(type(number) is float for number in state)
+        assert controller.update(state, attempt) == controller.update(state, attempt)
         state = controller.update(state, attempt).state
 
 
 @every_controller
-def test_updates_are_pure(controller):
-    state = controller.update(controller.init(), GOOD).state
-    assert controller.update(state, GOOD) == controller.update(state, GOOD)
-
-
-@every_controller
-def test_a_failure_is_rejected_and_shortens_the_step(controller):
-    decision = controller.update(controller.init(), FAILED)
-    assert not decision.accept
-    assert 0.0 < decision.h < FAILED.h
-
-
-@every_controller
-def test_failures_reach_the_floor(controller):
+def test_a_failure_shortens_the_step_down_to_the_floor(controller):
     state, h = controller.init(), controller.bounds.initial or 0.1
     for count in range(200):
         decision = controller.update(state, evolve(FAILED, h=h, rejections=count))
+        assert not decision.accept
+        assert 0.0 < decision.h < h
         state, h = decision.state, decision.h
         if h < controller.bounds.minimum:
             break
@@ -49,49 +40,46 @@ def test_failures_reach_the_floor(controller):
 
 
 @every_controller
-def test_a_good_step_is_accepted(controller):
+def test_a_good_step_is_accepted_a_sharp_turn_is_not_and_the_ceiling_holds(controller):
     assert controller.update(controller.init(), GOOD).accept
-
-
-@every_controller
-def test_a_sharp_turn_is_rejected(controller):
-    decision = controller.update(controller.init(), evolve(GOOD, angle=1.2))
-    assert not decision.accept
-    assert decision.h < GOOD.h
-
-
-@every_controller
-def test_the_ceiling_holds(controller):
+    bent = controller.update(controller.init(), evolve(GOOD, angle=1.2))
+    assert not bent.accept
+    assert bent.h < GOOD.h
     bounded = evolve(controller, bounds=Bounds(minimum=1e-6, initial=0.1, maximum=0.1))
-    decision = bounded.update(bounded.init(), evolve(GOOD, angle=1e-9, distance=1e-12, contraction=1e-9, iterations=1))
+    decision = bounded.update(bounded.init(), EASY)
     assert decision.accept
     assert decision.h <= 0.1
 
 
 def test_an_easy_step_is_lengthened_but_not_after_a_rejection():
     controller = AllgowerGeorg()
-    easy = evolve(GOOD, angle=1e-3, distance=1e-9, contraction=1e-3, iterations=1)
+    easy = evolve(EASY, angle=1e-3, distance=1e-9, contraction=1e-3)
     assert controller.update(controller.init(), easy).h > easy.h
     assert controller.update(controller.init(), evolve(easy, rejections=1)).h <= easy.h
 
 
 def test_the_papers_backtracking():
     controller = Fixed(Bounds(minimum=1e-6, initial=1.0), max_angle=inf, ratio=0.6)
-    h, steps = controller.bounds.initial or 0.1, []
-    for l in range(4):
-        steps.append(h)
-        h = controller.update((), evolve(FAILED, h=h, rejections=l)).h
+    steps = [1.0]
+    for l in range(3):
+        steps.append(controller.update((), evolve(FAILED, h=steps[-1], rejections=l)).h)
     assert steps == pytest.approx([1.0, 0.6, 0.36, 0.216])
     # Success: l starts at 0 again, whatever the step was.
     assert controller.update((), evolve(GOOD, h=0.216)).h == 1.0
-    # It looks at convergence alone, as the paper does.
     assert controller.update((), evolve(GOOD, angle=3.0, distance=5.0)).accept
 
 
-def test_a_fixed_step_is_restored_after_a_failure():
-    controller = Fixed(Bounds(initial=0.2))
-    assert controller.update((), evolve(FAILED, h=0.2)).h == pytest.approx(0.1)
-    assert controller.update((), evolve(GOOD, h=0.1, rejections=1)).h == 0.2
+@pytest.mark.parametrize(
+    ("controller", "attempt", "h"),
+    [
+        (Fixed(Bounds(initial=0.2)), evolve(FAILED, h=0.2), 0.1),
+        (Fixed(Bounds(initial=0.2)), evolve(GOOD, rejections=1), 0.2),
+        # By twice the deceleration at most.
+        (AllgowerGeorg(deceleration=1.5), evolve(GOOD, angle=3.0), 0.1 / 3.0),
+    ],
+)
+def test_lengths_of_the_next_step(controller, attempt, h):
+    assert controller.update((), attempt).h == pytest.approx(h)
 
 
 @pytest.mark.parametrize(
@@ -110,19 +98,13 @@ def test_a_fixed_step_is_restored_after_a_failure():
     ],
 )
 def test_allgower_georg_divides_by_the_worst_factor(change, factor):
-    calm = evolve(GOOD, angle=1e-6, distance=0.0, contraction=0.0)
-    decision = AllgowerGeorg(contraction=0.3, distance=0.1, angle=0.3).update((), evolve(calm, **change))
+    decision = PAPER.update((), evolve(GOOD, **{"angle": 1e-6, "distance": 0.0, "contraction": 0.0, **change}))
     assert decision.accept
     assert decision.h == pytest.approx(GOOD.h / factor)
 
 
 @pytest.mark.parametrize("change", [{"angle": 0.46}, {"distance": 0.0151}, {"contraction": 0.46}])
 def test_allgower_georg_rejects_beyond_the_deceleration(change):
-    controller = AllgowerGeorg(contraction=0.3, distance=0.1, angle=0.3, deceleration=1.5)
-    decision = controller.update((), evolve(GOOD, **change))
+    decision = PAPER.update((), evolve(GOOD, **change))
     assert not decision.accept
     assert decision.h < GOOD.h
-
-
-def test_allgower_georg_shortens_by_twice_the_deceleration_at_most():
-    assert AllgowerGeorg(deceleration=1.5).update((), evolve(GOOD, angle=3.0)).h == pytest.approx(GOOD.h / 3.0)

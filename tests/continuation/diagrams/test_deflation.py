@@ -8,58 +8,44 @@ from continuation import Deflated, check_jacobian, from_functions, solve_at
 from continuation.diagrams.deflation import others
 from continuation.linear import factor_bordered
 
-
-def cubic(y, lam):
-    return (y - 1.0) * (y - 2.0) * (y - 3.0) + lam
-
-
-def coupled(structure):
-    A = np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
-
-    def jacobian(y, lam):
-        return structure(A + np.diag(3.0 * y * y) - 4.0 * np.eye(3)), -np.ones(3)
-
-    return from_functions(lambda y, lam: A @ y + y**3 - 4.0 * y - lam, jacobian, start=(np.zeros(3), 0.0))
+A = np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
+KNOWN = [np.array([1.0, 2.0, 0.0]), np.array([0.3, 0.1, -0.5])]
+CUBIC = from_functions(lambda y, lam: (y - 1.0) * (y - 2.0) * (y - 3.0) + lam, start=([0.0], 0.0))
 
 
-def test_all_roots_of_a_cubic_are_found_from_one_guess():
-    found = others(from_functions(cubic, start=([0.0], 0.0)), 0.0, [], [np.array([1.6])])
+def coupled(structure=np.asarray):
+    return from_functions(
+        lambda y, lam: A @ y + y**3 - 4.0 * y - lam,
+        lambda y, lam: (structure(A + np.diag(3.0 * y * y) - 4.0 * np.eye(3)), -np.ones(3)),
+        start=(np.zeros(3), 0.0),
+    )
+
+
+def test_all_roots_of_a_cubic_are_found_from_one_guess_and_a_known_one_not_again():
+    found = others(CUBIC, 0.0, [], [np.array([1.6])])
     np.testing.assert_allclose(np.sort(np.concatenate(found)), [1.0, 2.0, 3.0], rtol=1e-14)
-
-
-def test_a_known_root_is_not_found_again():
-    homotopy = from_functions(cubic, start=([0.0], 0.0))
-    y = solve_at(homotopy, 0.0, [1.6])
-    np.testing.assert_allclose(y, [2.0], rtol=1e-14)
-    other = solve_at(Deflated(homotopy, [y]), 0.0, [1.6])
-    assert abs(cubic(other[0], 0.0)) < 1e-12
+    np.testing.assert_allclose(solve_at(CUBIC, 0.0, [1.6]), [2.0], rtol=1e-14)
+    other = solve_at(Deflated(CUBIC, [np.array([2.0])]), 0.0, [1.6])
+    assert np.abs(CUBIC.residual(other, 0.0)).max() < 1e-12
     assert abs(other[0] - 2.0) > 0.5
 
 
 def test_all_solutions_of_a_system_are_found():
     # Nine states of three coupled cubics at lam = 0 are odd pairs and zero: each is divided out when it is found.
-    homotopy = coupled(np.asarray)
     guesses = [np.array([a, b, c]) for a in (-1.0, 1.0) for b in (-1.0, 0.5) for c in (-1.0, 1.0)]
-    found = others(homotopy, 0.0, [np.zeros(3)], guesses)
+    found = others(coupled(), 0.0, [np.zeros(3)], guesses)
     assert len(found) >= 6
     for y in found:
-        assert np.abs(homotopy.residual(y, 0.0)).max() < 1e-12
+        assert np.abs(coupled().residual(y, 0.0)).max() < 1e-12
         assert min(np.abs(y - other).max() for other in [np.zeros(3), *found] if other is not y) > 1e-3
         assert any(np.abs(y + other).max() < 1e-8 for other in found)
 
 
-def test_the_derivative_is_right():
-    deflated = Deflated(
-        coupled(np.asarray), [np.array([1.0, 2.0, 0.0]), np.array([0.3, 0.1, -0.5])], power=2.0, shift=0.5
-    )
-    assert check_jacobian(deflated).correct
-
-
 @pytest.mark.parametrize("structure", [np.asarray, sp.csc_array], ids=["dense", "sparse"])
-def test_its_bordered_system_is_that_of_its_derivative(structure):
-    known = [np.array([1.0, 2.0, 0.0]), np.array([0.3, 0.1, -0.5])]
-    deflated = Deflated(coupled(structure), known, scale=[1.0, 2.0, 0.5])
-    generator = np.random.default_rng(2)
+@pytest.mark.parametrize("options", [{"power": 2.0, "shift": 0.5}, {"scale": [1.0, 2.0, 0.5]}])
+def test_its_derivative_is_right_and_its_bordered_system_that_of_it(structure, options):
+    assert check_jacobian(Deflated(coupled(), KNOWN, **options)).correct
+    deflated, generator = Deflated(coupled(structure), KNOWN, **options), np.random.default_rng(2)
     for _ in range(10):
         y, border, r = generator.standard_normal(3), generator.standard_normal(4), generator.standard_normal(3)
         system = deflated.bordered(y, 0.7, border)
@@ -68,19 +54,15 @@ def test_its_bordered_system_is_that_of_its_derivative(structure):
         assert system.sign == plain.sign
 
 
-def test_what_is_no_solution_of_this_homotopy_is_refused():
-    with pytest.raises(ValueError, match="known: expected solutions of 3 unknowns, found shape"):
-        Deflated(coupled(np.asarray), [[1.0, 2.0]])
-    with pytest.raises(ValueError, match="power"):
-        Deflated(coupled(np.asarray), [], power=0.0)
+@pytest.mark.parametrize(
+    ("known", "options", "words"),
+    [([[1.0, 2.0]], {}, "known: expected solutions of 3 unknowns, found shape"), ([], {"power": 0.0}, "power")],
+)
+def test_what_is_no_solution_of_this_homotopy_is_refused(known, options, words):
+    with pytest.raises(ValueError, match=words):
+        Deflated(coupled(), known, **options)
 
 
-def test_where_there_is_nothing_newtons_method_says_so():
-    with pytest.raises(ArithmeticError, match="method at lam = 0 says"):
-        solve_at(from_functions(lambda y, lam: y * y + 1.0 + lam, start=([0.0], -2.0)), 0.0, np.array([0.7]))
-
-
-@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("function", "known"),
     [
@@ -100,25 +82,36 @@ def test_where_every_root_is_known_no_guess_finds_another(function, known):
             solve_at(deflated, 0.5, guess)
 
 
-def test_solves_of_a_plugin_that_solve_nothing_lead_to_no_solution():
-    class Lazy:
-        sign = 1
+class Lazy:
+    """Factors that solve nothing."""
 
-        def solve(self, r, rho):
-            return np.array([0.0, rho])
+    sign = 1
 
-    class Wrong:
-        def start(self):
-            return np.zeros(1), 0.0
+    def solve(self, r, rho):
+        return np.array([0.0, rho])
 
-        def residual(self, y, lam):
-            return y - 1.0
 
-        def jacobian(self, y, lam):
-            return np.ones((1, 1)), np.zeros(1)
+class Wrong:
+    """y = 1, by factors that solve nothing."""
 
-        def bordered(self, y, lam, border):
-            return Lazy()
+    def start(self):
+        return np.zeros(1), 0.0
 
-    with pytest.raises(ArithmeticError, match="no round-off"):
-        solve_at(Wrong(), 0.0, [3.0])
+    def residual(self, y, lam):
+        return y - 1.0
+
+    def bordered(self, y, lam, border):
+        return Lazy()
+
+
+@pytest.mark.parametrize(
+    ("homotopy", "guess", "words"),
+    [
+        (from_functions(lambda y, lam: y * y + 1.0 + lam, start=([0.0], -2.0)), 0.7, "method at lam = 0 says"),
+        (Wrong(), 3.0, "no round-off"),
+    ],
+    ids=["no solution", "factors that solve nothing"],
+)
+def test_where_no_solution_is_found_newtons_method_says_so(homotopy, guess, words):
+    with pytest.raises(ArithmeticError, match=words):
+        solve_at(homotopy, 0.0, [guess])

@@ -5,6 +5,11 @@ from attrs import frozen
 
 from continuation.linear import Banded
 
+from ..kinks.util import Folded
+
+# |lam| - |y| = 0: from the lower left one branch, and the two others from the kink in the middle.
+CROSSED = Folded(((0, 0),), ((1, -1),), ((1, 0), (0, 1)), (0,), (0, 0), (-1, 1))
+
 
 @frozen
 class ChafeeInfante:

@@ -13,23 +13,40 @@ from problems.lcp.homotopies import KKTHomotopy, WangHomotopy
 
 from ...util import by_preset
 from ..util import scalar
+from .test_ends import power
 
 presets = by_preset(FAST, DEFAULT, SERIES)
+every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
 
-
-def power(w):
-    return scalar(lambda y, lam: y**w - lam, lambda y, lam: (w * y ** (w - 1), -1.0), start=(1.0, 1.0), target=0.0)
+COUPLED = continuation.from_functions(
+    lambda y, lam: np.array([y[0] ** 2 - lam, y[1] ** 2 - 2.0 * lam * (1.0 + y[0])]), start=([1.0, 2.0], 1.0)
+)
+MIXED = continuation.from_functions(
+    lambda y, lam: np.array([(y[0] - 1.0) ** 2 - lam * (1.0 + y[1]), y[1] - np.sin(y[0]) - lam]),
+    start=([1.75, 1.23], 0.25),
+)
+# x = 0 and w = 0 at once in both components: x ~ sqrt(lam).
+DOUBLE = WangHomotopy(LCP(np.array([[2.0, 1.0], [1.0, 2.0]]), np.zeros(2)), x0=[1.0, 2.0])
 
 
 @presets
-@pytest.mark.parametrize("w", [2, 3, 4])
-def test_powers_of_the_parameter(w, preset):
-    path = continuation.trace(power(w), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.lam == 0.0
-    assert abs(path.endpoint.y[0]) <= 1e-11
-    assert path.winding_number == w
-    assert f"^(1/{w})" in path.message
+@pytest.mark.parametrize(
+    ("homotopy", "y", "winding", "within"),
+    [
+        *((power(w), [0.0], w, 1e-11) for w in (2, 3, 4)),
+        (COUPLED, [0.0, 0.0], 2, 1e-11),
+        (MIXED, [1.0, np.sin(1.0)], 2, 1e-11),
+        (DOUBLE, np.zeros(4), 2, 1e-10),
+    ],
+    ids=["root", "third root", "fourth root", "two coupled roots", "root and regular components", "two zeros at once"],
+)
+def test_a_singular_end_is_the_limit_of_a_power_series(homotopy, y, winding, within, preset):
+    path = continuation.trace(homotopy, preset=preset)
+    assert (path.status, path.endpoint.lam) == (Status.REACHED_TARGET, 0.0)
+    np.testing.assert_allclose(path.endpoint.y, y, rtol=0, atol=within)
+    assert path.winding_number == winding
+    assert path.end_error <= (1e-7 if homotopy is MIXED else 1e-8)
+    assert f"^(1/{winding})" in path.message
 
 
 @presets
@@ -37,38 +54,6 @@ def test_a_regular_end_is_landed_on_and_not_extrapolated(preset):
     path = continuation.trace(power(1), preset=preset)
     assert path.endpoint.u.tolist() == [0.0, 0.0]
     assert path.winding_number is None
-
-
-@presets
-def test_two_coupled_roots_where_the_jacobian_loses_two_ranks(preset):
-    homotopy = continuation.from_functions(
-        lambda y, lam: np.array([y[0] ** 2 - lam, y[1] ** 2 - 2.0 * lam * (1.0 + y[0])]), start=([1.0, 2.0], 1.0)
-    )
-    path = continuation.trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    np.testing.assert_allclose(path.endpoint.y, 0.0, atol=1e-11)
-
-
-@presets
-def test_a_root_that_mixes_with_regular_components(preset):
-    homotopy = continuation.from_functions(
-        lambda y, lam: np.array([(y[0] - 1.0) ** 2 - lam * (1.0 + y[1]), y[1] - np.sin(y[0]) - lam]),
-        start=([1.75, 1.23], 0.25),
-    )
-    path = continuation.trace(homotopy, preset=preset)
-    np.testing.assert_allclose(path.endpoint.y, [1.0, np.sin(1.0)], atol=1e-11)
-
-
-@presets
-def test_a_double_end_of_a_complementarity_problem(preset):
-    # x = 0 and w = 0 at once in both components: x ~ sqrt(lam).
-    problem = LCP(np.array([[2.0, 1.0], [1.0, 2.0]]), np.zeros(2))
-    path = continuation.trace(WangHomotopy(problem, x0=[1.0, 2.0]), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert np.abs(path.endpoint.y).max() <= 1e-10
-    assert path.winding_number == 2
-    assert path.end_error is not None
-    assert path.end_error <= 1e-8
 
 
 @presets
@@ -85,7 +70,6 @@ def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_th
     )
     path = continuation.trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
-    assert path.end_error is not None
     assert path.end_error < 1e-8
     assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
 
@@ -100,8 +84,7 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     # It is followed to the jump and no farther, and nothing is claimed of an end.
     assert path.status is Status.STEP_TOO_SMALL
     np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-9)
-    assert path.end_error is None
-    assert path.winding_number is None
+    assert (path.end_error, path.winding_number) == (None, None)
 
 
 # -- ends behind a place where two branches nearly meet ------------------------------------------------------------
@@ -115,25 +98,17 @@ class NearlyMeeting:
     d: float
     target: ClassVar[float] = 0.0
 
-    @property
-    def end(self):
-        """Straight on it would be 0, about."""
-        return self.c + np.hypot(self.c, self.d)
+    def upper(self, lam):
+        return self.c + np.hypot(lam - self.c, self.d)
 
     def start(self):
-        return np.array([self.c + np.hypot(1.0 - self.c, self.d)]), 1.0
+        return np.array([self.upper(1.0)]), 1.0
 
     def residual(self, y, lam):
         return (y - self.c) ** 2 - (lam - self.c) ** 2 - self.d**2
 
-    def jacobian(self, y, lam):
-        return np.array([[2.0 * (y[0] - self.c)]]), np.array([-2.0 * (lam - self.c)])
-
     def max_step(self, u, v):
         return u[-1] / -v[-1] if v[-1] < 0.0 else np.inf
-
-
-every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
 
 
 @every_preset
@@ -144,32 +119,8 @@ def test_a_path_that_turns_off_next_to_the_end_is_followed(c, ratio, preset):
     homotopy = NearlyMeeting(c, c * ratio)
     path = continuation.trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
-    np.testing.assert_allclose(path.endpoint.y, homotopy.end, rtol=1e-6)
-
-
-def random_problem(n, seed):
-    rng = np.random.default_rng([seed, n])
-    return LCP(rng.normal(size=(n, n)), rng.normal(size=n))
-
-
-ENDS = {
-    (4, 44): [0.0, 0.0, 1.37548783, 0.0],
-    (2, 24): [0.0364452589, 0.0],
-    (2, 71): [0.0, 0.0304732589],
-    (8, 71): [0.0, 0.703214829, 0.260473035, 0.0, 0.00736690494, 0.0, 0.0, 0.000650188398],
-    (8, 73): [1.07894192, 0.415154404, 0.0, 0.000491435512, 1.31928004, 0.0, 0.10408397, 0.484365887],
-    (2, 49): [0.0443357891, 0.0],
-}
-"""By n and seed, from CONSERVATIVE with steps of at most 0.05 and no target, where lam = 1e-12."""
-
-
-@every_preset
-@pytest.mark.parametrize(("n", "seed"), ENDS)
-def test_the_path_of_a_random_problem_is_followed_to_its_own_end(n, seed, preset):
-    """Straight on, one component or another would be half of what it is."""
-    path = continuation.trace(KKTHomotopy(random_problem(n, seed)), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)
+    # Straight on it would be 0, about.
+    np.testing.assert_allclose(path.endpoint.y, homotopy.upper(0.0), rtol=1e-6)
 
 
 class WithoutSign:
@@ -186,9 +137,32 @@ class Unoriented(KKTHomotopy):
         return WithoutSign(super().bordered(y, lam, border))
 
 
-@pytest.mark.parametrize(("n", "seed"), [problem for problem in ENDS if problem != (8, 73)])
-def test_where_no_orientation_is_known_the_path_between_samples_is_looked_at(n, seed):
-    """Not enough on (8, 73): there the other branch is a millionth of the path away."""
-    path = continuation.trace(Unoriented(random_problem(n, seed)))
+ENDS = {
+    (4, 44): [0.0, 0.0, 1.37548783, 0.0],
+    (2, 24): [0.0364452589, 0.0],
+    (2, 71): [0.0, 0.0304732589],
+    (8, 71): [0.0, 0.703214829, 0.260473035, 0.0, 0.00736690494, 0.0, 0.0, 0.000650188398],
+    (8, 73): [1.07894192, 0.415154404, 0.0, 0.000491435512, 1.31928004, 0.0, 0.10408397, 0.484365887],
+    (2, 49): [0.0443357891, 0.0],
+}
+"""By n and seed, from CONSERVATIVE with steps of at most 0.05 and no target, where lam = 1e-12."""
+
+
+@pytest.mark.parametrize(
+    ("make", "n", "seed", "preset"),
+    [
+        *((KKTHomotopy, *case, preset) for case in ENDS for preset in (FAST, DEFAULT, CONSERVATIVE, SERIES)),
+        # Not enough on (8, 73): there the other branch is a millionth of the path away.
+        *((Unoriented, *case, DEFAULT) for case in ENDS if case != (8, 73)),
+    ],
+    ids=lambda value: getattr(value, "name", None),
+)
+def test_the_path_of_a_random_problem_is_followed_to_its_own_end(make, n, seed, preset):
+    """Straight on, one component or another would be half of what it is.
+
+    Where no orientation is known, the path between samples is looked at.
+    """
+    rng = np.random.default_rng([seed, n])
+    path = continuation.trace(make(LCP(rng.normal(size=(n, n)), rng.normal(size=n))), preset=preset)
     assert path.status is Status.REACHED_TARGET
     np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)

@@ -5,28 +5,64 @@ import math
 import numpy as np
 import pytest
 
-from continuation import Budget, Kind, Status, TargetValue, from_functions, trace
-from problems.bifurcation import Circle, Cusp
+from continuation import Budget, Kind, Status, from_functions, trace
+from problems.bifurcation import Circle
 
+from ...util import every_preset
 from ..util import scalar
 
+EPS = np.finfo(float).eps
 
-def test_a_start_on_the_target_is_the_end():
-    path = trace(scalar(lambda y, lam: y - lam, lambda y, lam: (1.0, -1.0), target=0.0))
+
+def power(p, start=(1.0, 1.0), target=0.0):
+    """y^p = lam."""
+    return scalar(lambda y, lam: y**p - lam, lambda y, lam: (p * y ** (p - 1), -1.0), start=start, target=target)
+
+
+def grown(n):
+    """y_k = k lam^2, far away."""
+    return from_functions(lambda y, lam: y - lam**2 * np.arange(1.0, n + 1), start=(np.zeros(n), 0.0), target=1e5)
+
+
+@every_preset
+@pytest.mark.parametrize(
+    ("homotopy", "y", "within"),
+    [
+        (power(1, (0.0, 0.0)), 0.0, 1e-12),
+        *((power(2, start), 0.0, 1e-7) for start in ((1.0, 1.0), (3.0, 9.0), (-1.0, 1.0))),
+        *((power(2, target=d), math.sqrt(d), 1e-6 * math.sqrt(d)) for d in (1e-2, 1e-5, 1e-8, 1e-14)),
+        # Of multiplicity p: an error of round-off in lam is one of its p-th root in y.
+        *((power(p), 0.0, 10.0 * EPS ** (1.0 / p)) for p in (3, 5)),
+        (power(3, target=-1.0), -1.0, 1e-9),
+        *((grown(n), 1e10, 1.0) for n in (1, 3)),
+        # A start near the path is brought on it; one unknown may be a number; and overflow makes no noise.
+        (scalar(lambda y, lam: y * y - 1.0 - lam, lambda y, lam: (2.0 * y, -1.0), (1.2, 0.0)), math.sqrt(2.0), 1e-10),
+        (from_functions(lambda y, lam: y**3 + y - lam, start=(0.0, 0.0), target=2.0), 1.0, 1e-10),
+        (from_functions(lambda y, lam: np.sinh(y) - lam, start=([0.0], 0.0), target=1e6), math.asinh(1e6), 1e-5),
+    ],
+    ids=[
+        "start on it", "fold", "fold from afar", "fold from below", "fold 1e-2 behind", "fold 1e-5 behind",
+        "fold 1e-8 behind", "fold 1e-14 behind", "inflection", "flat inflection", "behind an inflection", "growth",
+        "growth of three", "start beside the path", "a number", "overflow",
+    ],
+)  # fmt: skip
+def test_a_target_is_reached_exactly(homotopy, y, within, preset):
+    path = trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.u == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert path.endpoint.lam == homotopy.target
+    assert abs(path.endpoint.y[0] - y) <= within
+    assert path.steps[0].residual_norm <= 1e-8
+    # A fold on the target itself may be seen or not.
+    assert path.events == (path.turning_points if within == 1e-7 else [])
 
 
-@pytest.mark.parametrize("start", [(1.0, 1.0), (3.0, 9.0), (-1.0, 1.0)])
-def test_a_fold_at_the_target(start):
-    path = trace(scalar(lambda y, lam: y * y - lam, lambda y, lam: (2.0 * y, -1.0), start=start, target=0.0))
-    assert path.status is Status.REACHED_TARGET
-    np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-7)
+def test_a_start_in_a_fold_is_regular():
+    path = trace(power(2, (0.0, 0.0), 1.0))
+    assert (path.status, abs(path.endpoint.y[0])) == (Status.REACHED_TARGET, pytest.approx(1.0, abs=1e-10))
 
 
 def test_a_fold_just_before_the_target_is_no_end():
-    homotopy = scalar(lambda y, lam: y * y - lam, lambda y, lam: (2.0 * y, -1.0), start=(1.0, 1.0), target=-1e-3)
-    path = trace(homotopy, budget=Budget(steps=50))
+    path = trace(power(2, target=-1e-3), budget=Budget(steps=50))
     # It turns in the fold, a thousandth before the target, and goes on on the other side: the parameter never stalls.
     assert path.status is Status.BUDGET_EXHAUSTED
     (fold,) = path.turning_points
@@ -35,85 +71,43 @@ def test_a_fold_just_before_the_target_is_no_end():
     assert path.endpoint.y[0] < -1.0
 
 
-@pytest.mark.parametrize("target", [1e-3, 1e-6, 1e-10])
-def test_a_fold_just_behind_the_target(target):
-    homotopy = scalar(lambda y, lam: y * y - lam, lambda y, lam: (2.0 * y, -1.0), start=(1.0, 1.0), target=target)
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.lam == target
-    assert path.endpoint.y[0] == pytest.approx(np.sqrt(target), rel=1e-6)
-
-
-@pytest.mark.parametrize("power", [3, 5])
-def test_an_inflection_at_the_target(power):
-    homotopy = scalar(
-        lambda y, lam: y**power - lam, lambda y, lam: (power * y ** (power - 1), -1.0), start=(1.0, 1.0), target=0.0
-    )
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.lam == 0.0
-    # Of multiplicity p: an error of round-off in lam is one of its p-th root in y.
-    assert abs(path.endpoint.y[0]) <= 10.0 * np.finfo(float).eps ** (1.0 / power)
-    assert path.turning_points == []
-
-
-def test_through_an_inflection():
-    homotopy = scalar(lambda y, lam: y**3 - lam, lambda y, lam: (3.0 * y * y, -1.0), start=(1.0, 1.0), target=-1.0)
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
-    assert path.endpoint.y[0] == pytest.approx(-1.0, abs=1e-9)
-    assert path.events == []
-
-
 @pytest.mark.parametrize(
-    "homotopy",
+    ("residual", "slope", "start", "target"),
     [
-        scalar(lambda y, lam: lam * y - 1.0, lambda y, lam: (lam, y), start=(1.0, 1.0), target=0.0),
-        scalar(
+        (lambda y, lam: lam * y - 1.0, lambda y, lam: (lam, y), (1.0, 1.0), 0.0),
+        (
             lambda y, lam: y * np.cos(lam) - np.sin(lam),
-            lambda y, lam: (np.cos(lam), -y * np.sin(lam) - np.cos(lam)),
-            target=2.0,
+            lambda y, lam: (np.cos(lam), -y * np.sin(lam) - np.cos(lam)), (0.0, 0.0), 2.0,
         ),
-        scalar(lambda y, lam: np.arctan(y) - lam, lambda y, lam: (1.0 / (1.0 + y * y), -1.0), target=2.0),
+        (lambda y, lam: np.arctan(y) - lam, lambda y, lam: (1.0 / (1.0 + y * y), -1.0), (0.0, 0.0), 2.0),
     ],
     ids=["1/lam", "tan", "arctan"],
-)
-def test_divergence(homotopy):
-    path = trace(homotopy)
+)  # fmt: skip
+def test_divergence(residual, slope, start, target):
+    path = trace(scalar(residual, slope, start, target))
     assert path.status is Status.DIVERGED
     assert abs(path.endpoint.y[0]) > 1e3
     assert len(path) < 200
 
 
-@pytest.mark.parametrize("n", [1, 3])
-def test_growth_with_the_parameter_is_not_divergence(n):
-    homotopy = from_functions(lambda y, lam: y - lam**2 * np.arange(1.0, n + 1), start=(np.zeros(n), 0.0), target=1e5)
-    assert trace(homotopy).status is Status.REACHED_TARGET
-
-
-def test_a_closed_curve_that_starts_anywhere():
-    # Near a turning point the path says little of its extents: some of these went round and round.
-    for angle in (0.3, 2.0, 4.0, *(0.5 * math.pi + np.array([-0.02, -0.007, 0.003, 0.01]))):
-        start = (math.cos(angle), math.sin(angle))
-        path = trace(scalar(Circle().residual, lambda y, lam: (2.0 * y, 2.0 * lam), start=start, target=None))
-        assert path.status is Status.CLOSED
-        assert len(path.turning_points) == 2
-        np.testing.assert_allclose(path.endpoint.u, start, rtol=0, atol=1e-9)
+# Near a turning point the path says little of its extents: some of these went round and round.
+@pytest.mark.parametrize("angle", [0.3, 2.0, 4.0, *(0.5 * math.pi + np.array([-0.02, -0.007, 0.003, 0.01]))])
+def test_a_closed_curve_that_starts_anywhere(angle):
+    start = (math.cos(angle), math.sin(angle))
+    path = trace(scalar(Circle().residual, lambda y, lam: (2.0 * y, 2.0 * lam), start=start, target=None))
+    assert (path.status, len(path.turning_points)) == (Status.CLOSED, 2)
+    np.testing.assert_allclose(path.endpoint.u, start, rtol=0, atol=1e-9)
 
 
 def test_a_figure_of_eight_closes_after_both_loops():
     # Gerono's lemniscate lam^4 = lam^2 - y^2 crosses itself in the origin: not closed before the second passage.
     homotopy = scalar(
-        lambda y, lam: lam**4 - lam**2 + y * y,
-        lambda y, lam: (2.0 * y, 4.0 * lam**3 - 2.0 * lam),
-        start=(0.0, 1.0),
-        target=None,
+        lambda y, lam: lam**4 - lam**2 + y * y, lambda y, lam: (2.0 * y, 4.0 * lam**3 - 2.0 * lam), (0.0, 1.0), None
     )
     path = trace(homotopy)
     assert path.status is Status.CLOSED
     np.testing.assert_allclose(path.endpoint.u, (0.0, 1.0), rtol=0, atol=1e-9)
-    crossings = [event for event in path.events if event.kind == Kind.BRANCH_POINT]
-    assert len(crossings) == 2
+    assert [event.kind for event in path.events].count(Kind.BRANCH_POINT) == 2
     assert path.lam.min() < -0.9
 
 
@@ -130,8 +124,3 @@ def test_an_interior_path_that_comes_back_to_its_start_value():
     path = trace(Inside())
     assert path.status is Status.TURNED_BACK
     np.testing.assert_allclose(path.endpoint.u, (-1.0, 0.0), rtol=0, atol=1e-9)
-
-
-def test_an_end_at_once_when_the_event_is_reached():
-    path = trace(Cusp(), events=[TargetValue(-1.0, component=0)])
-    assert path.endpoint.y[0] == -1.0

@@ -1,4 +1,4 @@
-"""Piecewise linear maps with exact answers: A u + b + sum_j c_j |g_j u + d_j|, with integer data."""
+"""Maps of pieces, and piecewise linear ones with exact answers: A u + b + sum_j c_j |g_j u + d_j|, of integers."""
 
 from fractions import Fraction
 from itertools import product
@@ -6,28 +6,41 @@ from itertools import product
 import attrs
 import numpy as np
 
+from continuation import from_functions
+
+
+@attrs.frozen(eq=False)
+class Joined:
+    """A map of its pieces: `make(*signs)` gives the residual of one, `watched` the switches."""
+
+    make: object
+    watched: object
+    at: tuple
+    target: float | None = None
+    slope: object = None
+
+    @property
+    def count(self):
+        return len(self.switches(*self.start()))
+
+    def start(self):
+        return np.atleast_1d(np.array(self.at[0], dtype=float)), float(self.at[1])
+
+    def switches(self, y, lam):
+        return self.watched(y, lam)
+
+    def piece(self, signs):
+        jacobian = None if self.slope is None else self.slope(*map(int, signs))
+        return from_functions(self.make(*map(int, signs)), jacobian, start=self.start())
+
+    def residual(self, y, lam):
+        signs = np.where(np.asarray(self.switches(y, lam)) >= 0.0, 1, -1)
+        return self.make(*map(int, signs))(y, lam)
+
 
 def whole(rows):
     """A matrix of integers."""
     return tuple(tuple(int(x) for x in row) for row in rows)
-
-
-@attrs.frozen
-class Piece:
-    """The map on a piece, (A + C S G) u + b + C S d."""
-
-    H: np.ndarray
-    b: np.ndarray
-    at: tuple
-
-    def start(self):
-        return np.array(self.at[:-1], dtype=float), float(self.at[-1])
-
-    def residual(self, y, lam):
-        return self.H[:, :-1] @ y + self.H[:, -1] * lam + self.b
-
-    def jacobian(self, y, lam):
-        return self.H[:, :-1], self.H[:, -1]
 
 
 @attrs.frozen
@@ -64,8 +77,14 @@ class Folded:
         return G[:, :-1] @ y + G[:, -1] * lam + np.array(self.d)
 
     def piece(self, signs):
+        """(A + C S G) u + b + C S d."""
         CS = np.array(self.C) * signs
-        return Piece(np.array(self.A) + CS @ np.array(self.G) + 0.0, np.array(self.b) + CS @ np.array(self.d), self.at)
+        H, b = np.array(self.A) + CS @ np.array(self.G) + 0.0, np.array(self.b) + CS @ np.array(self.d)
+        return from_functions(
+            lambda y, lam: H[:, :-1] @ y + H[:, -1] * lam + b,
+            lambda y, lam: (H[:, :-1], H[:, -1]),
+            start=self.start(),
+        )
 
     # -- exactly ----------------------------------------------------------------------------------------------
 
@@ -98,25 +117,6 @@ class Folded:
                     size = sum(abs(x) for x in w)
                     found.setdefault(tuple(Fraction(x, size) for x in w), signs)
         return found
-
-    def kinks(self, u, v, most):
-        """The path from u along v, kink by kink, up to where it is no simple one any more, or comes again."""
-        met = []
-        while len(met) < most:
-            at = [Fraction(-value) / slope for value, slope in zip(self.values(u), self.slopes(v)) if slope]
-            t = min((t for t in at if t > 0), default=None)
-            if t is None:
-                break
-            u = [x + t * w for x, w in zip(u, v)]
-            if u in met:
-                break
-            met.append(u)
-            rays = self.rays(u)
-            if rays is None or len(rays) != 2 or sum(value == 0 for value in self.values(u)) > 1:
-                break
-            size = sum(abs(x) for x in v)
-            v = next(list(ray) for ray in rays if list(ray) != [Fraction(-x) / size for x in v])
-        return met
 
 
 def determinant(rows):

@@ -3,20 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import Status, check_jacobian, homotopy, trace
-from continuation.predictors import Hermite, Taylor
-from continuation.step.capabilities import interior_fraction, max_step_of
+from continuation import Status, check_jacobian, trace
+from continuation.predictors import Tangent
+from continuation.step.capabilities import max_step_of
 from problems.bifurcation import FreudensteinRoth
 
 from ...util import every_preset
-
-
-@pytest.mark.parametrize("name", ["Bordered", "Events", "Jacobian", "MaxStep", "Metric", "Pieces"])
-def test_what_is_offered_is_what_isinstance_says(name):
-    protocol = getattr(homotopy, f"Supports{name}")
-    parts = [Straight(), Straight(jacobian=None), Straight(switches=len), Straight(switches=len, piece=len)]
-    for part in (*parts, Straight(events=()), Straight(max_step=len), FreudensteinRoth()):
-        assert homotopy.offers(part, protocol) == isinstance(part, protocol)
 
 
 class Straight:
@@ -38,6 +30,18 @@ def test_a_max_step_of_zero_ends_the_path():
     assert trace(Straight(max_step=lambda u, v: 0.0)).status is Status.STEP_TOO_SMALL
 
 
+def test_a_path_comes_up_to_its_boundary_and_no_farther():
+    """Along a tangent it is farther to y = 1 than along y = lam^2."""
+
+    def room(u, v):
+        return (1.0 - u[0]) / v[0] if v[0] > 0.0 else np.inf
+
+    homotopy = Straight(residual=lambda y, lam: y - lam**2, target=2.0, max_step=room)
+    path = trace(homotopy, predictor=Tangent())
+    assert path.status is Status.STEP_TOO_SMALL
+    assert 0.999 < path.endpoint.y[0] == path.y.max() <= 1.0
+
+
 def test_a_direction_that_overflows_has_no_room():
     room = max_step_of(Straight(max_step=lambda u, v: float(v @ u) * np.nan))
     assert room(np.ones(2), np.array([np.inf, 1.0])) == 0.0
@@ -51,9 +55,9 @@ def test_a_finish_that_gives_no_point_is_named(end):
 
 def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said():
     path = trace(Straight(finish=lambda y, lam: np.ones(1) + 1e-12))
-    assert path.status is Status.REACHED_TARGET
-    assert len(path) == 3
+    assert (path.status, len(path)) == (Status.REACHED_TARGET, 3)
     assert path.message.endswith(f"the residual of H there is {path.endpoint.residual_norm:.1e}.")
+    assert path.arclength[-1] > path.arclength[-2]
 
 
 @pytest.mark.parametrize("off", [7.0, -1.5, 1e300])
@@ -62,23 +66,17 @@ def test_a_finish_whose_end_does_not_solve_the_equations_is_refused(off):
         trace(Straight(finish=lambda y, lam: y + off))
 
 
-def test_a_predictor_says_how_near_to_the_boundary_it_may_go():
-    assert interior_fraction(Taylor()) == 0.9999
-    # A polynomial only continues what is past.
-    assert interior_fraction(Hermite()) == 0.9
-
-
 class OneBuffer:
     """A homotopy that returns the same arrays every time."""
 
-    def __init__(self, homotopy, jacobian):
-        self.plain, self.target = homotopy, homotopy.target
+    target = 1.0
+
+    def __init__(self, jacobian):
+        self.plain = FreudensteinRoth()
+        self.start = self.plain.start
         self.kept = [np.empty(2), np.empty((2, 2)), np.empty(2)]
         if jacobian:
             self.jacobian = self._jacobian
-
-    def start(self):
-        return self.plain.start()
 
     def residual(self, y, lam):
         self.kept[0][:] = self.plain.residual(y, lam)
@@ -91,14 +89,12 @@ class OneBuffer:
 
 @every_preset
 def test_a_homotopy_may_reuse_its_arrays(preset):
-    path = trace(OneBuffer(FreudensteinRoth(), jacobian=True), preset=preset)
+    path = trace(OneBuffer(jacobian=True), preset=preset)
     np.testing.assert_array_equal(path.u, trace(FreudensteinRoth(), preset=preset).u)
 
 
 def test_a_residual_that_reuses_its_array_has_derivatives():
     """By differences: jets and complex numbers do not fit into an array of floats."""
-    homotopy = OneBuffer(FreudensteinRoth(), jacobian=False)
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
-    assert len(path.turning_points) == 2
-    assert check_jacobian(OneBuffer(FreudensteinRoth(), jacobian=True)).correct
+    path = trace(OneBuffer(jacobian=False))
+    assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, 2)
+    assert check_jacobian(OneBuffer(jacobian=True)).correct

@@ -7,54 +7,66 @@ from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status, from_funct
 from continuation.archive import resume
 from continuation.budget import Budget
 
+from ...util import by_preset, every_preset
 
-def cubic(level, seed=0):
-    """The path lam = t^3 - 3 t, with folds at lam = 2 and -2, in three unknowns; t decides how much noise there is."""
-    generator = np.random.default_rng(seed)
+
+def cubic(noise):
+    """The path lam = t^3 - 3 t, with folds at lam = 2 and -2, in three unknowns, and `noise` of (t, lam)."""
 
     def residual(y, lam):
         t, lam = float(y[0]), float(lam)
         exact = np.array([t**3 - 3.0 * t - lam, float(y[1]) - t * t, float(y[2]) - np.sin(t) * float(y[1])])
-        return exact + level(t) * generator.uniform(-1.0, 1.0, 3)
+        return exact + noise(t, lam)
 
     t = -2.5
     return from_functions(residual, start=([t, t * t, np.sin(t) * t * t], t**3 - 3.0 * t), target=8.125)
+
+
+def drawn(level):
+    generator = np.random.default_rng(0)
+    return cubic(lambda t, lam: level(t) * generator.uniform(-1.0, 1.0, 3))
 
 
 def growing(t):
     return 10.0 ** (-14.0 + 8.0 * min(max((t + 2.5) / 4.0, 0.0), 1.0))
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
+@by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
 @pytest.mark.parametrize("level", [1e-10, 1e-8, 1e-6])
 def test_both_folds_are_found_in_at_most_twice_the_steps(preset, level):
-    clean, path = trace(cubic(lambda t: 0.0), preset=preset), trace(cubic(lambda t: level), preset=preset)
+    clean, path = trace(drawn(lambda t: 0.0), preset=preset), trace(drawn(lambda t: level), preset=preset)
     assert path.status is Status.REACHED_TARGET
     assert [point.lam for point in path.turning_points] == pytest.approx([2.0, -2.0], abs=level**0.5)
     assert len(path) <= 2 * len(clean) + 10
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
-    path = trace(cubic(growing), preset=preset)
+    path = trace(drawn(growing), preset=preset)
     assert path.status is Status.REACHED_TARGET
     assert [point.lam for point in path.turning_points] == pytest.approx([2.0, -2.0], abs=1e-3)
     assert "The residual is noisy: the tolerance was raised to" in path.message
     assert len(path) < 150  # it took 1,300 steps, and found one fold
 
 
-@pytest.mark.parametrize("level", [growing, lambda t: 1e-7, lambda t: 1e-8 * (t > -1.5)], ids=["grows", "is", "begins"])
-@pytest.mark.parametrize("steps", [2, 5, 8, 11])
-def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tmp_path, level, steps):
-    """The same noise at the same point: the points that follow are those of the trace that was not cut, bit for bit."""
+def test_noise_that_a_start_at_zero_does_not_show_is_measured_ahead_of_it():
+    """The domain ends behind the start: noise that is looked for there takes 18 points, and not 7."""
 
     def residual(y, lam):
-        t, lam = float(y[0]), float(lam)
-        exact = np.array([t**3 - 3.0 * t - lam, float(y[1]) - t * t, float(y[2]) - np.sin(t) * float(y[1])])
-        return exact + level(t) * np.sin(1e11 * (np.array([1.0, 2.0, 3.0]) * t + lam))
+        y, lam = float(y[0]), float(lam)
+        return np.array([y - lam + 1e-6 * lam * np.sin(1e11 * (y + lam)) if lam >= -1e-4 else np.nan])
 
-    t = -2.5
-    homotopy = from_functions(residual, start=([t, t * t, np.sin(t) * t * t], t**3 - 3.0 * t), target=8.125)
+    path = trace(from_functions(residual, start=([0.0], 0.0), target=1.0))
+    assert path.status is Status.REACHED_TARGET
+    assert "The residual is noisy" in path.message
+    assert len(path) <= 12
+
+
+@pytest.mark.parametrize("level", [growing, lambda t: 1e-7, lambda t: 1e-8 * (t > -1.5)], ids=["grows", "is", "begins"])
+@pytest.mark.parametrize("steps", [2, 8])
+def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tmp_path, level, steps):
+    """The same noise at the same point: the points that follow are those of the trace that was not cut, bit for bit."""
+    homotopy = cubic(lambda t, lam: level(t) * np.sin(1e11 * (np.array([1.0, 2.0, 3.0]) * t + lam)))
     whole = trace(homotopy)
     assert whole.status is Status.REACHED_TARGET
     trace(homotopy, archive=tmp_path / "part.h5", budget=Budget(steps=steps))

@@ -8,16 +8,17 @@ import attrs
 import numpy as np
 import pytest
 
-from continuation import Budget, Path, Tracer, TurningPoint, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Path, Tracer, TurningPoint, trace
 from continuation.archive import checkpoint, resume, trace_many
 from continuation.chart import traced
 from continuation.metric import Weighted
 from continuation.predictors import Hermite
-from continuation.step import presets
-from continuation.step.options import DEFAULTS, OPTIONS, PART_OPTIONS, checked
+from continuation.step.options import DEFAULTS, OPTIONS, PART_OPTIONS
 from continuation.step.settings import Settings
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle
+
+from ...util import by_preset
 
 ROOT = File(__file__).parents[3]
 LCP = lcp.LCP(np.eye(2), -np.ones(2))
@@ -30,13 +31,6 @@ TAKERS = {
 }
 
 
-def test_names_and_defaults_agree():
-    course = ("tolerance", "budget", "target", "direction", "start", "finish", "max_step", "box")
-    assert (*PART_OPTIONS, *course) == OPTIONS
-    assert set(DEFAULTS) == set(OPTIONS)
-    assert checked({}) == DEFAULTS
-
-
 def test_settings_are_options_completed_and_what_an_archive_keeps():
     # A ceiling of the step is the controller's, and the faces of a box are events.
     others = {"preset", "start", "finish", "check_jacobian", "max_step", "box"}
@@ -45,10 +39,12 @@ def test_settings_are_options_completed_and_what_an_archive_keeps():
 
 
 @pytest.mark.parametrize("taker", [trace, Tracer, resume])
-def test_help_shows_every_option_with_its_default(taker):
+def test_help_shows_every_option_with_the_default_that_holds(taker):
     text = inspect.getdoc(taker)
+    stated = dict(re.findall(r"^(\w+) : .*default (.*)$", text, re.MULTILINE))
     for name in OPTIONS:
-        assert re.search(rf"^{name} : .*default ", text, re.MULTILINE), name
+        value = DEFAULTS[name]
+        assert stated[name] == ("DEFAULT" if name == "preset" else f"{value!r}") or eval(stated[name]) == value
     assert "{" not in text
 
 
@@ -58,21 +54,10 @@ def test_help_of_the_solver_shows_the_parts_alone():
     assert "\ntarget : " not in text
 
 
-def test_documented_defaults_are_those_that_hold():
-    stated = dict(re.findall(r"^(\w+) : .*default (.*)$", inspect.getdoc(trace), re.MULTILINE))
-    for name, value in DEFAULTS.items():
-        assert stated[name] == ("DEFAULT" if name == "preset" else f"{value!r}") or eval(stated[name]) == value
-
-
 @pytest.mark.parametrize("taker", TAKERS)
 def test_an_unknown_option_is_refused_with_the_nearest_one(taker):
     with pytest.raises(TypeError, match=r"^predicter: expected one of the options .*; did you mean predictor\?$"):
         TAKERS[taker](predicter=Hermite())
-
-
-def test_an_option_that_the_sweep_owns_is_refused():
-    with pytest.raises(TypeError, match="start: expected no such option here, where every homotopy has its own"):
-        trace_many([Circle()], start=(np.zeros(2), np.ones(2)))
 
 
 @pytest.mark.parametrize("name", ["target", "direction", "start", "state", "observers"])
@@ -82,66 +67,67 @@ def test_an_option_that_the_solver_owns_is_refused(name):
 
 
 @pytest.mark.parametrize(
-    ("options", "error", "words"),
+    ("taker", "options", "error", "words"),
     [
-        ({"preset": "fast"}, TypeError, "preset: expected FAST, .*, found 'fast'"),
-        ({"predictor": Hermite}, TypeError, r"predictor: expected a predictor, found the class Hermite; Hermite\(\)"),
-        ({"events": [TurningPoint]}, TypeError, "events: .* found the class TurningPoint"),
-        ({"events": 1}, TypeError, "events: expected a list"),
-        ({"check_jacobian": "yes"}, TypeError, "check_jacobian: expected True or False, found 'yes'"),
-        ({"examine": 2}, TypeError, "examine: expected True or False, found 2"),
-        ({"tolerance": "a"}, ValueError, "tolerance: .* found 'a'"),
-        ({"budget": 3}, TypeError, "budget: expected a Budget, found 3"),
-        ({"finish": 3}, TypeError, "finish: expected True or False, found 3"),
-        ({"seed": "a"}, ValueError, "seed: expected an integer, at least 0, found 'a'"),
-        ({"budgett": 3}, TypeError, r"budgett: .*; did you mean budget\?"),
+        ("trace_many", {"start": (np.zeros(2), np.ones(2))}, TypeError, "start: expected no such option here, where"),
+        # Active sets alone solve this problem: no path is traced that could complain.
+        ("solve", {"preset": "fast"}, TypeError, "preset: expected FAST, .*, found 'fast'"),
+        ("solve", {"predictor": Hermite}, TypeError, r"predictor: .*, found the class Hermite; Hermite\(\)"),
+        ("solve", {"events": [TurningPoint]}, TypeError, "events: .* found the class TurningPoint"),
+        ("solve", {"events": 1}, TypeError, "events: expected a list"),
+        ("solve", {"check_jacobian": "yes"}, TypeError, "check_jacobian: expected True or False, found 'yes'"),
+        ("solve", {"examine": 2}, TypeError, "examine: expected True or False, found 2"),
+        ("solve", {"tolerance": "a"}, ValueError, "tolerance: .* found 'a'"),
+        ("solve", {"budget": 3}, TypeError, "budget: expected a Budget, found 3"),
+        ("solve", {"finish": 3}, TypeError, "finish: expected True or False, found 3"),
+        ("solve", {"seed": "a"}, ValueError, "seed: expected an integer, at least 0, found 'a'"),
+        ("solve", {"budgett": 3}, TypeError, r"budgett: .*; did you mean budget\?"),
+        ("trace", {"metric": Weighted(-1.0)}, ValueError, "y"),
+        ("trace", {"events": [TurningPoint(component=7)]}, IndexError, "component"),
+        ("trace", {"tolerance": "a"}, TypeError, "tolerance: expected a positive finite number or a Tol.*, found 'a'"),
+        ("trace", {"tolerance": None}, TypeError, "tolerance: .* found None"),
+        ("trace", {"tolerance": True}, TypeError, "tolerance: .* found True"),
+        ("trace", {"tolerance": np.inf}, ValueError, "tolerance: .* found inf"),
+        ("trace", {"start": (1, 2, 3)}, ValueError, r"start: expected a pair \(u, v\) of vectors, found 3 of them"),
+        ("trace", {"start": (np.zeros(2),)}, ValueError, "start: expected a pair .* found 1 of them"),
+        ("trace", {"start": 3}, ValueError, "start: expected a pair .* found 3"),
+        ("trace", {"start": (np.zeros(2) + 1j, np.ones(2))}, ValueError, "start: expected real numbers, found complex"),
+        ("trace", {"start": ("a", "b")}, ValueError, "start: expected real numbers, found 'a'"),
+        ("trace", {"start": (np.zeros(2), np.ones(3))}, ValueError, "start: .* vectors of one size"),
+        ("trace", {"start": (np.zeros(2), np.zeros(2))}, ValueError, "start: .* a direction that does not vanish"),
+        ("trace", {"start": (np.ones(2), np.array([1.0, np.nan]))}, ValueError, "start: expected a finite point"),
+        ("trace", {"start": (np.zeros(3), np.ones(3))}, ValueError, r"start: expected \(u, v\) of shape \(2,\)"),
+        ("trace", {"start": ([np.nan], 0.0)}, ValueError, "start: expected finite numbers"),
+        ("trace", {"start": Path()}, ValueError, "start: expected a path with a point to go on from"),
+        ("trace", {"direction": "up"}, ValueError, "direction: expected -1, 0 or 1, found 'up'"),
+        ("trace", {"direction": np.ones(2)}, ValueError, "direction: expected -1, 0 or 1"),
+        ("trace", {"direction": True}, ValueError, "direction: expected -1, 0 or 1, found True"),
+        ("trace", {"check_jacobian": "yes"}, TypeError, "check_jacobian: expected True or False, found 'yes'"),
+        ("trace", {"predictor": Hermite}, TypeError, "predictor: .* found the class Hermite"),
+        ("trace", {"events": [TurningPoint]}, TypeError, "events: .* found the class TurningPoint"),
+        ("trace", {"observers": [1]}, TypeError, "observers: expected an observer, found 1, which has no `step`"),
+        ("trace", {"observers": 1}, TypeError, "observers: expected a list of observers, found 1"),
+        ("trace", {"archive": 1}, TypeError, "archive: expected a path or a PathLog, found 1"),
+        ("trace", {"target": np.ones(2)}, TypeError, "target: expected a finite number or None, found array"),
+        ("trace", {"target": 1j}, TypeError, "target: expected a finite number or None, found 1j"),
+        ("trace", {"target": True}, TypeError, "target: expected a finite number or None, found True"),
+        ("trace", {"target": np.inf}, ValueError, "target: expected a finite number or None, found inf"),
+        ("trace", {"max_step": 0.0}, ValueError, "max_step: expected a positive number, found 0.0"),
+        ("trace", {"max_step": 1e-300}, ValueError, "max_step: expected at least the least step"),
+        ("trace", {"finish": 3}, TypeError, r"finish: expected a function of \(y, lam\), found 3"),
+        ("Tracer", {"state": 3}, TypeError, "state: expected the state of a tracer, or None, found 3"),
+        ("Tracer", {"box": {"lam": (1.0, 0.0)}}, ValueError, "box: expected low < high for 'lam'"),
+        ("Tracer", {"box": {"lam": (0.5, None)}}, ValueError, "box: expected the start inside, found 'lam' beyond 0.5"),
+        ("Tracer", {"box": {1: (0.0, 1.0)}}, ValueError, "box: .* a number from 0 to 0, found 1"),
+        ("Tracer", {"box": {"lam": 3}}, TypeError, "box: expected two numbers for 'lam'"),
+        ("Tracer", {"box": {"lam": ("a", 3.0)}}, TypeError, "box: expected two numbers for 'lam'"),
+        ("Tracer", {"box": {"z": (0.0, 1.0)}}, ValueError, "^box: "),
+        ("Tracer", {"box": 3}, TypeError, "box: expected a mapping"),
     ],
-    ids=repr,
 )
-def test_the_solver_refuses_at_once_what_its_paths_would_refuse(options, error, words):
-    """Active sets alone solve this problem: no path is traced that could complain."""
+def test_a_bad_option_is_named_with_what_was_found(taker, options, error, words):
     with pytest.raises(error, match=words):
-        lcp.solve(LCP, **options)
-
-
-@pytest.mark.parametrize(
-    ("options", "error", "words"),
-    [
-        ({"metric": Weighted(-1.0)}, ValueError, "y"),
-        ({"events": [TurningPoint(component=7)]}, IndexError, "component"),
-        ({"tolerance": "a"}, TypeError, "tolerance: expected a positive finite number or a Tolerance, found 'a'"),
-        ({"tolerance": None}, TypeError, "tolerance: .* found None"),
-        ({"tolerance": True}, TypeError, "tolerance: .* found True"),
-        ({"tolerance": np.inf}, ValueError, "tolerance: .* found inf"),
-        ({"start": (1, 2, 3)}, ValueError, r"start: expected a pair \(u, v\) of vectors, found 3 of them"),
-        ({"start": (np.zeros(2),)}, ValueError, "start: expected a pair .* found 1 of them"),
-        ({"start": 3}, ValueError, "start: expected a pair .* found 3"),
-        ({"start": (np.zeros(2) + 1j, np.ones(2))}, ValueError, "start: expected real numbers, found complex128"),
-        ({"start": ("a", "b")}, ValueError, "start: expected real numbers, found 'a'"),
-        ({"start": (np.zeros(2), np.ones(3))}, ValueError, "start: .* vectors of one size"),
-        ({"direction": "up"}, ValueError, "direction: expected -1, 0 or 1, found 'up'"),
-        ({"direction": np.ones(2)}, ValueError, "direction: expected -1, 0 or 1"),
-        ({"direction": True}, ValueError, "direction: expected -1, 0 or 1, found True"),
-        ({"check_jacobian": "yes"}, TypeError, "check_jacobian: expected True or False, found 'yes'"),
-        ({"examine": 2}, TypeError, "examine: expected True or False, found 2"),
-        ({"predictor": Hermite}, TypeError, "predictor: .* found the class Hermite"),
-        ({"events": [TurningPoint]}, TypeError, "events: .* found the class TurningPoint"),
-        ({"observers": [1]}, TypeError, "observers: expected an observer, found 1, which has no `step`"),
-        ({"observers": 1}, TypeError, "observers: expected a list of observers, found 1"),
-        ({"archive": 1}, TypeError, "archive: expected a path or a PathLog, found 1"),
-        ({"target": np.ones(2)}, TypeError, "target: expected a finite number or None, found array"),
-        ({"target": 1j}, TypeError, "target: expected a finite number or None, found 1j"),
-        ({"target": True}, TypeError, "target: expected a finite number or None, found True"),
-    ],
-)
-def test_a_bad_option_is_named_with_what_was_found(options, error, words):
-    with pytest.raises(error, match=words):
-        trace(Circle(), **options)
-
-
-class Without:
-    def __init__(self, **methods):
-        self.__dict__.update(methods)
+        TAKERS[taker](**options)
 
 
 def test_a_class_is_not_taken_for_a_homotopy():
@@ -167,20 +153,18 @@ def test_a_misspelt_option_fails_in_mypy(tmp_path):
     assert "Found 1 error" in said
 
 
-@pytest.mark.parametrize("preset", [presets.FAST, presets.DEFAULT, presets.CONSERVATIVE, presets.SERIES])
-def test_a_longest_step_with_any_preset(preset):
-    for longest in (0.05, 3.0, 1e6):
-        path = trace(Circle(), preset=preset, max_step=longest, budget=Budget(steps=20))
-        assert max(step.step_length for step in path.steps[1:]) <= longest
+@by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
+@pytest.mark.parametrize("longest", [0.05, 3.0, 1e6])
+def test_a_longest_step_with_any_preset(preset, longest):
+    path = trace(Circle(), preset=preset, max_step=longest, budget=Budget(steps=20))
+    assert max(step.step_length for step in path.steps[1:]) <= longest
 
 
 def test_a_path_is_a_start():
     whole = trace(Circle())
     after = trace(Circle(), start=whole[:5], budget=Budget(steps=3))
-    assert np.array_equal(after.u[0], whole.u[4])
+    np.testing.assert_array_equal(after.u[0], whole.u[4])
     (a, b), (c, d) = after.steps[0].tangent, whole.steps[4].tangent
     # The same ray, in the metric of another start.
     assert abs(a * d - b * c) < 1e-12
     assert a * c + b * d > 0.0
-    with pytest.raises(ValueError, match="start: expected a path with a point to go on from"):
-        trace(Circle(), start=Path())

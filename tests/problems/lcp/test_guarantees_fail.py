@@ -1,6 +1,5 @@
 """Where the paper's guarantees fail: counterexamples found, shrunk and in closed form, and the exact class instead."""
 
-
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, find, given, settings

@@ -1,6 +1,5 @@
 """The augmented Lagrangian of a program: what it is made of, and programs on which active sets alone cycle."""
 
-
 import numpy as np
 import pytest
 import scipy.sparse as sp

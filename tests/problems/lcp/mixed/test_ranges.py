@@ -108,5 +108,3 @@ TWICE = [[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
 def test_what_only_looks_like_a_row_with_two_sides_is_none(A, lower, upper):
     assert ranges(lcp.MixedLCP(A, np.zeros(3), lower, upper)) is None
     assert ranges(lcp.MixedLCP(INDEFINITE, np.ones(3), [0, -INF, 0], [INF, INF, 1])).activity.tolist() == [2]
-
-
