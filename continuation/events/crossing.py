@@ -78,8 +78,9 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
 
 def _unit(vectors: Array, scale: Array) -> Array:
     """The columns, of unit length in a scale."""
-    scaled: Array = scale[:, None] * vectors
-    return scaled / np.sqrt(np.sum(scaled * scaled, axis=0))
+    scaled = scale[:, None] * vectors
+    unit: Array = scaled / np.sqrt(np.sum(scaled * scaled, axis=0))
+    return unit
 
 
 def _eigenvalues(
