@@ -34,9 +34,9 @@ ROUNDING = float(np.finfo(float).eps) ** 0.5
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
 Eigenvalue Problem, Section 2.22), as near a pole."""
 
-RANKS, SAME, INDEPENDENT = 4, 1e-3, 1e-4
-"""Vectors sought for one eigenvalue; relative distance of equal eigenvalues; singular value of dependent unit vectors
-(eigenvectors have half the eigenvalues' digits)."""
+SAME, INDEPENDENT = 1e-3, 1e-4
+"""Relative distance of equal eigenvalues; singular value of dependent unit vectors (eigenvectors have half the
+eigenvalues' digits)."""
 
 
 def changes(
@@ -65,14 +65,16 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
     serve.
     """
     found = np.empty((a.u.size, 0))
-    for k in range(RANKS):
+    for k in range(a.u.size):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
         values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
         near = np.flatnonzero(np.abs(values * place - 1.0) < SAME)
-        # A start may have no part along an eigenvector.
+        # A start may have no part along an eigenvector; two have.
         found = np.column_stack((found, vectors[:, near[:1]]))
         if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < INDEPENDENT:
             return found.shape[1] - 1
+        if k > found.shape[1]:
+            break
     return found.shape[1]
 
 

@@ -83,6 +83,20 @@ def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, pre
     passed(Trunk(seed, bent=True), preset)
 
 
+@every_preset
+@pytest.mark.parametrize("ranks", [5, 6, 7])
+def test_any_number_of_ranks_may_be_lost(ranks, preset):
+    pitchforks = continuation.from_functions(
+        lambda y, lam: lam * y - y**3,
+        lambda y, lam: (np.diag(lam - 3.0 * y * y), y.copy()),
+        start=(np.zeros(ranks), -1.0),
+        target=1.0,
+    )
+    path = continuation.trace(pitchforks, preset=preset)
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert [event.name for event in path.events] == ["multiple branch point"]
+
+
 class Beam:
     """K y - lam y - y^3 = 0 for a beam of n points: H' has a condition of 1e8, and loses one rank at lam = 1."""
 
