@@ -12,8 +12,10 @@ import pytest
 from hypothesis import HealthCheck, find, given, settings
 from hypothesis import strategies as st
 
+from problems import hypothesis_hook
 from problems.lcp import classes
 from problems.lcp import strategies as mine
+from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import solve_by_enumeration
 
 from ...exact import exact_w, solves
@@ -120,6 +122,11 @@ def test_badly_scaled_problems_keep_their_class_and_start(pair):
     problem, x0 = pair
     assert classes.is_p(problem.A).holds
     assert min(*x0, *exact_w(problem, x0)) > 0
+
+
+def test_the_hook_registers_the_problem_type_for_from_type():
+    hypothesis_hook.register()
+    assert find(st.from_type(LCP), lambda p: p.n == 2 and p.q.any(), settings=HUNT).n == 2
 
 
 def test_the_hook_imports_nothing():

@@ -75,6 +75,17 @@ def test_t_stands_still_where_a_block_is_singular():
     assert path.u[1:] == pytest.approx(np.array([[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 0.0]]), abs=1e-15)
 
 
+def test_columns_that_are_alike():
+    random = np.random.default_rng(3)
+    X, y = random.integers(-2, 3, (12, 4)).astype(float), random.integers(-3, 4, 12).astype(float)
+    X = np.column_stack([X, X[:, 0], -X[:, 2]])
+    path = lasso(X, y)
+    assert path.success
+    for u in path.u[1:]:
+        slope = X.T @ (X @ u[:-1] - y)
+        assert np.abs(slope + np.clip(-slope, -u[-1], u[-1])).max() <= 1e-13
+
+
 def test_a_closed_curve_closes():
     # Between the faces of w_0 x_0 = 0 and x_1 w_1 = 0 the solutions go round.
     closed = []

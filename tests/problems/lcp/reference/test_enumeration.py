@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
-from problems.lcp.reference.enumeration import LARGEST_FACES, solve_by_enumeration
+from problems.lcp.reference.enumeration import LARGEST_FACES, exhaust, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps, planted_lcps
 from problems.paper import EXAMPLES
 
@@ -30,7 +30,7 @@ def test_two_by_two_in_closed_form():
     found = solve_by_enumeration(LCP([[2, 1], [1, 2]], [-5, -6]))
     (solution,) = found.solutions
     assert solution.x == (Fraction(4, 3), Fraction(7, 3))
-    assert solution.faces == ((0, 1),)
+    assert (solution.faces, solution.strictly_complementary) == (((0, 1),), True)
     np.testing.assert_array_equal(found.points, [[4 / 3, 7 / 3]])
 
 
@@ -130,6 +130,7 @@ def test_sparse_and_dense_agree():
     assert solve_by_enumeration(LCP(A, q)) == solve_by_enumeration(LCP(sp.csr_array(A), q))
 
 
-def test_a_large_problem_is_refused():
-    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST_FACES} .* found n = 15"):
-        solve_by_enumeration(LCP(np.eye(15), np.ones(15)))
+@pytest.mark.parametrize("method", [solve_by_enumeration, exhaust])
+def test_a_large_problem_is_refused(method):
+    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST_FACES}"):
+        method(LCP(np.eye(15), -np.ones(15)))
