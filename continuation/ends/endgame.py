@@ -81,6 +81,9 @@ class Endgame:
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
+            if lam == self.target:
+                # The parameter has no digits left.
+                break
             known = best is not None and self._within(best)
             guess = _polynomial(taken[-3:], self.target, 1 if best is None else best.winding_number)(lam)
             tracked = self._track(here, guess, lam, not known)
