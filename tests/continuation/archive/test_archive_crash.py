@@ -125,9 +125,7 @@ def test_a_full_disk_is_one_clear_line(tmp_path, monkeypatch):
 
     with monkeypatch.context() as patch:
         patch.setattr(Store, "_put", staticmethod(full))
-        with pytest.raises(
-            ArchiveError, match=r"run.h5: could not be written \(.*No space left.*; what was"
-        ):
+        with pytest.raises(ArchiveError, match=r"run.h5: could not be written \(.*No space left.*; what was"):
             trace(FreudensteinRoth(), archive=logged(tmp_path / "run.h5", 6))
     with open_archive(tmp_path / "run.h5") as archive:
         assert archive.points.size == 6
