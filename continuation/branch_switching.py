@@ -60,10 +60,9 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         found: list[Array] = []
         for branch in leaving_branches(homotopy, event)[1:]:
-            ray = branch.ray / np.linalg.norm(branch.ray)
-            if not any(abs(float(ray @ other)) > SAME_LINE for other in found):
-                found.append(ray)
-        return tuple(found)
+            if not any(abs(inner(branch.weights, branch.ray, other)) > SAME_LINE for other in found):
+                found.append(branch.ray)
+        return tuple(ray / np.linalg.norm(ray) for ray in found)
     _, known, *others = crossing_rays(homotopy, event)
     return known / np.linalg.norm(known), others[0] / np.linalg.norm(others[0])
 

@@ -13,10 +13,11 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
+from continuation.ends.endgame import A_DIGIT
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.linear.nullspace import Bordered, kernels
-from continuation.metric import norm
+from continuation.metric import inner, norm
 from continuation.point.linearization import linearize
 
 LOST_RANKS = 3
@@ -40,6 +41,10 @@ SAME_ZERO = 1e-3
 NOISE, ZERO = 1e-11, 1e-14
 """Round-off of a direction, relative to its largest component, and of a point, in extents."""
 
+BENT, BALANCINGS = 0.1, 20
+"""Terms of higher order off the path, beside the linear ones as far along it: branches of unknowns that stand still along
+the path, and so have no unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
+
 ISOLATED = 1e-7
 """Least singular value of the scaled equations at an isolated zero."""
 
@@ -50,11 +55,12 @@ class Unresolved(ArithmeticError):
 
 @frozen(eq=False)
 class Leaving:
-    """A branch: a nearby point `u`, its `tangent`, the unit `ray` at the branch point."""
+    """A branch: a nearby point `u`, its `tangent`, the unit `ray` at the branch point, in the metric `weights`."""
 
     u: Array
     ray: Array
     tangent: Array
+    weights: Array
 
 
 @frozen(eq=False)
@@ -68,6 +74,27 @@ class Reduced:
     kernel: Array
     left: Array
     bordered: Bordered
+
+    @classmethod
+    def beside(cls, evaluator: Evaluator, u: Array, extent: Array, heading: Array) -> Reduced:
+        """In such units, by two factorisations."""
+        sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
+        matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
+        kernel, left = kernels(matrix)
+        m = kernel.shape[1]
+        if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
+            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
+        evaluator.counts.factorizations += 2
+        return cls(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
+
+    def bend(self, heading: Array, radius: float) -> float:
+        """How much g is on the sphere off the path, beside how much it changes as far along the path."""
+        along = self.kernel.T @ heading
+        along = radius * along / np.linalg.norm(along)
+        off = np.linalg.qr(along[:, None], mode="complete")[0][:, 1:].sum(axis=1) * radius
+        bent = self.at(off)[1]
+        turned = float(np.linalg.norm(self.at(off + along)[1] - bent))
+        return float(np.linalg.norm(bent)) / turned if turned else np.inf
 
     def at(self, a: Array) -> tuple[Array, Array]:
         """The point over the kernel, from u, and g."""
@@ -179,21 +206,21 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         If the kernel is too large, or branches do not leave one by one.
     """
     extent = 1.0 / np.sqrt(weights)
-    sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
-    matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
+    still = np.abs(heading) <= NOISE * extent * np.max(np.abs(heading) / extent)
     try:
-        kernel, left = kernels(matrix)
-        m = kernel.shape[1]
-        if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
-            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
-        evaluator.counts.factorizations += 2
-        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
+        for _ in range(BALANCINGS):
+            reduced = Reduced.beside(evaluator, u, extent, heading)
+            bend = reduced.bend(heading / extent, step)
+            if not still.any() or not 0.0 < bend < np.inf or BENT / A_DIGIT <= bend <= BENT * A_DIGIT:
+                break
+            # Cubic terms; for quadratic ones this halves what the extent is off, in digits.
+            extent = np.where(still, extent * np.sqrt(BENT / bend), extent)
         found = _on_sphere(reduced, step)
-        branches = [_branch(reduced, a, step, weights) for a in found]
+        branches = [_branch(reduced, a, step, extent**-2.0) for a in found]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise Unresolved(f"the branching equations could not be solved there: {error}") from error
-    branches.sort(key=lambda b: -abs(float(np.dot(weights * heading, b.ray))))
-    branches[:2] = sorted(branches[:2], key=lambda b: float(np.dot(weights * heading, b.ray)))
+    branches.sort(key=lambda b: -abs(inner(b.weights, heading, b.ray)))
+    branches[:2] = sorted(branches[:2], key=lambda b: inner(b.weights, heading, b.ray))
     return branches
 
 
@@ -231,7 +258,7 @@ def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leavin
     ray = still(reduced.extent * ray, weights)
     u = without_noise(reduced.u, reduced.extent * w, weights)
     near = linearize(reduced.evaluator, u, weights, weights * ray)
-    return Leaving(u, ray / norm(weights, ray), still(near.tangent, weights))
+    return Leaving(u, ray / norm(weights, ray), still(near.tangent, weights), weights)
 
 
 def still(v: Array, weights: Array) -> Array:
