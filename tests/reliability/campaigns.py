@@ -6,11 +6,14 @@ import contextlib
 import hashlib
 import io
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -19,7 +22,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation import Tracer, trace
-from continuation.archive import Limits, PathLog, open_archive, trace_many
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, trace_many
 from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
@@ -96,6 +99,47 @@ def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
     return len(rows) >= least and rows.tobytes() == whole.u[: len(rows)].tobytes()
 
 
+def full(folder: Path, size: int) -> Found:
+    """A quota that is reached while a path is traced: one line, and what was committed can be read."""
+    seen, whole_file = Counter[str](), folder / "whole.h5"
+    whole = trace(HOMOTOPY, archive=PathLog(whole_file, limits=Limits(rows=5)), **OPTIONS)
+    needed = whole_file.stat().st_size
+    for k in range(size):
+        file, limit = folder / f"full{k}.h5", 1_000 + k * (needed - 1_000) // size
+
+        def work(file: Path = file, limit: int = limit) -> None:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+            trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=5)), **OPTIONS)
+
+        status = in_child(work)
+        if status == 0:
+            seen["there was room"] += 1
+        elif status >> 8 != 7:
+            seen["WRONG: no ArchiveError"] += 1
+        elif not file.exists():
+            seen["an ArchiveError, no file"] += 1
+        else:
+            recover(file)
+            seen["an ArchiveError, and a right file" if _prefix(file, whole) else "WRONG ROWS"] += 1
+    return _counted(size, seen)
+
+
+def truncation(folder: Path, size: int) -> Found:
+    """Files cut off at every place: an error, or what was written."""
+    file, whole = folder / "whole.h5", trace(HOMOTOPY, **OPTIONS)
+    trace(HOMOTOPY, archive=file, **OPTIONS)
+    raw, seen = file.read_bytes(), Counter[str]()
+    for k in range(size):
+        cut = folder / "cut.h5"
+        cut.write_bytes(raw[: len(raw) * k // size])
+        try:
+            seen["right" if _prefix(cut, whole) else "WRONG ROWS"] += 1
+        except ArchiveError as error:
+            seen["a clear error" if "\n" not in str(error) else "WRONG: an error of many lines"] += 1
+    return _counted(size, seen)
+
+
 def growing(folder: Path, size: int) -> Found:
     """Opened while it is written: each time the first rows of the path, and never fewer than before."""
     whole, seen, most, file = trace(HOMOTOPY, **OPTIONS), Counter[str](), 0, folder / "growing.h5"
@@ -108,6 +152,29 @@ def growing(folder: Path, size: int) -> Found:
         # By another process, as a reader is.
         status = in_child(lambda least=most: None if _prefix(file, whole, least) else sys.exit("wrong"))
         seen["right" if status == 0 else "WRONG"] += 1
+    return _counted(size, seen)
+
+
+def resumes(folder: Path, size: int) -> Found:
+    """Two resumes of one file at once: one goes on, the other is refused, and the file is whole."""
+    whole, seen = trace(HOMOTOPY, **OPTIONS), Counter[str]()
+    killed = folder / "killed.h5"
+
+    def dies() -> None:
+        for step in Tracer(HOMOTOPY, observers=(PathLog(killed, limits=Limits(rows=5)),), **OPTIONS):
+            if step.index == 20:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    in_child(dies)
+    for k in range(size):
+        file = folder / f"two{k}.h5"
+        shutil.copy(killed, file)
+        with ThreadPoolExecutor(2) as executor:
+            statuses = sorted(status >> 8 for status in executor.map(in_child, [lambda file=file: resume(file)] * 2))
+        # Whoever comes when the other is done finds a path that has ended.
+        seen["one resumed, one was refused" if statuses == [0, 7] else f"WRONG: {statuses}"] += 1
+        if not _prefix(file, whole, len(whole)):
+            seen["WRONG ROWS"] += 1
     return _counted(size, seen)
 
 
