@@ -94,7 +94,8 @@ class Contents:
                     self._open()
                 return read()
             except FAULTS as error:
-                if self.closed_by_writer or time.monotonic() > end or not is_held(self.file):
+                # Whoever salvages holds the file: nobody writes it.
+                if self._salvage or self.closed_by_writer or time.monotonic() > end or not is_held(self.file):
                     raise self.damaged(error) from error
             self.close()
             time.sleep(_PAUSE)

@@ -10,13 +10,13 @@ from collections.abc import Callable
 
 import numpy as np
 from attrs import frozen
-from scipy.interpolate import KroghInterpolator
 
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
+from continuation.ends.landing import regular
 from continuation.evaluation.errors import EvaluationError
-from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize, relinearize
@@ -29,20 +29,31 @@ RATIO = 0.2
 RELATIVE_FLOOR = 1e-13
 """Relative error that stops the sampling: the change by the last sample."""
 
+RESIDUAL_RATIO = 1e-3
+"""Largest residual at the limit, relative to the first sample moved to the target."""
+
+ULPS = 8.0
+"""Perturbation, in units in the last place, that shows round-off."""
+
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
 SAMPLES_WITHOUT_GAIN = 3
 """Samples without gain that stop the sampling."""
 
+ROUND_OFF_SPREAD = 10.0
+"""Allowed growth of round-off in H from the last sample to the limit."""
+
 SAMPLE_TOLERANCE = 1e-3
-"""Accuracy of samples, in tolerances, as the extrapolation multiplies their errors; and the largest residual at the
-limit, relative to the first sample moved to the target."""
+"""Accuracy of samples, in tolerances; the extrapolation multiplies their errors."""
 
-A_DIGIT = 10.0
-"""The smallest winding number within this factor of the best error wins: multiples fit as well, later. Round-off in H
-may grow so much from the last sample to the limit."""
+AMPLIFICATION = 0.3, 10.0
+"""The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
+weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w)."""
 
-AT_PARAMETER = BorderedNewton(max_contraction=MONOTONE)
+EQUALLY_GOOD = 10.0
+"""The smallest winding number within this factor of the best error wins: multiples fit as well, later."""
+
+AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method converges linearly near a singular end."""
 
 
@@ -60,8 +71,13 @@ class SingularLimit:
     length: float
 
 
-Samples = list[tuple[Linearization, Array]]
-"""Points, with noise by component."""
+@frozen(eq=False)
+class Sample:
+    """A point, dy/dlam, and noise by component."""
+
+    u: Array
+    slope: Array
+    noise: Array
 
 
 @frozen(eq=False)
@@ -75,25 +91,21 @@ class Endgame:
     def limit(self, point: Linearization) -> SingularLimit | None:
         """The limit, or None if no winding number fits to the tolerance."""
         gap = point.lam - self.target
-        taken: Samples = [(point, np.zeros_like(point.u))]
+        taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
         worse = 0
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            if lam == self.target:
-                # The parameter has no digits left.
-                break
             known = best is not None and self._within(best)
-            guess = _polynomial(taken[-3:], self.target, 1 if best is None else best.winding_number)(lam)
-            tracked = self._track(here, guess, lam, not known)
+            tracked = self._track(here, _guess(taken, self.target, lam, best), lam, not known)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
                 # The path turns off: the limit is another branch's.
                 return None
             here, noise = tracked
-            taken.append((here, noise))
+            taken.append(_sample(here, noise))
             if len(taken) < 3:
                 continue
             end = _limit(taken, self.target, point.weights)
@@ -127,18 +139,18 @@ class Endgame:
             at = relinearize(self.solver.evaluator, end.u, last.weights, last.anchor, last.border, signed=True)
         except EvaluationError:
             return True
-        return at.orientation == last.orientation
+        return at.orientation == last.orientation or not regular(self.solver, at, last)
 
     def _within(self, end: SingularLimit) -> bool:
         return end.length <= self.solver.tolerance.relative
 
-    def _holds(self, end: SingularLimit, taken: Samples) -> bool:
+    def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
         """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
         residual_norm = self.solver.evaluator.residual_norm
-        residual, round_off = residual_norm(end.u), residual_norm(taken[-1][0].u)
-        moved = residual_norm(np.append(taken[0][0].y, self.target))
+        residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
+        moved = residual_norm(np.append(taken[0].u[:-1], self.target))
         # False if one is nan.
-        return residual <= SAMPLE_TOLERANCE * moved + A_DIGIT * round_off
+        return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, and its noise.
@@ -172,33 +184,66 @@ class Endgame:
             return None
 
 
-def _polynomial(taken: Samples, target: float, w: int) -> Callable[[float], Array]:
-    """The Hermite interpolant of u in t, by the parameter's value."""
-    gap = taken[0][0].lam - target
-    t = np.array([((point.lam - target) / gap) ** (1.0 / w) for point, _ in taken])
-    slopes = [point.tangent / point.tangent[-1] * (w * gap * node ** (w - 1)) for (point, _), node in zip(taken, t)]
-    data = [row for (point, _), slope in zip(taken, slopes) for row in (point.u, slope)]
-    curve = KroghInterpolator(np.repeat(t, 2), np.array(data))
-    return lambda lam: np.append(curve(((lam - target) / gap) ** (1.0 / w))[:-1], lam)
+def _slope(point: Linearization) -> Array:
+    slope: Array = point.tangent / point.tangent[-1]
+    return slope
 
 
-def _limit(taken: Samples, target: float, weights: Array) -> SingularLimit:
+def _sample(point: Linearization, noise: Array) -> Sample:
+    return Sample(point.u, _slope(point), noise)
+
+
+def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float], Array]:
+    """The Hermite interpolant in t, with t = 1 at the first sample, in Newton's form."""
+    gap = taken[0].u[-1] - target
+    t = np.array([((sample.u[-1] - target) / gap) ** (1.0 / w) for sample in taken])
+    nodes, table = np.repeat(t, 2), np.repeat([sample.u for sample in taken], 2, axis=0)
+    coefficients = [table[0]]
+    for level in range(1, nodes.size):
+        rises = nodes[level:] - nodes[:-level]
+        table = np.diff(table, axis=0) / np.where(rises == 0.0, 1.0, rises)[:, None]
+        if level == 1:
+            table[::2] = [sample.slope * (w * gap * node ** (w - 1)) for sample, node in zip(taken, t)]
+        coefficients.append(table[0])
+
+    def at(place: float) -> Array:
+        value: Array = coefficients[-1]
+        for node, coefficient in zip(nodes[-2::-1], coefficients[-2::-1]):
+            value = (place - node) * value + coefficient
+        return value
+
+    return at
+
+
+def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
     """The best limit over winding numbers; the error is the change by a sample, and noise."""
     ends = []
-    noise = np.max([noise for _, noise in taken], axis=0)
+    noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
-        value = _polynomial(taken, target, w)(target)
+        value = _polynomial(taken, target, w)(0.0)
         # Without the last and the first sample: one small change may be chance.
-        others = [_polynomial(some, target, w)(target) for some in (taken[:-1], taken[1:])]
+        others = [_polynomial(some, target, w)(0.0) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
-        # Sums of Hermite weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w), are 3, 30, 300, ...
-        error = change + 0.3 * A_DIGIT**w * noise
-        ends.append(SingularLimit(value, largest(error), w, norm(weights, error)))
+        error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
+        error[-1] = 0.0
+        ends.append(SingularLimit(np.append(value[:-1], target), largest(error), w, norm(weights, error)))
     known = [end for end in ends if np.isfinite(end.length)]
     if not known:
         raise EvaluationError("the samples of the endgame overflow")
     least = min(end.length for end in known)
-    return next(end for end in known if end.length <= A_DIGIT * least)
+    return next(end for end in known if end.length <= EQUALLY_GOOD * least)
+
+
+def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
+    if best is None:
+        last = taken[-1]
+        guess: Array = last.u + (lam - last.u[-1]) * last.slope
+        return guess
+    recent = taken[-3:]
+    gap = recent[0].u[-1] - target
+    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
+    guess[-1] = lam
+    return guess
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
@@ -206,7 +251,7 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
     apply = evaluator.differential(at.u)
     if apply is None:
         return np.zeros_like(at.u)
-    nearby = at.u + POINT_ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
+    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
     nearby[-1] = at.u[-1]
     left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
     # The largest of many samples is larger.

@@ -5,25 +5,28 @@ from __future__ import annotations
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot
-from continuation.contraction import RELIABLE
+from continuation.arrays import Array, dot, generic_vector
+from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import TurningPoint
 from continuation.events.locate import may_vanish, on_value, zero_between, zeros
-from continuation.metric import share
+from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
-from continuation.point.linearization import Linearization
+from continuation.point.linearization import NEAR_SINGULAR, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
+RESOLUTION = 1e-9
+"""Relative accuracy of the step to the target, before Newton's method."""
+
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
-ANGLE = 1.0
-"""A larger angle (radians), or a correction by more than RELIABLE steps, means another branch."""
+DISTANCE, ANGLE = 0.3, 1.0
+"""A larger correction, in steps, or angle (radians) means another branch."""
 
 RETRY, LEAP = 0.3, 10.0
 """Paths creep towards a boundary: landing is tried from so many steps away, and again when this share of the way is
@@ -32,10 +35,10 @@ left."""
 STRETCH = 1.01
 """A target just beyond the step is landed on: a step of round-off would be left."""
 
-ROOM = 0.9
-"""Least distance to the boundary, in ways to the predicted end."""
+ROOM, EDGE = 0.9, 1e-6
+"""ROOM: least distance to the boundary, in ways to the predicted end. EDGE: tolerance for an end on the boundary."""
 
-LANDING = BorderedNewton(max_contraction=RELIABLE)
+LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
 """It must contract well: at a fixed parameter far solutions look as good."""
 
 
@@ -45,6 +48,11 @@ class Landing:
 
     stepper: Stepper
     target: float
+
+    @property
+    def lands_from_afar(self) -> bool:
+        """Whether landing is tried from many steps away: near a boundary steps become short."""
+        return self.stepper.solver.max_step is not None
 
     def attempt(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
@@ -72,8 +80,7 @@ class Landing:
         if gap * point.tangent[-1] <= 0.0:
             return None
         target, max_step = self.target, self.stepper.solver.max_step
-        if max_step is not None:
-            # Near a boundary steps become short.
+        if self.lands_from_afar:
             if abs(gap) > RETRY * abs(last_failed - target):
                 return None
             h = min(LEAP * h, longest)
@@ -81,9 +88,7 @@ class Landing:
         try:
             if not (prediction(high)[-1] - target) * gap >= 0.0:
                 return None
-            reached = zero_between(
-                lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
-            )
+            reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)
             if reached is None:
                 return None
             guess = prediction(reached).copy()
@@ -104,10 +109,10 @@ class Landing:
             return rejected
         border = point.border
         along = dot(border, correction.u - point.u)
-        if along <= 0.0 or correction.distance > RELIABLE * h:
+        if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end itself may lie on the boundary.
-        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
+        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
         return self.stepper.arrive(point, border, h, landed)
@@ -142,3 +147,21 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
                 return None
     found = next(zeros(solver, gap, arc, before, after), None)
     return None if found is None else on_value(solver, found, -1, value)
+
+
+def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
+    """Whether H' has full rank at a point corrected with the factorisation of `near`.
+
+    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
+    contracts if H' is near `near`'s; otherwise H' is factored.
+    """
+    evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
+    z = near.solve(r)
+    size = norm(near.weights, z)
+    apply = evaluator.differential(end.u)
+    if apply is None or norm(near.weights, near.solve(r - apply(z))) <= HALVING * size:
+        return True
+    try:
+        return norm(near.weights, evaluator.factor(end.u, near.border).solve(r, 0.0)) <= NEAR_SINGULAR * size
+    except EvaluationError:
+        return False

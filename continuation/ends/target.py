@@ -7,9 +7,8 @@ from enum import Enum
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array, generic_vector, largest
+from continuation.arrays import Array, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
-from continuation.ends.divergence import QUADRATIC_STEPS
 from continuation.ends.endgame import Endgame, SingularLimit
 from continuation.ends.landing import SINGULAR_SHARE, crossing
 from continuation.evaluation.errors import EvaluationError
@@ -26,14 +25,19 @@ ENDGAME = 1e-2
 """Relative distance to the target at which a singular end is sought."""
 
 RETRY_ENDGAME = 0.05
-"""Share of the distance since the last failed endgame that allows another: two samples. With 0.04 one of eight paths
-without orientation ends on another branch (test_endgame)."""
+"""Share of the distance since the last failed endgame that allows another: two samples."""
 
 CONDITIONED = 0.1
 """Ends that round-off may move by this share of the path are rejected: asymptotes satisfy any equation."""
 
 NEAR_ENOUGH = 30.0
 """Error bound, in tolerances, that needs no limit: noise decides the components' scales."""
+
+VANISHING_SHARE = 1e-18
+"""Parameter's share of the tangent that is zero, the square of round-off."""
+
+END_CORRECTIONS = 4
+"""Newton's increments at the target, which converge quadratically."""
 
 
 class EndsAt(Enum):
@@ -69,6 +73,19 @@ class Target:
     solver: PathSolver
     target: float | None
 
+    # A homotopy with `max_step` has a domain, its target mostly on the boundary: hence these two and
+    # `Landing.lands_from_afar`.
+
+    @property
+    def expects_singular_end(self) -> bool:
+        """Whether the endgame precedes landing: H' may lose rank on the boundary."""
+        return self.solver.max_step is not None
+
+    @property
+    def may_turn_back(self) -> bool:
+        """Whether the start's parameter is an end: beyond it the homotopy has no meaning."""
+        return self.solver.max_step is not None
+
     # -- before a step --
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
@@ -80,7 +97,7 @@ class Target:
             return False
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
-        failed = state.last_failed_landing == point.lam or self.solver.interior
+        failed = state.last_failed_landing == point.lam or self.expects_singular_end
         return near and failed and abs(gap) <= RETRY_ENDGAME * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
@@ -98,8 +115,7 @@ class Target:
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
-            if self.solver.interior:
-                # Beyond the start's parameter the homotopy has no meaning.
+            if self.may_turn_back:
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, EndsAt.START_PARAMETER))
         for value, kind, at in ends:
             point = arc.b if landed else crossing(self.solver, arc, value)
@@ -119,15 +135,15 @@ class Target:
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
         """The end at a parameter value, an error bound, and the limit if singular.
 
-        Newton's method brings points near a fold to round-off (`off_by`); if that exceeds the tolerance, or the
-        parameter stands still to half of the digits, the endgame is tried. `EvaluationError` if both fail.
+        Newton's method brings points near a fold to round-off (`off_by`); if that exceeds the tolerance, the endgame is
+        tried. `EvaluationError` if both fail.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)
         u = self._at_value(end, value) if vanishing <= SINGULAR_SHARE else np.append(end.y, value)
         off = off_by(evaluator, end, u)
         known, enough = norm(weights, off), NEAR_ENOUGH * self.solver.tolerance.relative
-        if known <= enough and vanishing > ROOT_OF_ROUND_OFF**2:
+        if known <= enough and vanishing > VANISHING_SHARE:
             return u, largest(off), None
         limit = self._placed(Endgame(self.solver, value).limit(arc.a), arc.a)
         if limit is not None and limit.length <= max(known, enough):
@@ -144,7 +160,7 @@ class Target:
         u = np.append(end.y, value)
         r = evaluator.residual(u)
         try:
-            for _ in range(QUADRATIC_STEPS):
+            for _ in range(END_CORRECTIONS):
                 there = linearize(evaluator, u, end.weights, end.border)
                 nearer = u + there.solve(-r, 0.0, unit)
                 nearer[-1] = value

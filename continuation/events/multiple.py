@@ -13,7 +13,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.ends.endgame import A_DIGIT
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.linear.nullspace import Bordered, kernels
@@ -42,8 +41,8 @@ NOISE, ZERO = 1e-11, 1e-14
 """Round-off of a direction, relative to its largest component, and of a point, in extents."""
 
 BENT, BALANCINGS = 0.1, 20
-"""Terms of higher order off the path, beside the linear ones as far along it: branches of unknowns that stand still along
-the path, and so have no unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
+"""Terms of higher order off the path, beside the linear ones as far along it: branches of unknowns that stand still
+along the path, and so have no unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
 
 ISOLATED = 1e-7
 """Least singular value of the scaled equations at an isolated zero."""
@@ -211,7 +210,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         for _ in range(BALANCINGS):
             reduced = Reduced.beside(evaluator, u, extent, heading)
             bend = reduced.bend(heading / extent, step)
-            if not still.any() or not 0.0 < bend < np.inf or BENT / A_DIGIT <= bend <= BENT * A_DIGIT:
+            if not still.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
             # Cubic terms; for quadratic ones this halves what the extent is off, in digits.
             extent = np.where(still, extent * np.sqrt(BENT / bend), extent)

@@ -191,13 +191,14 @@ def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
 
 
 def _say(axes: Axes, text: str, x: float, y: float, below: bool = False) -> None:
-    """Write beside a point, towards the middle of the panel."""
+    """Write beside a point, towards the middle of the panel; names may come from a file."""
+    text = "".join(c if c.isprintable() else "?" for c in text)
     right, up = (axes.transData + axes.transAxes.inverted()).transform((x, y))
     side, above = right < 0.6, up < (0.1 if below else 0.9)
     looks = {"ha": "left" if side else "right", "va": "bottom" if above else "top", "fontsize": "x-small", "zorder": 4}
     behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.7}
     place = (6 if side else -6, 4 if above else -4)
-    axes.annotate(text, (x, y), place, textcoords="offset points", bbox=behind, **looks)
+    axes.annotate(text, (x, y), place, textcoords="offset points", bbox=behind, parse_math=False, **looks)
 
 
 def _arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:

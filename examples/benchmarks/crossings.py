@@ -28,7 +28,7 @@ LOCATED = 1e-10
 
 def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, float, Any]:
     """What is wrong with the trace of a problem, "" if nothing; the largest error of a branch point; the path."""
-    options: dict[str, Any] = {"preset": preset, "budget": ct.Budget(steps=1000, seconds=60)}
+    options: dict[str, Any] = {"preset": preset, "budget": ct.Budget(steps=1000)}
     if on_arm:
         # To the end by an event: the parameter is a function of neither end.
         trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1]
