@@ -31,6 +31,9 @@ POWERS = 0.5, 4.0
 FIRST_STEP = 0.3
 """First step, in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
 
+NEAR = 1e-9
+"""Length, relative to the target's distance, at which H is linear but for its own rounding if a path begins at zero."""
+
 SEARCH_START = 1e-3
 """First length tried, relative to the target's distance: before the first turn."""
 
@@ -104,7 +107,8 @@ def initial_extent(
     standstill, unit = STANDSTILL if exactly else STILL_PIECEWISE, np.ones_like(v) if sizes is None else sizes
     if not exactly:
         v = np.where(np.abs(v) > standstill * unit * float(np.abs(v / unit).max()), v, 0.0)
-    v = _without_round_off(evaluator, point, v)
+    given, near = v, 0.0 if u[:-1].any() or np.isinf(whole) else NEAR * whole
+    v = _without_round_off(evaluator, point, v, near, residual)
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
@@ -122,6 +126,9 @@ def initial_extent(
     # Across the path: hold the component with least relative noise.
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
+    if near:
+        # What is round-off in the tangent is so on the way.
+        blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
     unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
@@ -191,10 +198,11 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
     return h
 
 
-def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
+def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array) -> Array:
     """The tangent, with zeros for round-off.
 
-    A tiny component may have another unit; refinement with H' at an indistinguishable point decides.
+    A tiny component may have another unit; refinement with H' at an indistinguishable point decides, and with H at
+    length h, if given.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -212,6 +220,14 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     if apply is None:
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
+    if h:
+        # At zero H itself may know nothing of what H' says: terms that cancel but for round-off.
+        try:
+            ahead = point.approximate(residual - evaluator.residual(point.u + h * np.where(small, 0.0, v))) / h
+            replaced |= np.abs(ahead - v) > REPLACED * np.abs(v)
+        except EvaluationError:
+            # Outside the domain: H' has to do.
+            pass
     return np.where(small & replaced, 0.0, v)
 
 
