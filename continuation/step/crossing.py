@@ -219,8 +219,9 @@ class _Looks:
 
     def _nearer(self) -> list[float]:
         """Sample toward the beginning while a pair of crossings makes an eigenvalue grow; return the parameters."""
-        t, places, told = 1.0, list[float](), self.told
-        while told[t] and told[t][0] < LOWEST and t > SMALLEST:
+        told, places = self.told, list[float]()
+        t = min((place for place, there in told.items() if there and there[0] < LOWEST), default=0.0)
+        while t > SMALLEST and told[t] and told[t][0] < LOWEST:
             t *= 0.5
             for place in (t, 0.5 * t):
                 if place not in told:

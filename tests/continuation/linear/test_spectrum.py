@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 import scipy.sparse as sp
 
 from continuation.linear import Banded, Symmetric
@@ -30,7 +31,7 @@ def banded(matrix):
 
 
 # Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs, which it does not hide.
-TURN = sp.block_diag([[[0.0, 3.0], [-3.0, 0.0]], [[0.0, 1.0], [-1.0, 0.0]]]).toarray()
+TURN = la.block_diag([[0.0, 3.0], [-3.0, 0.0]], [[0.0, 1.0], [-1.0, 0.0]])
 U = np.linalg.qr(np.random.default_rng(0).standard_normal((150, 4)))[0]
 ALIKE = U @ TURN @ U.T - np.eye(150)
 LONG = np.diag(np.linspace(0.3, -40.0, 150))
