@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
@@ -37,12 +37,22 @@ def monitored(event: Event, point: Linearization) -> float:
         raise IndexError(f"events: {event!r} asks for a component of u = (y, lam), which has {point.u.size}") from error
 
 
+def _vanishes(event: Event, point: Linearization, first: float, last: float) -> bool:
+    """Whether a monitor is zero, to half of the digits: no more are known of the directions at a branch point."""
+    return abs(event.monitor(point.u, point.tangent)) <= ROOT_OF_ROUND_OFF * max(abs(first), abs(last))
+
+
 def scan_events(
-    solver: PathSolver, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc
+    solver: PathSolver,
+    events: tuple[Event, ...],
+    before: tuple[float, ...],
+    arc: Arc,
+    branch_point: Linearization | None = None,
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
     """Events on the arc in order, without those of `found_on`, and the monitors' values at its end.
 
-    A zero at the beginning was counted before; the sign just behind it replaces it.
+    A zero at the beginning was counted before; the sign just behind it replaces it. A zero at the `branch_point` on the
+    arc is that point: H' is singular there, and corrections beside it lose their digits.
     """
     found: list[tuple[int, Linearization]] = []
     values = []
@@ -66,11 +76,15 @@ def scan_events(
             # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue
+        crosses = first * g < 0.0 and np.sign(g) * event.direction >= 0
         try:
-            points = list(zeros(solver, event.monitor, arc, first, g, direction=event.direction))
+            if branch_point is not None and _vanishes(event, branch_point, first, g):
+                points = [branch_point] if crosses else []
+            else:
+                points = list(zeros(solver, event.monitor, arc, first, g, direction=event.direction))
         except EvaluationError:
             # The interior cannot be evaluated: the end stands for the crossing.
-            points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []
+            points = [arc.b] if crosses else []
         if isinstance(event, TargetValue):
             points = [on_value(solver, point, event.component, event.value) for point in points]
         found += [(i, point) for point in points]

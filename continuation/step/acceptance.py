@@ -113,9 +113,10 @@ class Examiner:
                 orientation = arrival.orientation
             if kink is not None:
                 ending = self._ending_in_kink(ending, kink[0])
-            found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
-            if index is not None and branch is not None and within(arc, branch.point, ending.arc.b):
-                found = sorted((*found, (index, branch.point)), key=lambda pair: position(arc, pair[1].u))
+            at = branch.point if branch is not None and within(arc, branch.point, ending.arc.b) else None
+            found, monitors = scan_events(self.solver, events, state.monitors, ending.arc, at)
+            if index is not None and at is not None:
+                found = sorted((*found, (index, at)), key=lambda pair: position(arc, pair[1].u))
             last, _ = first_terminal(events, state.occurrences, found)
             ended = ending.arc if last is None else cut(ending.arc, found[last][1])
             more, all_found = found_by_events(self.solver, events, ended, found if last is None else found[: last + 1])
