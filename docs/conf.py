@@ -11,13 +11,14 @@ from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx import addnodes
 
+sys.path.insert(0, str(Path(__file__).parent))
+
+import executed
+
+import continuation
+from continuation.status import Described
+
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE))
-
-import executed  # noqa: E402
-
-import continuation  # noqa: E402
-from continuation.status import Described  # noqa: E402
 
 project = "continuation"
 author = "The continuation developers"
