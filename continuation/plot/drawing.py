@@ -147,9 +147,11 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
         off = np.abs(np.interp([event.arclength for event in events], knots, curve.y) - curve.at)
         flat = flat and bool(np.ptp(curve.y) < off.max(initial=0.0))
     if flat:
-        # Nothing but round-off: as a constant is drawn.
+        # Nothing but round-off: as a constant is drawn; what the axes get later may need more room.
         middle = float(curves[0].y[0])
-        axes.set_ylim(np.add(middle, np.multiply(abs(middle) or 1.0, (-0.055, 0.055))))
+        room = 0.05 * (abs(middle) or 1.0)
+        axes.update_datalim([(x[0], middle - room), (x[0], middle + room)])
+        axes.autoscale_view()
     label_axis(axes, against, [curve.path for curve in curves])
     tidy(axes)
     # This fixes the limits, which names need.

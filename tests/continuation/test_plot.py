@@ -86,6 +86,9 @@ def test_round_off_at_events_does_not_set_the_scale(axes):
     low, high = axes.get_ylim()
     assert high - low > 0.1
     assert low < 0.0 < high
+    # A branch drawn later has room.
+    plot_components(trace(from_functions(lambda y, lam: y - 1.0 - lam, start=([1.0], 0.0), target=1.0)), axes)
+    assert axes.get_ylim()[1] > 2.0
 
 
 def test_why_a_path_ended_before_its_end_is_said_where_it_ends(axes):
