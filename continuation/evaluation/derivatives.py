@@ -23,7 +23,10 @@ from continuation.evaluation.products import (
 )
 
 SPARSE_FROM = 64
-"""Number of unknowns from which sparse factorisations win. So many directions are tried at once; more cost memory."""
+"""Number of unknowns from which sparse factorisations win."""
+
+LOOKS_AT_ONCE = 64
+"""Directions at once; more cost only memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
@@ -113,9 +116,9 @@ class Derivative:
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
-            for first in range(0, count, SPARSE_FROM):
-                some = np.flatnonzero((labels >= first) & (labels < first + SPARSE_FROM))
-                directions = np.zeros((min(SPARSE_FROM, count - first), u.size))
+            for first in range(0, count, LOOKS_AT_ONCE):
+                some = np.flatnonzero((labels >= first) & (labels < first + LOOKS_AT_ONCE))
+                directions = np.zeros((min(LOOKS_AT_ONCE, count - first), u.size))
                 directions[labels[some] - first, some] = generic(u.size)[some]
                 rows.append(self.products(self.residual, u, directions) != 0.0)
             return np.concatenate(rows, axis=1)

@@ -231,7 +231,8 @@ def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
         except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
             continue
         if found.shape == expected.shape:
+            # Rows have units of their own; one that is zero is measured by the others.
             size = AGREEMENT * (np.abs(found) + np.abs(expected))
-            if (np.abs(found - expected) <= np.maximum(size, size.max(initial=0.0))).all():
+            if (np.abs(found - expected) <= np.maximum(size, AGREEMENT * size.max(initial=0.0))).all():
                 return products
     return None

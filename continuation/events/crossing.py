@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg.lapack import dgeev
 
-from continuation.arrays import Array, dot
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, dot
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
@@ -30,7 +30,7 @@ Otherwise a tenth of 400 crossings just behind an arc is missed."""
 EXHAUSTED = 1e-10
 """A vector left with a smaller share after orthogonalisation depends on the others."""
 
-ROUNDING = float(np.finfo(float).eps) ** 0.5
+ROUNDING = ROOT_OF_ROUND_OFF
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
 Eigenvalue Problem, Section 2.22), as near a pole."""
 
@@ -69,7 +69,7 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
         values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
         near = np.flatnonzero(np.abs(values * place - 1.0) < SAME)
-        # A start may have no part along an eigenvector; two have.
+        # One start may have no part along an eigenvector; one of two has.
         found = np.column_stack((found, vectors[:, near[:1]]))
         if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < INDEPENDENT:
             return found.shape[1] - 1

@@ -15,7 +15,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import ScaledDerivative, row_sizes
-from continuation.linear.nullspace import Bordered, kernels
+from continuation.linear.nullspace import BORDERS, Bordered, kernels
 from continuation.metric import inner, norm
 from continuation.point.linearization import linearize
 
@@ -82,7 +82,8 @@ class Reduced:
         kernel, left = kernels(matrix)
         m = kernel.shape[1]
         if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
-            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
+            more = " or more" if m > BORDERS else ""
+            raise Unresolved(f"the kernel of H' has dimension {m}{more} there; up to {LOST_RANKS + 1} are resolved")
         evaluator.counts.factorizations += 2
         return cls(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
 
@@ -205,17 +206,19 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
         If the kernel is too large, or branches do not leave one by one.
     """
     extent = 1.0 / np.sqrt(weights)
-    still = np.abs(heading) <= NOISE * extent * np.max(np.abs(heading) / extent)
+    resting = np.abs(heading) <= NOISE * extent * np.max(np.abs(heading) / extent)
     try:
         for _ in range(BALANCINGS):
             reduced = Reduced.beside(evaluator, u, extent, heading)
             bend = reduced.bend(heading / extent, step)
-            if not still.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
+            if not resting.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
             # Cubic terms; for quadratic ones this halves what the extent is off, in digits.
-            extent = np.where(still, extent * np.sqrt(BENT / bend), extent)
+            extent = np.where(resting, extent * np.sqrt(BENT / bend), extent)
         found = _on_sphere(reduced, step)
-        branches = [_branch(reduced, a, step, extent**-2.0) for a in found]
+        branches = [_branch(reduced, a, step, reduced.extent**-2.0) for a in found]
+    except Unresolved:
+        raise
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         raise Unresolved(f"the branching equations could not be solved there: {error}") from error
     branches.sort(key=lambda b: -abs(inner(b.weights, heading, b.ray)))

@@ -46,8 +46,8 @@ class Bordered:
         Of A.
     matrix : ndarray or sparse array
         The whole; sparse border rows are scaled.
-    columns, rows : ndarray
-        P, (n, l), and [R, S], (k, m + l).
+    columns : ndarray
+        P, (n, l).
     lu : object
         Its factors.
     scale : ndarray, shape (n + k, 1)
@@ -57,7 +57,6 @@ class Bordered:
     shape: tuple[int, int]
     matrix: Matrix
     columns: Array
-    rows: Array
     lu: Any
     scale: Array
 
@@ -79,7 +78,7 @@ class Bordered:
                 lu = splu(whole) if sparse else lu_factor(whole, check_finite=False)
             except (LinAlgWarning, RuntimeError, ValueError) as error:
                 raise SingularError(str(error)) from error
-        return cls((n, m), whole, columns, rows, lu, scale)
+        return cls((n, m), whole, columns, lu, scale)
 
     def solve(self, rhs: Array, adjoint: bool = False) -> Array:
         """The solution of M x = rhs, or M* x = rhs, for one or more columns."""
@@ -116,15 +115,15 @@ class Bordered:
     @cached_property
     def right(self) -> tuple[Array, Array]:
         """Columns that span the right null space, (m, k), and their defects, which vanish with it, (l, k)."""
-        (n, m), k = self.shape, len(self.rows)
-        found = self.solve(np.eye(n + k, k, -n))
+        (n, m), size = self.shape, len(self.scale)
+        found = self.solve(np.eye(size, size - n, -n))
         return found[:m], found[m:]
 
     @cached_property
     def left(self) -> tuple[Array, Array]:
         """Columns that span the left null space, (n, l), and their defects, (k, l)."""
-        (n, m), count = self.shape, self.columns.shape[1]
-        found = self.solve(np.eye(m + count, count, -m), adjoint=True)
+        (n, m), size = self.shape, self.matrix.shape[1]
+        found = self.solve(np.eye(size, size - m, -m), adjoint=True)
         return found[:n], found[n:]
 
     def refreshed(self, matrix: Matrix) -> Bordered:

@@ -164,9 +164,9 @@ class Path:
         return np.array(points) if wanted.ndim else points[0]
 
     def error_bound(self, homotopy: Any, s: float | Array) -> Array:
-        """How far ``path(s)`` is from the path, by component, in the plane across its arc; one factorisation a point.
+        """How far ``path(s)`` is from the path, by component, across the null vector of H'; one factorisation a point.
 
-        The first chord step, and what the next ones can add if they shrink as these two do; infinite where they do not
+        The first two chord steps, and what the next ones can add if H' changes evenly; infinite where they do not
         halve. A number for what is printed or drawn; for proofs see `continuation.certify`.
 
         Parameters

@@ -60,8 +60,9 @@ def refined_path(
 def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Sequence[int]) -> Array:
     """How far points of a path's dense output are off, shape (k, N + 1).
 
-    Chord steps in the plane across the arc lead from a point onto the path. Those after the first are bounded by the
-    second and the ratio q of these two (Banach's theorem); infinite where they do not halve.
+    Chord steps across the null vector of H' at a point lead from it onto the path. The first is Newton's, whose error
+    is half of what H' changes on the way: those after the second shrink by twice the ratio of these two (Deuflhard,
+    Newton Methods for Nonlinear Problems, Section 2.1). Infinite where they do not halve.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Seq
         except EvaluationError:
             continue
         sizes = [norm(weights, increment) for increment in (first, second, noise)]
-        q = sizes[1] / sizes[0] if sizes[1] > sizes[2] else 0.0
+        q = 2.0 * sizes[1] / sizes[0] if sizes[1] > sizes[2] else 0.0
         if q <= HALVING:
             bound[:] = np.abs(first) + np.abs(second) + noise + q / (1.0 - q) * sizes[1] / np.sqrt(weights)
     return bounds

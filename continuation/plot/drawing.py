@@ -107,8 +107,11 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
     apart = np.append(True, np.diff(s) > 1e-9 * s[-1])
     if apart.sum() < 2:
         return np.repeat(values[:1], wanted.size, axis=0)
-    # Archives fill shorter paths with NaN.
-    return np.asarray(PchipInterpolator(s[apart], np.nan_to_num(values[apart]))(wanted) + 0.0 * values[0])
+    s, values = s[apart], values[apart]
+    k = np.clip(np.searchsorted(s, wanted), 1, s.size - 1)
+    # Archives fill shorter paths with NaN, and a number may be known on a part of a path.
+    known = np.isfinite(values[k - 1]) & np.isfinite(values[k])
+    return np.where(known, PchipInterpolator(s, np.where(np.isfinite(values), values, 0.0))(wanted), np.nan)
 
 
 def stable_parts(path: Drawn) -> Parts:
@@ -235,6 +238,8 @@ def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
         spaced = np.linspace(0, len(filled) - 1, min(len(filled), MOST_COMPONENTS)).round().astype(int)
         return [int(i) for i in filled[spaced]]
     chosen = list(components)
+    if not chosen:
+        raise ValueError("components: expected at least one, found none")
     outside = [i for i in chosen if not 0 <= i < n]
     if outside:
         raise ValueError(f"components: expected numbers from 0 to {n - 1}, found {outside[0]}")

@@ -69,11 +69,6 @@ class PathSolver:
     room: MaxStep | None = None
     asked: float = field(default=Factory(lambda solver: solver.tolerance.relative, takes_self=True), init=False)
 
-    @property
-    def interior(self) -> bool:
-        """Whether the homotopy has a domain. Its target is mostly on the boundary, where H' may lose rank."""
-        return self.max_step is not None
-
     def noisy(self, least: float) -> None:
         """Raise the tolerance to the `least` that noise allows."""
         self.tolerance = evolve(self.tolerance, relative=max(self.asked, least))

@@ -21,6 +21,9 @@ FITTED_ORDER = 11
 CHORD = Contraction()
 """With the current factorisation; divergence shortens the range."""
 
+ROUNDS = 40
+"""Limit of range changes; 4^-40 of a range is nothing."""
+
 
 def fitted(
     evaluator: Evaluator,
@@ -56,7 +59,7 @@ def fitted(
     if evaluator.noise is not None:
         blur = point.blur(evaluator.noise)
         order = max(min(order, int(math.log2(accuracy / blur))), 2) if 0.0 < blur < accuracy else 2
-    for _ in range(2 * CHORD.iterations):
+    for _ in range(ROUNDS):
         found = _through(evaluator, point, order, r, blur)
         if found is None:
             if last is not None:

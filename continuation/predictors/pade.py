@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from attrs import Factory, field, frozen
+from attrs import field, frozen
 
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.metric import INVERTIBLE
@@ -28,10 +28,11 @@ class Series:
     coefficients: Array
     reach: float
     denominator: Array = field(factory=lambda: np.ones(1))
-    order: int = field(
-        default=Factory(lambda curve: len(curve.coefficients) + len(curve.denominator) - 2, takes_self=True), init=False
-    )
-    """Order of the series that it was made from, L + m."""
+
+    @property
+    def order(self) -> int:
+        """Order of the series that it was made from, L + m."""
+        return len(self.coefficients) + len(self.denominator) - 2
 
     def __call__(self, h: float) -> Array:
         """Return the point at h."""

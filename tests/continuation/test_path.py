@@ -130,6 +130,18 @@ def test_refined_until_it_is_as_accurate_as_asked():
     assert len(fine) > len(path)
 
 
+@pytest.mark.parametrize("preset", [FAST, DEFAULT])
+def test_many_chord_steps_go_no_farther_than_the_bound(preset):
+    path = trace(Circle(), target=-0.9999, preset=preset)
+    for s in np.linspace(0.0, path.arclength[-1], 41):
+        u, bound = path(s), path.error_bound(Circle(), s)
+        step = path.steps[int(np.clip(np.searchsorted(path.arclength, s, "right"), 1, len(path) - 1))]
+        matrix, end = np.vstack([2.0 * u, step.weights * np.array([-u[1], u[0]])]), u
+        for _ in range(20):
+            end = end - np.linalg.solve(matrix, [end @ end - 1.0, 0.0])
+        assert (np.abs(end - u) <= bound + 1e-15).all()
+
+
 class Empty(Circle):
     """No point solves it, and chord steps from the circle do not halve."""
 

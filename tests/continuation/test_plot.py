@@ -1,5 +1,6 @@
 """Pictures: what is drawn where, checked on the artists; matplotlib's Agg renders each once."""
 
+import math
 from itertools import pairwise
 
 import matplotlib as mpl
@@ -221,11 +222,21 @@ def test_observed_scalars_profiles_and_heat(axes):
     assert heat.get_ylabel() == "$x$"
 
 
+def test_a_scalar_that_is_known_on_a_part_of_the_path_is_drawn_there_alone(axes):
+    path = trace(from_functions(lambda y, lam: y - lam, start=([-1.0], -1.0), target=1.0), max_step=0.2)
+    steps = [evolve(step, observed={"root": math.sqrt(step.lam) if step.lam > 0.0 else math.nan}) for step in path]
+    plot_bifurcation(evolve(path, steps=steps), axes, value="root")
+    lam, drawn = (np.asarray(values) for values in lines(axes)[0].get_data())
+    assert np.isnan(drawn[lam < 0.0]).all()
+    assert drawn[-1] == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(
     ("draw", "options", "words"),
     [
         (plot_components, {"against": "time"}, "against: expected 'lam' or 'arclength', found 'time'"),
         (plot_components, {"components": [9]}, "components: expected numbers from 0 to 8, found 9"),
+        (plot_components, {"components": []}, "components: expected at least one, found none"),
         (plot_components, {"names": ["x"]}, "names: expected 7, one a component drawn, found 1"),
         (plot_bifurcation, {"value": "nothing"}, "value: expected one of max_u, found 'nothing'"),
         (plot_bifurcation, {"stable": "nothing"}, "stable: expected one of max_u"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from continuation import Budget, Status, from_functions, trace
+from continuation.evaluation.derivatives import from_residual
 from continuation.evaluation.jacobian_check import check_jacobian
 from problems.bifurcation import Bratu1D, Bratu2D, Circle, ExponentialCosine, FreudensteinRoth
 
@@ -64,6 +65,14 @@ def test_derivatives_from_any_residual_are_paid_for_in_residuals(function):
     # Choosing the way costs a few residuals more, once.
     assert path.counts.residuals <= len(calls) <= path.counts.residuals + 20
     assert path.counts.residuals >= (6 if function is filled else 1) * path.counts.factorizations
+
+
+def test_no_row_in_large_units_hides_that_complex_steps_are_wrong_in_another():
+    def residual(y, lam):
+        return np.array([1e5 * (y[0] - lam), abs(np.real_if_close(y)[1]) - 1.0 - lam])
+
+    H_y, _ = from_residual(residual, (np.array([0.3, 0.7]), 0.2))(np.array([0.3, 0.7]), 0.2)
+    np.testing.assert_allclose(H_y, np.diag([1e5, 1.0]), rtol=1e-6, atol=1e-6)
 
 
 class Spoiled(ExponentialCosine):
