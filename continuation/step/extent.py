@@ -207,8 +207,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
         return v
-    r = evaluator.residual(point.u)
-    onward = allowed_along(evaluator.residual, point.u, v, np.abs(r) + evaluator.round_off(point.u, r))
+    onward = allowed_along(evaluator.residual, point.u, v, np.abs(residual) + evaluator.round_off(point.u, residual))
     beside = point.u + POINT_ULPS * np.spacing(np.abs(point.u)) * generic_vector(v.size)
     if onward < ENDLESS:
         beside += onward * v
