@@ -172,6 +172,15 @@ def test_a_start_in_a_kink_leaves_it_on_one_of_its_branches():
     assert (path.status, np.abs(path.endpoint.u).tolist()) == (Status.REACHED_TARGET, [2.0, 2.0])
 
 
+def test_a_start_on_a_border_that_bends_away_leaves_it_on_its_own_side():
+    # y = 1.25 lam^2 where y >= lam^2; what is y = 2 lam^2 on the other side lies beyond its border.
+    bent = Joined(
+        lambda a: lambda y, lam: y - 2.0 * lam**2 + (a < 0) * 3.0 * (y - lam**2), lambda y, lam: lam**2 - y, (0.0, 0.0)
+    )
+    path = trace(bent, direction=1, target=1.0)
+    np.testing.assert_allclose(path.endpoint.u, [1.25, 1.0], rtol=0, atol=1e-12)
+
+
 def test_rays_of_a_regular_point_are_both_ways():
     along = rays(VEE, np.array([1.0, 1.0]))
     np.testing.assert_allclose(along[0], -along[1])
