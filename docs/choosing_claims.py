@@ -92,7 +92,7 @@ def presets_never_fail(engine_presets):
 
 
 def fast_saves_little(engine_presets):
-    return 0.8 < total(engine_presets, "FAST") / total(engine_presets, "DEFAULT") < 1.0
+    return 0.85 < total(engine_presets, "FAST") / total(engine_presets, "DEFAULT") < 1.0
 
 
 def tolerance_is_cheap(engine_presets):

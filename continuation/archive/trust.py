@@ -118,11 +118,11 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     expected = (typing.get_origin(option) or option for option in _options(hint))
     # The class may have moved to another module.
     named = (c for c in expected if isinstance(c, type) and attrs.has(c) and c.__qualname__ == path.partition(":")[2])
-    cls: Any = next(named, None) or known.get(path) or (_registered(path) if known else None)
+    cls: type[Any] | None = next(named, None) or known.get(path) or (_registered(path) if known else None)
     if not isinstance(cls, type):
         raise UnknownError(f"{path} is not registered: pass it in trust=[...]")
     if "data" in tree:
-        return cls.from_archive(_decode(tree["data"], fetch, known, Any, ""))  # type: ignore[attr-defined]
+        return cls.from_archive(_decode(tree["data"], fetch, known, Any, ""))
     hints = _hints(cls)
     kinds = {a.alias: hints.get(a.name, Any) for a in attrs.fields(cls) if a.init} if attrs.has(cls) else {}
     if set(tree["fields"]) - set(kinds):

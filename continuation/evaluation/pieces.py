@@ -71,12 +71,12 @@ class Pieces:
 
     def along(self, u: Array, v: Array) -> Array:
         """Return derivatives of the switches at u along v, shape (m,): by jets, else differences, as first decided."""
-        switches = self.homotopy.switches
+        switches, size = self.homotopy.switches, (largest(u) or 1.0) / (largest(v) or 1.0)
         if not self._exact:
-            self._exact.append(exact(switches, u, v))
+            self._exact.append(exact(switches, u, size * v))
         if (products := self._exact[0]) is not None:
             return products(switches, u, v[None])[:, 0]
-        h = USUAL_STEP * (largest(u) or 1.0) / (largest(v) or 1.0)
+        h = USUAL_STEP * size
         change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
         return change
 

@@ -43,7 +43,8 @@ class _Curve:
 
     @property
     def aim(self) -> float:
-        end: Array = self.problem.truth.end  # type: ignore[assignment]
+        end = self.problem.truth.end
+        assert end is not None
         return float(end[-1])
 
     @property
@@ -117,7 +118,8 @@ def _loop(curve: _Curve, tolerance: float) -> Answer:
 def _pitcon(curve: _Curve, tolerance: float) -> Answer:
     """Dense PITCON 6.1, of pysces."""
     # Importing pysces prints a page and makes folders: load the compiled routine only.
-    (place,) = find_spec("pysces").submodule_search_locations  # type: ignore[union-attr, misc]
+    package: Any = find_spec("pysces")
+    (place,) = package.submodule_search_locations
     spec: Any = PathFinder.find_spec("pitcon", [f"{place}/pitcon"])
     spec.loader.exec_module(library := module_from_spec(spec))
     x = curve.start

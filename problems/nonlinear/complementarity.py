@@ -133,7 +133,7 @@ class InteriorHomotopy:
     """
 
     problem: MixedComplementarity
-    x0: Array = None  # type: ignore[assignment]
+    x0: Array = field(default=None)
     problem_class: ClassVar[str] = "nonlinear complementarity problems"
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (WANG,)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from attrs import evolve
 
 from continuation import (
@@ -213,6 +214,31 @@ def test_a_component_that_is_zero_has_no_turning_points(preset):
     path = trace(from_functions(residual, start=([0.0, 0.0], 0.0), target=None), preset=preset, events=events)
     assert path.status is Status.STOPPED_AT_EVENT
     assert not [event for event in path.events if event.name == "turning point of component 1"]
+
+
+@every_preset
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_derivatives_of_a_residual_alone_wherever_zero_is(preset, scale):
+    """A path 1e5 of its extents away from zero: differences with steps of the size of y would see another function."""
+    homotopy = from_functions(
+        lambda y, lam: (y - 1e5) ** 3 * (1.0 - lam * scale) - 1.0, start=([1e5 + 1.0], 0.0), target=0.5 / scale
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.y[0] - 1e5 == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-9)
+
+
+@every_preset
+def test_a_sparse_matrix_times_the_unknowns(preset):
+    """SERIES evaluates the residual on jets, A @ u too."""
+    A = sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(50, 50), format="csc") * 51.0**2
+    homotopy = from_functions(
+        lambda u, lam: A @ u + lam * np.exp(u),
+        lambda u, lam: (A + sp.diags_array(lam * np.exp(u)), np.exp(u)),
+        start=(np.zeros(50), 0.0),
+        target=2.0,
+    )
+    assert trace(homotopy, preset=preset).status is Status.REACHED_TARGET
 
 
 # -- what is called -----------------------------------------------------------------------------------------------

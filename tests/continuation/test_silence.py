@@ -4,6 +4,7 @@ import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 from continuation.linear.silence import Silence, silent, without_warnings
 
@@ -24,6 +25,8 @@ def test_it_ends_with_the_block_and_another_thread_still_warns():
     with Silence(), Silence(), ThreadPoolExecutor(1) as other:
         assert (silent(), warned(divided)) == (True, 0)
         assert other.submit(lambda: (silent(), warned(divided))).result() == (False, 1)
+    with pytest.raises(KeyError), Silence():
+        raise KeyError
     assert (silent(), np.geterr()) == (False, outer)
 
 

@@ -70,7 +70,7 @@ POINTS = (
     ),
     Point(
         "5", "opening a damaged file never returns", "328 of 868 damaged files",
-        (), (DAMAGE,),
+        (ARCHIVE + "test_archive_others.py",), (DAMAGE,),
     ),
     Point(
         "6", "Ctrl-C in lcp.solve ends one path, and the next begins", "19 signals in 40 s",

@@ -130,16 +130,20 @@ def test_what_a_kill_left_beside_is_removed_by_the_next(tmp_path):
     assert fresh.exists(), "it may be another writer's, of this very second"
 
 
-@pytest.mark.parametrize("name", ["link", "replace"])
-@pytest.mark.parametrize("work", [lambda f, t: merge([f], t), export, lambda f, t: recover(f)])
-def test_a_kill_at_the_moment_of_naming(tmp_path, file, work, name):
+@pytest.mark.parametrize(
+    ("name", "work"),
+    [("link", lambda f, t: merge([f], t)), ("link", export), ("replace", lambda f, t: recover(f))],
+    ids=["merge", "export", "recover"],
+)
+def test_a_kill_at_the_moment_of_naming(tmp_path, file, name, work):
     target, real = tmp_path / "new.h5", getattr(os, name)
 
     def attempt():
         setattr(os, name, lambda *arguments: (real(*arguments), os.kill(os.getpid(), signal.SIGKILL)))
         work(file, target)
 
-    in_child(attempt)
+    assert in_child(attempt) == signal.SIGKILL
+    assert target.exists() == (name == "link")
     assert all(len(read(found)) >= 30 for found in (file, target) if found.exists())
 
 

@@ -85,6 +85,13 @@ def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):
     assert np.array_equal(resume(file, budget=Budget()).u, trace(FreudensteinRoth()).u)
 
 
+def test_a_file_that_was_closed_stays_as_it_is(tmp_path):
+    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    before = (tmp_path / "run.h5").read_bytes()
+    recover(tmp_path / "run.h5")
+    assert (tmp_path / "run.h5").read_bytes() == before
+
+
 def test_recovery_by_force_keeps_what_was_committed(tmp_path):
     steps = iter(Tracer(FreudensteinRoth(), observers=(logged(tmp_path / "run.h5", 2),)))
     next(step for step in steps if step.index == 4)

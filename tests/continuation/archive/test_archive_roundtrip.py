@@ -153,6 +153,13 @@ def test_a_start_that_fails_is_a_path_without_points(tmp_path):
     assert (found.status, found.message, found.steps) == (path.status, path.message, [])
 
 
+def test_a_trace_that_is_refused_leaves_no_file(tmp_path):
+    homotopy = from_functions(lambda y, lam: y, start=(np.array([np.nan]), 0.0))
+    with pytest.raises(ValueError, match="start: expected finite numbers"):
+        trace(homotopy, archive=tmp_path / "run.h5")
+    assert not list(tmp_path.iterdir())
+
+
 def test_provenance_and_the_problem_are_in_the_file(tmp_path):
     trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:

@@ -82,3 +82,6 @@ def test_the_page(tmp_path):
         "-0.6863527575", f"{path.counts.solves} solves", "Python 3.",
     ):  # fmt: skip
         assert text in page
+    trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))
+    with open_archive(tmp_path / "short.h5") as archive:
+        assert "can be resumed with more steps: `continuation resume" in describe(archive)

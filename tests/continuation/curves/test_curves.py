@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
@@ -13,12 +14,15 @@ from continuation.counts import Counts
 from continuation.evaluation.errors import RaisedError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import difference_along
+from continuation.events.singularity import full_derivative
+from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
 
 from .util import (
     Bent,
+    Diffusing,
     Lorenz,
     coupled,
     cusp_form,
@@ -148,6 +152,29 @@ def test_elimination_is_the_bordered_matrix():
         u = np.append(y, mu)
         difference = difference_along(curve.residual, u, 1e-2 * r)[0]
         np.testing.assert_allclose(whole[:-1] @ (1e-2 * r), difference, atol=1e-8)
+
+
+@pytest.mark.parametrize("make", [np.array, sp.csc_array])
+def test_a_border_nearly_orthogonal_is_replaced(make):
+    matrix = np.random.default_rng(8).standard_normal((7, 7))
+    left, sizes, right = np.linalg.svd(matrix)
+    matrix = matrix - (sizes[-1] - 1e-3) * np.outer(left[:, -1], right[-1])
+    for b, c in ((left[:, 0] + 1e-4 * left[:, -1], right[-1]), (left[:, -1], right[2] + 1e-4 * right[-1])):
+        near = null_vectors(make(matrix), b, c)
+        assert max(np.linalg.norm(near.right), np.linalg.norm(near.left)) <= 10.0
+        assert near.factors.sign * np.sign(near.s) == np.sign(np.linalg.det(matrix))
+        np.testing.assert_allclose(abs(right[-1] @ near.right), np.linalg.norm(near.right), rtol=1e-5)
+
+
+def test_the_border_does_not_fill_sparse_factors():
+    homotopy = Diffusing(n=300)
+    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
+    (y, mu), condition = curve.start(), curve._condition
+    matrix = condition.matrix(full_derivative(Evaluator(curve.family(mu), Counts()), y[:-1]), y[-1])
+    near = null_vectors(matrix, condition.b, condition.c)
+    assert near.factors.lu.nnz <= 30 * 600
+    np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)
+    np.testing.assert_allclose(matrix.conj().T @ near.left, -np.conj(near.s) * condition.c, atol=1e-9)
 
 
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):

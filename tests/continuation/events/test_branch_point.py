@@ -98,24 +98,23 @@ LEVELS = [TargetValue(1.0), TargetValue(-1.0)]
 
 
 @pytest.mark.parametrize(
-    ("homotopy", "curve", "options", "ends"),
+    ("homotopy", "curve", "options", "line", "ends"),
     [
-        (pitchfork(), lambda y, lam: y**2 - lam, {"events": LEVELS}, {(-1.0, 1.0), (1.0, 1.0)}),
-        (transcritical(0.0), lambda y, lam: y - lam, {"events": LEVELS}, {(-1.0, -1.0), (1.0, 1.0)}),
-        (LINE_THROUGH_CIRCLE, lambda y, lam: np.hypot(y, lam) - 1.0, {"budget": Budget(steps=200)}, None),
+        (pitchfork(), lambda y, lam: y**2 - lam, {"events": LEVELS}, (1.0, 0.0), {(-1.0, 1.0), (1.0, 1.0)}),
+        (transcritical(0.0), lambda y, lam: y - lam, {"events": LEVELS}, (1.0, 1.0), {(-1.0, -1.0), (1.0, 1.0)}),
+        (LINE_THROUGH_CIRCLE, lambda y, lam: np.hypot(y, lam) - 1.0, {"budget": Budget(steps=200)}, (2.0, -1.0), None),
     ],
     ids=["pitchfork", "transcritical", "circle from the line"],
 )
-def test_the_other_branch_is_followed_both_ways(homotopy, curve, options, ends):
+def test_the_other_branch_is_followed_both_ways(homotopy, curve, options, line, ends):
     path = trace(homotopy)
     event, found = branch_points(path)[0], set()
     known, other = branch_directions(homotopy, event)
-    trunk = path.endpoint.u - path.steps[0].u
-    assert abs(known @ trunk) == pytest.approx(np.linalg.norm(trunk) * np.linalg.norm(known), abs=1e-9)
-    assert abs(np.linalg.det([known, other])) > 0.1 * np.linalg.norm(known) * np.linalg.norm(other)
+    for found_line, wanted in ((known, path.endpoint.u - path.steps[0].u), (other, np.array(line))):
+        assert abs(found_line @ wanted) == pytest.approx(np.linalg.norm(wanted) * np.linalg.norm(found_line), abs=1e-9)
     for start in switch_branch(homotopy, event):
         branch = trace(homotopy, start=start, target=None, **options)
-        np.testing.assert_allclose(curve(branch.y[:, 0], branch.lam), 0.0, rtol=0, atol=1e-7)
+        np.testing.assert_allclose(curve(branch.y[:, 0], branch.lam), 0.0, rtol=0, atol=1e-8 if ends else 1e-7)
         assert branch.status is (Status.CLOSED if ends is None else Status.STOPPED_AT_EVENT)
         found.add(tuple(np.round(branch.endpoint.u, 8)))
     assert ends in (None, found)

@@ -120,6 +120,21 @@ def test_ring_axioms(a, b, c):
     assert same(a**3, a * a * a)
 
 
+INVERSES = [
+    (np.exp, np.log), (np.expm1, np.log1p), (np.sin, np.arcsin), (np.cos, np.arccos), (np.tan, np.arctan),
+    (np.sinh, np.arcsinh), (np.tanh, np.arctanh), (np.square, np.sqrt), (lambda y: y**3, np.cbrt),
+    (lambda y: np.cosh(y) - 1.0, lambda y: np.arccosh(y + 1.0)), (np.reciprocal, np.reciprocal),
+    (lambda y: y**2.5, lambda y: y**0.4),
+]  # fmt: skip
+
+
+@given(st.floats(0.3, 0.75), tame)
+def test_a_function_of_its_inverse_is_the_identity(x0, rest):
+    x = Jet([x0, *(0.05 * np.array(rest))])  # inside every domain, and the series' coefficients stay small
+    for f, inverse in INVERSES:
+        np.testing.assert_allclose(f(inverse(x)).c, x.c, rtol=0, atol=1e-12, err_msg=str(inverse))
+
+
 @given(points, points, tame, tame)
 def test_a_quotient_times_its_divisor(a0, b0, a, b):
     a, b = Jet([a0, *a]), Jet([2 + b0, *b])

@@ -9,6 +9,7 @@ import pytest
 from continuation import Budget, Kind, KinkPoint, Monitor, Status, TargetValue, audit, switch_branch, trace
 from continuation import kink_rays as rays
 from continuation.archive import resume
+from continuation.evaluation.pieces import Pieces
 from continuation.testing import check_homotopy
 
 from ...util import every_preset
@@ -81,11 +82,13 @@ ROUND = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)]
 def test_kinks_are_where_they_are_and_the_path_goes_on_behind(homotopy, options, status, names, places, end):
     path = trace(homotopy, **options)
     assert path.status is status
-    assert [kink.name for kink in path.kinks] == names
-    for kink, at in zip(path.kinks, places):
-        np.testing.assert_allclose(kink.u, at, rtol=0, atol=1e-12)
-        assert path.steps[kink.step].kind is Kind.KINK
-    np.testing.assert_allclose(path.endpoint.u, end, rtol=0, atol=1e-12)
+    assert [event.name for event in path.events] == names
+    # Of GRAZED the switch hardly slopes.
+    for kink, at in zip(path.kinks, places, strict=True):
+        np.testing.assert_allclose(kink.u, at, rtol=0, atol=1e-12 if homotopy is GRAZED else 1e-15)
+        assert (path.steps[kink.step].kind, len(kink.rays)) == (Kind.KINK, 1 if homotopy in (STOP, TORN) else 2)
+        assert len(kink.switches) == (2 if homotopy is STOP else 1)
+    np.testing.assert_allclose(path.endpoint.u, end, rtol=0, atol=1e-14)
     # So does the dense output; GRAZED is a parabola.
     for u in path(np.linspace(0.0, path.arclength[-1], 101)):
         assert abs(homotopy.residual(u[:-1], u[-1])[0]) <= 1e-13 or homotopy in (TORN, GRAZED)
@@ -97,6 +100,7 @@ def test_what_a_kink_holds():
     (kink,) = path.kinks
     assert (kink.kind, kink.switches, kink.ends_step) == (Kind.KINK, (0,), True)
     np.testing.assert_allclose(kink.rays[:, 0] / kink.rays[:, 1], [-1.0, 1.0], rtol=1e-15)
+    assert [kink.switches for kink in trace(SHARP).kinks] == [(0,), (1,)]
     with pytest.raises(ValueError, match="ray: expected the number of one of its 2 rays, found 2"):
         switch_branch(VEE, kink, ray=2)
     with pytest.raises(ValueError, match="ray: expected None"):
@@ -168,6 +172,15 @@ def test_a_start_in_a_kink_leaves_it_on_one_of_its_branches():
     assert (path.status, np.abs(path.endpoint.u).tolist()) == (Status.REACHED_TARGET, [2.0, 2.0])
 
 
+def test_a_start_on_a_border_that_bends_away_leaves_it_on_its_own_side():
+    # y = 1.25 lam^2 where y >= lam^2; what is y = 2 lam^2 on the other side lies beyond its border.
+    bent = Joined(
+        lambda a: lambda y, lam: y - 2.0 * lam**2 + (a < 0) * 3.0 * (y - lam**2), lambda y, lam: lam**2 - y, (0.0, 0.0)
+    )
+    path = trace(bent, direction=1, target=1.0)
+    np.testing.assert_allclose(path.endpoint.u, [1.25, 1.0], rtol=0, atol=1e-12)
+
+
 def test_rays_of_a_regular_point_are_both_ways():
     along = rays(VEE, np.array([1.0, 1.0]))
     np.testing.assert_allclose(along[0], -along[1])
@@ -175,3 +188,13 @@ def test_rays_of_a_regular_point_are_both_ways():
 
 def test_a_homotopy_with_pieces_conforms():
     check_homotopy(CUBIC, expected_failed_checks={"picklable": "its functions have no names"})
+
+
+@pytest.mark.parametrize(
+    ("watched", "digits"),
+    [(lambda y, lam: y**2 * lam, 1e-15), (lambda y, lam: np.array([float(y[0]) ** 2 * float(lam)]), 1e-9)],
+    ids=["jets", "differences"],
+)
+def test_jets_and_differences_give_the_derivatives_of_switches(watched, digits):
+    pieces = Pieces(Joined(None, watched, (0.0, 0.0)))
+    assert pieces.along(np.array([3.0, 2.0]), np.array([1.0, -1.0]))[0] == pytest.approx(3.0, rel=digits)

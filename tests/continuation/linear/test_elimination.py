@@ -11,22 +11,23 @@ from continuation.linear.nullspace import Bordered
 N = 9
 
 
-def bordered(k, seed, dtype=float, lost=0):
-    """A, P, [R, S], the whole and a vector, in units of a decade either way; `lost` ranks of A are lost."""
+def bordered(k, seed, dtype=float, lost=0, decades=1):
+    """A, P, [R, S], the whole and a vector, in units of so many decades either way; `lost` ranks of A are lost."""
     rng = np.random.default_rng(seed)
     A, P, rows = (rng.standard_normal(shape).astype(dtype) for shape in ((N, N), (N, k), (k, N + k)))
     if dtype is complex:
         A = A + 1j * rng.standard_normal((N, N))
     left, sizes, right = np.linalg.svd(A)
     A = left * np.append(sizes[: N - lost], np.zeros(lost)) @ right
-    units = 10.0 ** rng.uniform(-1.0, 1.0, k)
+    units = 10.0 ** rng.uniform(-decades, decades, k)
     P, rows = P * units, rows / units[:, None]
     return A, P, rows, np.block([[A, P], [rows]]), np.append(rng.standard_normal(N), 1.0 / units)
 
 
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("k", [1, 2, 4])
-def test_borders_are_eliminated_with_the_sign_of_the_determinant(k):
-    A, P, rows, whole, x = bordered(k, 0)
+def test_borders_are_eliminated_with_the_sign_of_the_determinant(k, seed):
+    A, P, rows, whole, x = bordered(k, seed, decades=6)
     system = eliminated(lambda r: np.linalg.solve(A, r), np.linalg.solve(A, P), rows)
     np.testing.assert_allclose(system.solve(whole @ x), x, rtol=1e-9)
     assert np.sign(np.linalg.det(A)) * system.sign == np.linalg.slogdet(whole)[0]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import Status, check_jacobian, trace
+from continuation.controllers import AllgowerGeorg, Bounds, Fixed
 from continuation.predictors import Tangent
 from continuation.step.capabilities import max_step_of
 from problems.bifurcation import FreudensteinRoth
@@ -30,14 +31,15 @@ def test_a_max_step_of_zero_ends_the_path():
     assert trace(Straight(max_step=lambda u, v: 0.0)).status is Status.STEP_TOO_SMALL
 
 
-def test_a_path_comes_up_to_its_boundary_and_no_farther():
-    """Along a tangent it is farther to y = 1 than along y = lam^2."""
+@pytest.mark.parametrize("controller", [AllgowerGeorg(), Fixed(Bounds(initial=0.5), max_angle=np.inf)], ids=repr)
+def test_a_path_comes_up_to_its_boundary_and_no_farther(controller):
+    """Along a tangent it is farther to y = 1 than along y = lam^2: a correction may lead beyond it."""
 
     def room(u, v):
         return (1.0 - u[0]) / v[0] if v[0] > 0.0 else np.inf
 
     homotopy = Straight(residual=lambda y, lam: y - lam**2, target=2.0, max_step=room)
-    path = trace(homotopy, predictor=Tangent())
+    path = trace(homotopy, predictor=Tangent(), controller=controller)
     assert path.status is Status.STEP_TOO_SMALL
     assert 0.999 < path.endpoint.y[0] == path.y.max() <= 1.0
 
