@@ -206,10 +206,17 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     groups = np.arange(u0.size) if groups is None else groups
     usual = np.nan_to_num(np.abs(difference_along(residual, u0, size * generic(u0.size))[0]))
     for group in range(int(groups.max()) + 1):
-        own = groups == group
-        changes = _trials(residual, u0, np.where(own, size, 0.0), usual)[1].T
-        seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
-        steps[own] = DIFFERENCE_STEPS[_best(seen)]
+        own, reach = groups == group, size.copy()
+        while True:
+            changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1].T
+            seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
+            steps[own] = DIFFERENCE_STEPS[_best(seen)] * (reach / size)[own]
+            # A component that is almost zero says nothing of its unit: longer steps, as long as they agree as well.
+            longer = own & (size < USUAL_STEP) & (reach < 1.0)
+            longer[own] &= (seen[:, 0] <= seen.min(axis=1)) | (changes.min() == 1.0)
+            if not longer.any():
+                break
+            reach[longer] = np.minimum(reach[longer] / DIFFERENCE_STEPS[3], 1.0)
     return ByDifferences(u0, steps, usual)
 
 
@@ -218,11 +225,11 @@ Products: TypeAlias = Exact | ByDifferences
 
 
 def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
-    """Return jets, else complex steps, whose product with w agrees with a difference, or None.
+    """Return jets, else complex steps, whose product with w agrees with differences in each row, or None.
 
     They must agree: ``abs`` is wrong on complex numbers.
     """
-    expected = difference_along(residual, u, w)[0]
+    expected = np.array([change for change in _trials(residual, u, w)[0] if np.isfinite(change).all()])
     for products in (BY_JETS, BY_COMPLEX_STEP):
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -230,9 +237,10 @@ def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
                 found = products(residual, u, w[None])[:, 0]
         except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
             continue
-        if found.shape == expected.shape:
+        if len(expected) and found.shape == expected.shape[1:]:
             # Rows have units of their own; one that is zero is measured by the others.
             size = AGREEMENT * (np.abs(found) + np.abs(expected))
-            if (np.abs(found - expected) <= np.maximum(size, AGREEMENT * size.max(initial=0.0))).all():
+            least = AGREEMENT * size.max(axis=1, initial=0.0, keepdims=True)
+            if (np.abs(found - expected) <= np.maximum(size, least)).any(axis=0).all():
                 return products
     return None

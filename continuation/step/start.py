@@ -19,7 +19,7 @@ from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.path import Path
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.step.extent import FIRST_STEP, initial_extent
+from continuation.step.extent import FIRST_STEP, REPLACED, initial_extent
 
 
 class StartError(ArithmeticError):
@@ -74,8 +74,7 @@ def first_point(
         raise StartError(f"At the start {error}.") from error
     point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
     if tolerance.measure(point.solve(-residual), point.weights) > 1.0:
-        u = _correct_start(solver, point, u, unit)
-        there = evaluator.residual(u)
+        u, there = _without_rest(solver, point, _correct_start(solver, point, u, unit))
         point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, there)
     wanted = direction
     if wanted == 0:
@@ -136,6 +135,23 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
     if patient.converged:
         return patient.u
     raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
+
+
+def _without_rest(solver: PathSolver, point: Linearization, u: Array) -> tuple[Array, Array]:
+    """A corrected start and H there, with zeros for what Newton's method left of them: its size is no unit."""
+    residual = solver.evaluator.residual(u)
+    off = point.solve(residual)
+    while (rest := (u != 0.0) & (np.abs(off) > REPLACED * np.abs(u))).any():
+        zeroed = np.where(rest, 0.0, u)
+        try:
+            residual_there = solver.evaluator.residual(zeroed)
+        except EvaluationError:
+            break  # Zero is outside the domain.
+        off = point.solve(residual_there)
+        if solver.tolerance.measure(off, point.weights) > 1.0:
+            break
+        u, residual = zeroed, residual_there
+    return u, residual
 
 
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:

@@ -28,6 +28,7 @@ Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 LARGEST_FALL = 1e-3
 """Largest fall of a scale per step, so that ends at zero have a metric."""
 
+
 @frozen
 class RelativeMetric:
     """The mean square of relative changes plus the parameter's squared change.

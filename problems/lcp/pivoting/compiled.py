@@ -17,6 +17,7 @@ from continuation.arrays import Array
 
 Indices = NDArray[np.intp]
 
+
 def available() -> bool:
     """Whether the program has imported numba."""
     return hasattr(sys.modules.get("numba"), "njit")

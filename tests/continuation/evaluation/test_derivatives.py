@@ -8,6 +8,7 @@ import pytest
 from continuation import Budget, Status, from_functions, trace
 from continuation.evaluation.derivatives import from_residual
 from continuation.evaluation.jacobian_check import check_jacobian
+from continuation.evaluation.products import BY_JETS, by_differences, exact
 from problems.bifurcation import Bratu1D, Bratu2D, Circle, ExponentialCosine, FreudensteinRoth
 
 from ..util import scalar
@@ -73,6 +74,25 @@ def test_no_row_in_large_units_hides_that_complex_steps_are_wrong_in_another():
 
     H_y, _ = from_residual(residual, (np.array([0.3, 0.7]), 0.2))(np.array([0.3, 0.7]), 0.2)
     np.testing.assert_allclose(H_y, np.diag([1e5, 1.0]), rtol=1e-6, atol=1e-6)
+
+
+def test_rows_that_stand_still_do_not_choose_the_step_at_which_exact_products_are_compared():
+    # The first row settles where steps are 1e-12; there the second has round-off.
+    def residual(y, lam):
+        return np.stack([1e-28 * np.sin(1e11 * y[1]), 1.0 + y[0] - 3.0 * y[1], y[1] + 2.0 - lam])
+
+    assert exact(residual, np.array([1.0, 0.0, 1.0]), np.array([1e-3, 1.0, 0.3])) is BY_JETS
+
+
+@pytest.mark.parametrize("small", [1e-7, 1e-12, 1e-17, 1e-43])
+def test_a_component_that_is_almost_zero_says_nothing_of_its_step(small):
+    def residual(y, lam):
+        a, b = (float(part) for part in y)
+        return np.array([a * a + lam * lam - 1.0 + b, b * (lam - 1.5)])
+
+    differences = by_differences(residual, np.array([1.0, small, 0.0]))
+    found = differences.whole(residual, np.array([0.7, 0.1, 0.3]))
+    np.testing.assert_allclose(found, [[1.4, 1.0, 0.6], [0.0, -1.2, 0.1]], atol=1e-8)
 
 
 class Spoiled(ExponentialCosine):
