@@ -178,9 +178,11 @@ def root(
 
     `enough`: accuracy of places. `guess`, `slope`: a model's zero and slope.
     """
-    scale, best = max(abs(a[1]), abs(b[1])), min(a, b, key=lambda place: abs(place[1]))
-    if best[1] == 0.0:
-        return best[0]
+    scale = max(abs(a[1]), abs(b[1]))
+    if 0.0 in (a[1], b[1]):
+        return a[0] if a[1] == 0.0 else b[0]
+    # An end may be zero but for round-off, where the arc before had its zero.
+    best = (a[0], scale)
     last, stalled = None, 0
     chord = (b[1] - a[1]) / (b[0] - a[0])
     t = a[0] - a[1] / chord if guess is None else guess

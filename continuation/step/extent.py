@@ -262,4 +262,11 @@ def _nonlinearity(
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
     first, second = (math.sqrt(dot(part, part)) for part in (d / scale, e / scale))
-    return d, max(turned, min(second / first, 1.0)) if first > 0.0 else turned
+    turned = max(turned, min(second / first, 1.0)) if first > 0.0 else turned
+    bent = ~moving & (d != 0.0)
+    if bent.any():
+        # A component that begins to move here, as the parameter at a fold, is a parabola, which has no scale, until it
+        # is none.
+        parabola = 4.0 * corrected(point.u + 0.5 * h * v)
+        turned = max(turned, median(np.abs(d - parabola)[bent] / np.abs(d[bent])))
+    return d, turned

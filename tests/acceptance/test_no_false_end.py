@@ -6,6 +6,7 @@ The campaign is `examples/benchmarks/ends.py`; a few paths of each family are tr
 import numpy as np
 import pytest
 from mpmath import mp, mpf
+from numpy.polynomial import Polynomial
 
 import continuation
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Status, from_functions, trace
@@ -228,6 +229,29 @@ def test_a_start_at_a_fold_to_round_off(preset, y):
         path = trace(homotopy, preset=preset)
         assert path.status is Status.CLOSED
         assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
+
+
+@every_preset
+@pytest.mark.parametrize(
+    ("folds", "unit"),
+    [
+        ((-0.509, -0.356, 0.646, 0.932), (7e4, 1e3)),
+        ((-0.917, -0.807, -0.552, 0.25, 0.716), (1e-3, 3e-2)),
+        ((-0.96, 0.002), (4e-5, 0.3)),
+        ((-0.567, -0.326, 0.207), (20.0, 1e2)),
+    ],
+)
+def test_a_path_begins_at_a_fold_of_a_polynomial(preset, folds, unit):
+    """At a fold the parameter is a parabola, which has no scale: only what bends it away from one tells how far."""
+    p = Polynomial.fromroots(folds).integ()
+    homotopy = from_functions(
+        lambda y, lam: p(y / unit[0]) - lam / unit[1], start=(np.array([folds[0] * unit[0]]), p(folds[0]) * unit[1])
+    )
+    path = trace(homotopy, target=None, preset=preset, box={0: (-1.5 * unit[0], 1.5 * unit[0])})
+    assert path.status is Status.STOPPED_AT_EVENT
+    found = [fold.u[0] / unit[0] for fold in path.turning_points]
+    beyond = [t for t in folds if folds[0] < t] if path.u[-1, 0] > path.u[0, 0] else []
+    np.testing.assert_allclose([t for t in found if abs(t - folds[0]) > 1e-5], beyond, atol=1e-6)
 
 
 @without_series
