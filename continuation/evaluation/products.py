@@ -224,23 +224,23 @@ Products: TypeAlias = Exact | ByDifferences
 """A way to compute H' from the residual."""
 
 
-def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
-    """Return jets, else complex steps, whose product with w agrees with differences in each row, or None.
-
-    They must agree: ``abs`` is wrong on complex numbers.
-    """
+def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
+    """Whether a product with w agrees with a difference in each row: ``abs`` is wrong on complex numbers."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("error", np.exceptions.ComplexWarning)
+            found = products(residual, u, w[None])[:, 0]
+    except (TypeError, ArithmeticError, ValueError, AttributeError, IndexError, np.exceptions.ComplexWarning):
+        return False
     expected = np.array([change for change in _trials(residual, u, w)[0] if np.isfinite(change).all()])
-    for products in (BY_JETS, BY_COMPLEX_STEP):
-        try:
-            with warnings.catch_warnings(), np.errstate(all="ignore"):
-                warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                found = products(residual, u, w[None])[:, 0]
-        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
-            continue
-        if len(expected) and found.shape == expected.shape[1:]:
-            # Rows have units of their own; one that is zero is measured by the others.
-            size = AGREEMENT * (np.abs(found) + np.abs(expected))
-            least = AGREEMENT * size.max(axis=1, initial=0.0, keepdims=True)
-            if (np.abs(found - expected) <= np.maximum(size, least)).any(axis=0).all():
-                return products
-    return None
+    if not len(expected) or found.shape != expected.shape[1:]:
+        return False
+    # Rows have units of their own; one that is zero is measured by the others.
+    size = AGREEMENT * (np.abs(found) + np.abs(expected))
+    least = AGREEMENT * size.max(axis=1, initial=0.0, keepdims=True)
+    return bool((np.abs(found - expected) <= np.maximum(size, least)).any(axis=0).all())
+
+
+def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
+    """Return jets, else complex steps, if they `agree` with differences along w, or None."""
+    return next((products for products in (BY_JETS, BY_COMPLEX_STEP) if agree(products, residual, u, w)), None)

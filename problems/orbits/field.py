@@ -10,31 +10,36 @@ import numpy as np
 from attrs import evolve, field, frozen
 
 from continuation.arguments.checks import complain
-from continuation.arrays import Array
+from continuation.arrays import Array, generic_vector
 from continuation.citation.bibliography import SQUIRE_TRAPP
-from continuation.evaluation.products import AGREEMENT, sizes
+from continuation.evaluation.products import (
+    AGREEMENT,
+    BY_COMPLEX_STEP,
+    ByDifferences,
+    agree,
+    by_differences,
+    sizes,
+)
 
 COMPLEX_STEP = 1e-200
 """Imaginary step; its square underflows (Squire and Trapp 1998)."""
 
-CENTRAL_STEP = float(np.cbrt(np.finfo(float).eps))
-"""Relative step of central differences."""
-
-
 @frozen(eq=False)
 class Field:
-    """`function` takes x of shape (n,), or (n, k) if `columns`, complex if `complexes`. `own`: given (f_x, f_p)."""
+    """`function` takes x of shape (n,), or (n, k) if `columns`. `own`: given (f_x, f_p). `steps`: of differences, else
+    complex steps.
+    """
 
     function: Callable[..., Any]
     columns: bool
-    complexes: bool
     own: Callable[..., Any] | None = None
     beside: tuple[Any, ...] = ()
+    steps: ByDifferences | None = None
     references: tuple[str, ...] = field(init=False)
 
     @references.default
     def _references(self) -> tuple[str, ...]:
-        return (SQUIRE_TRAPP,) if self.complexes and self.own is None else ()
+        return (SQUIRE_TRAPP,) if self.steps is None and self.own is None else ()
 
     def __call__(self, x: Array, p: Any) -> Array:
         """Evaluate f, shape (n, k)."""
@@ -51,16 +56,14 @@ class Field:
             by_x, by_p = (np.stack([np.asarray(way[j]) for way in ways], axis=-1) for j in (0, 1))
             by_x, by_p = by_x.reshape(n, n, -1), by_p.reshape(n, -1)
             return np.moveaxis(np.broadcast_to(by_x, (n, n, k)), 2, 0), np.broadcast_to(by_p, (n, k)).T
-        copies = np.repeat(x[:, :, None], n, axis=2)
-        h = CENTRAL_STEP * sizes(np.abs(x).max(axis=1))
-        steps = np.eye(n)[:, None, :] * (COMPLEX_STEP * 1j if self.complexes else h)
-        whole = (copies + steps).reshape(n, -1)
-        if self.complexes:
-            by_x = self(whole, p).imag / COMPLEX_STEP
+        copies, aside = np.repeat(x[:, :, None], n, axis=2), np.eye(n)[:, None, :]
+        if self.steps is None:
+            by_x = self((copies + COMPLEX_STEP * 1j * aside).reshape(n, -1), p).imag / COMPLEX_STEP
             by_p = self(x, complex(p, COMPLEX_STEP)).imag / COMPLEX_STEP
         else:
-            by_x = (self(whole, p) - self((copies - steps).reshape(n, -1), p)) / np.tile(2.0 * h, k)
-            step = CENTRAL_STEP * float(sizes(np.array([p]))[0])
+            *h, step = self.steps.scale(np.append(np.abs(x).max(axis=1), p))
+            ahead, behind = ((copies + sign * aside * h).reshape(n, -1) for sign in (1.0, -1.0))
+            by_x = (self(ahead, p) - self(behind, p)) / np.tile(2.0 * np.array(h), k)
             by_p = (self(x, p + step) - self(x, p - step)) / (2.0 * step)
         return np.moveaxis(by_x.reshape(n, k, n), 1, 0), by_p.T
 
@@ -84,17 +87,18 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
     single = np.asarray(function(x[:, 0].copy(), p, *beside))
     if single.shape != (len(x),) or single.dtype.kind not in "fiu":
         raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)
-    alone = Field(function, False, False, jacobian, beside)
-    plain = evolve(alone, columns=_agrees(lambda: evolve(alone, columns=True)(x.copy(), p), alone(x, p)))
+    alone = Field(function, False, jacobian, beside)
+    found = evolve(alone, columns=_agrees(lambda: evolve(alone, columns=True)(x.copy(), p), alone(x, p)))
     if jacobian is not None:
-        return plain
-    steps = evolve(plain, complexes=True)
+        return found
+    u = np.append(x[:, 0], p)
 
-    def whole(f: Field) -> Array:
-        by_x, by_p = f.derivatives(x, p)
-        return np.concatenate([by_x, by_p[:, :, None]], axis=2)
+    def residual(y: Array, lam: Any) -> Array:
+        return found(y[:, None], lam)[:, 0]
 
-    return steps if _agrees(lambda: whole(steps), whole(plain)) else plain
+    if agree(BY_COMPLEX_STEP, residual, u, sizes(u) * generic_vector(u.size)):
+        return found
+    return evolve(found, steps=by_differences(residual, u))
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:

@@ -109,7 +109,7 @@ class PeriodicOrbit:
         point : LocatedEvent or (x, p)
             As `continuation.Stability` locates it.
         radius : float
-            Relative to the size of x (1 where x is 0).
+            Relative to the size at which f is no longer linear.
         intervals, degree : int
         **beside
             `jacobian` and `second`.
@@ -122,7 +122,7 @@ class PeriodicOrbit:
         x, p = as_point(point, "point")
         grid = Asked(intervals, degree, radius).grid
         field = field_of(f, beside.get("jacobian"), beside.get("second"), x, sizes(x), p)
-        motion, period, scale = circle_at(field, x, p, grid)
+        x, motion, period, scale = circle_at(field, x, p, grid)
         given = cls(
             f, x + radius * motion, period, p, grid.mesh, degree, smallest=radius / 4.0, scale=scale, heading=motion,
             **beside,

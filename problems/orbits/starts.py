@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
+from scipy.linalg import eig
 from scipy.optimize import brentq
 
 from continuation.arguments.checks import complain
 from continuation.arrays import Array
 from continuation.evaluation.products import sizes
+from continuation.step.extent import REPLACED
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
@@ -17,6 +19,10 @@ HOPF_PAIR = 1e-2
 
 LEAST_MOTION = 1e-2
 """Least relative scale: a component that does not oscillate at first must not be measured by round-off."""
+
+NONLINEAR, RADII_TRIED = 0.1, 60
+"""An orbit's size: there terms that are not linear, along the oscillating pair, are at least this part of the linear
+ones, and at most these. Sixty tenths of a length are all there are."""
 
 ONE_RETURN = 1e-3
 """The last return that misses by at most twice the least miss plus this, in standard deviations, ends a period: settled
@@ -30,23 +36,50 @@ MESHES = 4
 """Meshes of a simulation's orbit; more change nothing (van der Pol)."""
 
 
-def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, float, Array]:
-    """First-order orbits about a Hopf point: x + radius Re (q exp(2 pi i t)).
+def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Array, float, Array]:
+    """First-order orbits about a Hopf point: x + radius Re (q exp(2 pi i t)), where f is nonlinear at radius 1.
 
-    Returns Re q exp(2 pi i t) at nodes, shape (N m, n), period and scale. Raises `ValueError` if no pair of eigenvalues
-    is near the imaginary axis.
+    Returns x without what is left of zeros, Re q exp(2 pi i t) at nodes, shape (N m, n), period and scale. Raises
+    `ValueError` if no pair of eigenvalues is near the imaginary axis.
     """
-    matrix = field.derivatives(x[:, None], p)[0][0]
-    values, vectors = np.linalg.eig(matrix)
+    while True:
+        matrix = field.derivatives(x[:, None], p)[0][0]
+        rest = np.abs(np.linalg.lstsq(matrix, field(x[:, None], p)[:, 0], rcond=None)[0]) > REPLACED * np.abs(x)
+        if not (rest & (x != 0.0)).any():
+            break
+        x = np.where(rest, 0.0, x)
+    values, left, right = eig(matrix, left=True)
     off = np.where(values.imag > 0.0, np.abs(values.real) / np.maximum(np.abs(values), np.finfo(float).tiny), np.inf)
     k = int(np.argmin(off))
     if not off[k] <= HOPF_PAIR:
         found = f"{values[k]:.3g}" if np.isfinite(off[k]) else "none that is not real"
         raise ValueError(f"point: expected a pair of eigenvalues of f_x on the imaginary axis, found {found}")
-    q, size = vectors[:, k], sizes(x)
+    q, size = right[:, k], sizes(x)
     q = q / np.abs(q / size).max()
-    motion = (q * np.exp(2j * np.pi * grid.nodes)[:, None]).real
-    return motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), LEAST_MOTION * size)
+    turned = np.exp(2j * np.pi * grid.nodes)
+    rate = left[:, k].conj() / (np.vdot(left[:, k], q) * abs(values[k]))
+
+    def bent(r: float) -> Array:
+        """What is not linear in f at that radius, in radii, shape (n, N m)."""
+        way = (q[:, None] * turned).real
+        found: Array = (field(x[:, None] + r * way, p) - field(x[:, None], p)) / r - matrix @ way
+        return found
+
+    r = 1.0
+    with np.errstate(all="ignore"):
+        for _ in range(RADII_TRIED):
+            share = float(np.abs(rate @ bent(r)).max())
+            if NONLINEAR <= share <= 1.0:
+                break
+            # For quadratic or cubic terms; outside its domain f is nonlinear enough.
+            r *= min(max(share**-0.5, 0.1), 10.0) if share < np.inf else 0.1
+        else:
+            r = 1.0  # f is linear.
+    # Components that do not oscillate at first follow those that do.
+    follow = r * np.abs(np.linalg.lstsq(matrix, bent(r), rcond=None)[0]).max(axis=1)
+    q, still = r * q, np.where(x != 0.0, LEAST_MOTION * size, follow)
+    scale = np.maximum(np.abs(q), np.where(still > 0.0, still, LEAST_MOTION * size))
+    return x, (q * turned[:, None]).real, float(2.0 * np.pi / values[k].imag), scale
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:

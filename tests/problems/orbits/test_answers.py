@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import continuation
-from continuation import TargetValue
+from continuation import Status, TargetValue
 from problems.orbits import PeriodicOrbit
 from problems.orbits.models import brusselator, normal_form, roessler, van_der_pol
 
@@ -80,3 +80,27 @@ def test_the_bound_holds_between_the_mesh_points():
     r2 = 0.5 * (1.0 - np.sqrt(1.0 + 4.0 * orbit.parameter))
     error = np.abs(radii - np.sqrt(r2)).max()
     assert 0.0 < error <= orbit.observe(*orbit.start())["error"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_first_orbit_does_not_depend_on_units_or_origin(seed):
+    """A Hopf point at zero says nothing of the size of its orbits, and one far away too much."""
+    r = np.random.default_rng([5, seed])
+    S, w, L = 10.0 ** r.uniform(-4, 4, 3), 10.0 ** r.uniform(-3, 3), 10.0 ** r.uniform(-3, 3)
+    off = np.array([0.0, 1.0, 1e4])[seed % 3] * r.normal(size=3)
+
+    def f(x, p):
+        u, v, z = (x[i] / S[i] - off[i] for i in range(3))
+        q, mu = u * u + v * v, p / L
+        return w * np.stack([S[0] * ((mu - q) * u - v), S[1] * (u + (mu - q) * v), S[2] * (0.3 * u * v - z)])
+
+    rest = continuation.from_functions(f, start=(S * off, -L), target=L)
+    (hopf,) = (event for event in continuation.trace(rest, observers=[continuation.Stability()]).events)
+    orbit = PeriodicOrbit.from_hopf(f, hopf, intervals=10)
+    path = continuation.trace(orbit, start=orbit.leaving, target=L)
+    assert path.status is Status.REACHED_TARGET
+    for step in path.steps:
+        seen = step.observed
+        amplitude = 0.5 * (seen["max 0"] - seen["min 0"]) / S[0]
+        assert amplitude == pytest.approx(np.sqrt(step.lam / L), rel=1e-3)
+        assert seen["period"] == pytest.approx(2.0 * np.pi / w, rel=1e-6)
