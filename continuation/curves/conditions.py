@@ -95,7 +95,7 @@ class Eigenvalue:
         if self.kind == Kind.TURNING_POINT:
             # det and the product of null vectors change sign with a border.
             signs = {
-                "cusp": lambda rows: float(-sign * rows[0, :-1] @ v),
+                "cusp": lambda here: float(-sign * here.rows[0, :-1] @ v),
                 "Bogdanov-Takens": lambda _: float(sign * (w @ v[:-1])),
             }
             one = np.empty((w.size, 0))

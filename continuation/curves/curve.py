@@ -289,7 +289,7 @@ class Curve:
 
     def _sign(self, name: str, u: Array, v: Array) -> float:
         here = self._at(u[:-1], float(u[-1]))
-        return here.signs[name](here.rows)
+        return here.signs[name](here)
 
     def _other(self, i: int, u: Array, v: Array) -> float:
         n = self.size.size - 1

@@ -27,7 +27,7 @@ class Here:
 
     `gradients` makes the `rows` of the k conditions in `values`, `factored` the `base`, factors of [[H_y, b], [c', d]].
     `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it by
-    the others. `signs`: functions of the rows that change sign at degenerate points.
+    the others. `signs`: functions of this that change sign at degenerate points.
     """
 
     calculus: Calculus
@@ -38,7 +38,7 @@ class Here:
     factored: Callable[[], BorderedSystem]
     column: Array
     hidden: float | None = None
-    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
+    signs: Mapping[str, Callable[[Here], float]] = field(factory=dict)
 
     @cached_property
     def rows(self) -> Array:

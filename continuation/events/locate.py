@@ -33,6 +33,10 @@ JUMP = 1e-3
 MONITOR_PLACES = 17
 """Samples of the model; a cubic turns at most twice."""
 
+CONVERGES = 8.0
+"""Of a cubic's error a sixteenth is left at half the length; an eighth is certain. Without it a function that cubics
+between points of the path know badly, as a determinant beside a fold, costs 256 divisions of an arc."""
+
 DIVISIONS, INSIDE_ARC = 8, 1e-6
 """Most divisions of an arc; least relative distance from its ends."""
 
@@ -79,7 +83,11 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 @frozen(eq=False)
 class _Part:
-    """A part of an arc, with the function's values and its model from `low` to `high`."""
+    """A part of an arc, with the function's values and its model from `low` to `high`.
+
+    `error`: of the model of twice the length, where it was divided. `known`: whether errors shrink as a cubic's do, so
+    that this model's is at most an eighth of that.
+    """
 
     a: Linearization
     b: Linearization
@@ -89,24 +97,29 @@ class _Part:
     low: float = 0.0
     high: float = 1.0
     depth: int = 0
+    error: float = math.inf
+    known: bool = False
 
-    def divided(self, point: Linearization, g: float, t: float, border: Array) -> tuple[_Part, _Part]:
-        """Divide at a point: a cubic is replaced by two, a series remains."""
-        parts = []
+    def divided(
+        self, point: Linearization, g: float, t: float, border: Array, expected: float
+    ) -> tuple[_Part, _Part]:
+        """Divide at a point, where the model gave `expected`: a cubic is replaced by two, a series remains."""
+        parts, error = [], abs(g - expected)
         for a, b, ga, gb, low, high in (
             (self.a, point, self.ga, g, self.low, t),
             (point, self.b, g, self.gb, t, self.high),
         ):
             series = len(self.model.inside) > CUBIC
             model = (self.model, low, high) if series else (hermite(a.u, a.tangent, b.u, b.tangent, border), 0.0, 1.0)
-            parts.append(_Part(a, b, ga, gb, *model, depth=self.depth + 1))
+            parts.append(_Part(a, b, ga, gb, *model, self.depth + 1, error, error <= self.error / CONVERGES))
         return parts[0], parts[1]
 
     def undecided(self, along: Callable[[float], float]) -> float | None:
         """The place of a division, given the model `along`; None if the ends decide."""
         sign = math.copysign(1.0, self.ga)
         places = np.linspace(self.low, self.high, MONITOR_PLACES).tolist()
-        values = [sign * self.ga, *(sign * along(t) for t in places[1:-1]), sign * self.gb]
+        room = self.error / CONVERGES if self.known and self.ga * self.gb > 0.0 else 0.0
+        values = [sign * self.ga, *(sign * along(t) + room for t in places[1:-1]), sign * self.gb]
         turns = [k for k, (p, q) in enumerate(itertools.pairwise(values)) if p > 0.0 > q or p < 0.0 < q]
         if self.gb * self.ga <= 0.0:
             if len(turns) <= (self.gb != 0.0):
@@ -155,7 +168,7 @@ def zeros(
             g = value(part, known, t)
             if abs(g) <= noise:
                 g = math.copysign(noise, part.ga)
-            parts += part.divided(known[t], g, t, arc.border)[::-1]
+            parts += part.divided(known[t], g, t, arc.border, model(t))[::-1]
         elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * direction <= 0:
             guess, slope = zero_between(model, low, high), math.nan
             if guess is not None:

@@ -201,6 +201,21 @@ def test_a_pair_that_the_cubic_between_two_points_does_not_show():
     np.testing.assert_allclose([event.y[0] for event in path.turning_points], [0.65, 0.7], rtol=1e-12)
 
 
+def test_a_function_that_cubics_know_badly_is_asked_for_a_few_times():
+    """It is 1 along the path, and falls to -1e6 beside it, where cubics between points of the path lie."""
+    asked = []
+
+    def function(u, v):
+        asked.append(u)
+        return 1.0 - 1e12 * abs(u[0] ** 2 + u[1] ** 2 - 1.0)
+
+    path = trace(Circle(), events=[Monitor(function)], target=None)
+    assert path.status is Status.CLOSED
+    assert not named(path, "event")
+    # 7,300; 169,000 while every arc was divided into 256 parts.
+    assert len(asked) <= 15000
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
