@@ -134,10 +134,11 @@ def initial_extent(
     unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
     h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
+    apart = np.abs(point.approximate(residual))
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
         try:
-            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)))
+            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)), apart)
         except Exception:
             # H is probed beyond its domain.
             d, turned = off, np.inf
@@ -242,9 +243,9 @@ def _largest(samples: list[Array]) -> Array:
 
 
 def _nonlinearity(
-    evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
+    evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array, apart: Array
 ) -> tuple[Array, float]:
-    """The correction at u + h v across v, and the nonlinearity."""
+    """The correction at u + h v across v, and the nonlinearity. `apart`: how far the point itself is off the path."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -263,7 +264,7 @@ def _nonlinearity(
     scale[scale == 0.0] = 1.0
     first, second = (math.sqrt(dot(part, part)) for part in (d / scale, e / scale))
     turned = max(turned, min(second / first, 1.0)) if first > 0.0 else turned
-    bent = ~moving & (d != 0.0)
+    bent = ~moving & (np.abs(d) > apart)
     if bent.any():
         # A component that begins to move here, as the parameter at a fold, is a parabola, which has no scale, until it
         # is none.

@@ -73,9 +73,14 @@ def first_point(
     except EvaluationError as error:
         raise StartError(f"At the start {error}.") from error
     point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
-    if tolerance.measure(point.solve(-residual), point.weights) > 1.0:
-        u, there = _without_rest(solver, point, _correct_start(solver, point, u, unit))
-        point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, there)
+    given, off = u, point.solve(residual)
+    if tolerance.measure(off, point.weights) > 1.0:
+        u = _correct_start(solver, point, u, unit)
+        residual = evaluator.residual(u)
+        off = point.solve(residual)
+    u, residual = _without_rest(solver, point, u, residual, off)
+    if u is not given:
+        point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
     wanted = direction
     if wanted == 0:
         wanted = 1 if target is None or target >= u[-1] else -1
@@ -137,10 +142,10 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
     raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
 
 
-def _without_rest(solver: PathSolver, point: Linearization, u: Array) -> tuple[Array, Array]:
-    """A corrected start and H there, with zeros for what Newton's method left of them: its size is no unit."""
-    residual = solver.evaluator.residual(u)
-    off = point.solve(residual)
+def _without_rest(
+    solver: PathSolver, point: Linearization, u: Array, residual: Array, off: Array
+) -> tuple[Array, Array]:
+    """A start and H there, with zeros for what a solver left of them, no more than it is off: its size is no unit."""
     while (rest := (u != 0.0) & (np.abs(off) > REPLACED * np.abs(u))).any():
         zeroed = np.where(rest, 0.0, u)
         try:
