@@ -100,9 +100,7 @@ class _Part:
     error: float = math.inf
     known: bool = False
 
-    def divided(
-        self, point: Linearization, g: float, t: float, border: Array, expected: float
-    ) -> tuple[_Part, _Part]:
+    def divided(self, point: Linearization, g: float, t: float, border: Array, expected: float) -> tuple[_Part, _Part]:
         """Divide at a point, where the model gave `expected`: a cubic is replaced by two, a series remains."""
         parts, error = [], abs(g - expected)
         for a, b, ga, gb, low, high in (

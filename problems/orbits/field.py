@@ -24,6 +24,7 @@ from continuation.evaluation.products import (
 COMPLEX_STEP = 1e-200
 """Imaginary step; its square underflows (Squire and Trapp 1998)."""
 
+
 @frozen(eq=False)
 class Field:
     """`function` takes x of shape (n,), or (n, k) if `columns`. `own`: given (f_x, f_p). `steps`: of differences, else
