@@ -57,20 +57,8 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
     return least(both), largest(both)
 
 
-def far_apart(problem: MixedLCP) -> bool:
-    """Whether largest and least entry differ by more than `EXTREME`."""
-    low, high = _range(problem)
-    return high * (1.0 / EXTREME) > low
-
-
 def extreme(problem: MixedLCP) -> bool:
     """Whether products of three entries may overflow or vanish."""
-    low, high = _range(problem)
-    return high > EXTREME or low < 1.0 / EXTREME
-
-
-def _range(problem: MixedLCP) -> tuple[float, float]:
-    """The least nonzero and the largest |entry|, or 1."""
     size = np.abs(np.concatenate([problem.A.data if problem.sparse else problem.A.ravel(), problem.q]))
     size = size if np.count_nonzero(size) == size.size else size[size > 0.0]
-    return (least(size), largest(size)) if size.size else (1.0, 1.0)
+    return bool(size.size) and (largest(size) > EXTREME or least(size) < 1.0 / EXTREME)

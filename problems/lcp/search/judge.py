@@ -14,7 +14,7 @@ from problems.lcp.data.fixed import WithoutFixed
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
-from problems.lcp.data.spread import far_apart
+from problems.lcp.data.spread import extreme
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
@@ -79,7 +79,7 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
         scaled, alike = without_far_factor(problem)
         # Balancing may round these: then exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
-        if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
+        if alike and (problem.n > LARGEST_DECIDED or not extreme(plain)):
             return scaled
     return balanced(problem)
 

@@ -252,7 +252,7 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
+    parts = [f"A is {search.facts.said}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
         return " ".join(part for part in (*parts, settled, factored) if part)
