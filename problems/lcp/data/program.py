@@ -78,7 +78,8 @@ class Program:
         unknowns, w : ndarray
             Of `problem`.
         """
-        total: Array = np.bincount(self.row, self.sign * unknowns[self.n :], sum(self.shape))
+        total = np.zeros(sum(self.shape))
+        np.add.at(total, self.row, self.sign * unknowns[self.n :])
         equations, rows = np.split(total, self.shape[:1])
         return {"x": unknowns[: self.n], "equations": equations, "rows": rows, "bounds": w[: self.n]}
 
