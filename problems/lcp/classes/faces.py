@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 import scipy.sparse as sp
 from attrs import frozen
@@ -56,7 +57,8 @@ def piece_point(
              for i, s in enumerate(state) if s and bounds[i][0] != bounds[i][1]]  # fmt: skip
     if solved is not None and any(_times(row, numerators) < side * d for row, side in signs):
         return None
-    found, only = [Fraction(value, d) for value in numerators], True
+    found: list[Fraction] = [Fraction(value, d) for value in numerators]
+    only = True
     if solved is None:
         equations = [(rows[i], sides[i]) for i in inside]
         if not consistent([[*row, side] for row, side in equations]):
@@ -72,12 +74,12 @@ def piece_point(
         moves = [side(one, right) for one in units for side, right in ((at_least, 1), (at_most, -1))]
         only = not any(_free([*cone, move], len(inside)) for move in moves)
     x = [Fraction(value, unit) for value in ends]
-    for i, value in zip(inside, found):
-        x[i] = value / unit
+    for i, part in zip(inside, found):
+        x[i] = part / unit
     return FacePoint(tuple(x), tuple(Fraction(_times(row, x) + c) for row, c in zip(entries, q)), only)
 
 
-def _times(row: IntRow, x: Sequence[int] | Sequence[Fraction]) -> int | Fraction:
+def _times(row: IntRow, x: Sequence[Any]) -> Any:
     return sum(a * v for a, v in zip(row, x))
 
 
