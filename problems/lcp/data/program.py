@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -165,11 +165,9 @@ def from_qp(
     kinds = [np.flatnonzero(kind) for kind in (equal, np.isfinite(high) & ~equal, np.isfinite(low) & ~equal)]
     row, sizes = np.concatenate(kinds), [kind.size for kind in kinds]
     sign = np.repeat([1.0, -1.0, 1.0], sizes)
-    sparse = sp.issparse(P) or sp.issparse(B) or sp.issparse(G)
-    R = (partial(sp.vstack, format="csr") if sparse else np.vstack)([B, G])[row]
-    R = sp.diags_array(sign) @ R if sparse else sign[:, None] * R
+    A = _optimality(P, B, G, row, sign) if row.size else P
     problem = MixedLCP(
-        _optimality(P, R) if row.size else P, np.append(c, -sign * np.where(sign > 0.0, low[row], high[row])),
+        A, np.append(c, -sign * np.where(sign > 0.0, low[row], high[row])),
         np.concatenate([x_low, np.repeat([-np.inf, 0.0], [sizes[0], row.size - sizes[0]])]),
         np.append(x_high, np.full(row.size, np.inf)), primal=n,
     )  # fmt: skip
@@ -230,8 +228,10 @@ def _check_symmetric(P: Matrix) -> None:
         raise ValueError(f"P: expected a symmetric matrix, found P[{i}, {j}] unlike P[{j}, {i}]; give (P + P') / 2")
 
 
-def _optimality(P: Matrix, R: Matrix) -> Matrix:
-    """[[P, -R'], [R, 0]]."""
-    if sp.issparse(R):
-        return sp.csr_array(sp.block_array([[P, -R.T], [R, None]]))
+def _optimality(P: Matrix, B: Matrix, G: Matrix, row: NDArray[np.intp], sign: Array) -> Matrix:
+    """[[P, -R'], [R, 0]] for rows R of [B; G] with signs."""
+    if any(sp.issparse(part) for part in (P, B, G)):
+        R = sp.diags_array(sign) @ sp.vstack([sp.csr_array(B), sp.csr_array(G)], format="csr")[row]
+        return sp.csr_array(sp.block_array([[sp.csr_array(P), -R.T], [R, None]]))
+    R = sign[:, None] * np.vstack([B, G])[row]
     return np.block([[P, -R.T], [R, np.zeros((len(R), len(R)))]])
