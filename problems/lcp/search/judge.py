@@ -109,16 +109,12 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     return _at(found, scaled.x(found.x), tolerance, rounded)
 
 
-def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
-    """The answer with fixed unknowns put back and proofs repeated; `rest` is None if all are fixed."""
+def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solution:
+    """The answer with fixed unknowns put back and proofs repeated."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
     said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
-    if rest is None:
-        certificate = certify(problem, small.x(None))
-        message = f"{Outcome.SOLVED} All unknowns are fixed."
-        return Solution(problem, Outcome.SOLVED, message, certificate, (), -1, Counts(), 0.0)
     rounded = _rounded(rest, tolerance)
     found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
     if found.exhaustion is not None:
