@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
-from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg.lapack import dpotrf
 
 from continuation.arrays import Array, Matrix
@@ -60,7 +59,11 @@ def scaled_band(band: Banded, rows: float | Array, columns: Array, diagonal: Arr
 def _by_rows(band: Banded, values: float | Array) -> Array:
     """A row's value at the place of each entry: ``values[j + r - upper]`` at (r, j)."""
     n = band.shape[0]
-    return sliding_window_view(np.pad(np.broadcast_to(values, n), (band.upper, band.lower)), n)
+    # np.pad takes longer than a small face.
+    padded = np.zeros(n + band.lower + band.upper)
+    padded[band.upper : band.upper + n] = values
+    step = padded.itemsize
+    return np.ndarray((len(band.ab), n), float, padded, strides=(step, step))
 
 
 def normal_band(band: Banded, factor: float, weights: Array, diagonal: Array) -> Banded:
