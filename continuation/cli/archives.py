@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from operator import attrgetter
@@ -102,7 +102,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     if arguments.homotopy is None and arguments.options:
         raise UsageError("KEY=VALUE", "expected no options without --homotopy")
     arguments.grows = arguments.file
-    with complaints("FILE", new="--archive"):
+    with complaints("FILE", new="--archive", names={"homotopy": "FILE"}):
         path = resume(
             arguments.file, homotopy, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
         )
@@ -182,9 +182,13 @@ def _merge(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
+PARAMETERS = {"target": "TARGET", "compression": "--compression"}
+"""Arguments of functions, by the name that begins a complaint, as they are typed."""
+
+
 @contextmanager
-def complaints(file: str, new: str = "FILE") -> Iterator[None]:
-    """Turn archive errors into usage errors about `file`, or about `new` if it exists."""
+def complaints(file: str, new: str = "FILE", names: Mapping[str, str] = PARAMETERS) -> Iterator[None]:
+    """Turn archive errors into usage errors about `file`, or about `new` if it exists, others by `names`."""
     from continuation.archive import ArchiveError, ArchiveExistsError
 
     try:
@@ -193,9 +197,8 @@ def complaints(file: str, new: str = "FILE") -> Iterator[None]:
         raise UsageError(new, error) from error
     except ArchiveError as error:
         raise UsageError(file, error) from error
-    except ValueError as error:
-        named, _, complaint = str(error).partition(": ")
-        option = {"target": "TARGET", "compression": "--compression", "homotopy": file}.get(named)
-        if option is None:
+    except (ValueError, TypeError, OSError) as error:
+        named, _, complaint = str(error).partition(":")
+        if named not in names:
             raise
-        raise UsageError(option, complaint) from error
+        raise UsageError(names[named], complaint) from error

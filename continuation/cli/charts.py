@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from continuation.arguments import plugins
@@ -12,7 +12,7 @@ from continuation.cli.making import importable, unknown
 from continuation.cli.parser import SUCCESS, Subparsers, new_folder
 
 if TYPE_CHECKING:
-    from continuation.chart import Row, Study
+    from continuation.chart import Row
     from continuation.chart.run import Watch
 
 DEFAULT_OUTPUT = "continuation-chart"
@@ -40,6 +40,9 @@ def register(subparsers: Subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, print, write."""
+    from continuation.chart import run as run_study
+    from continuation.chart.run import report, tables
+
     names = list(plugins.available(plugins.STUDIES))
     if arguments.name is None:
         print("\n".join(names))
@@ -49,22 +52,14 @@ def run(arguments: argparse.Namespace) -> int:
         chosen = names if arguments.name == EVERY else [arguments.name]
         makers = [plugins.find(name, plugins.STUDIES) for name in chosen]
     folder = new_folder("--output", arguments.output)
-    for make in makers:
-        for study in make(arguments.size, arguments.compare):
-            _one(study, folder)
+    for study in chain.from_iterable(make(arguments.size, arguments.compare) for make in makers):
+        results = run_study(study, _watch(study.name))
+        for title, table in tables(results).items():
+            print(f"\n{results.title}: {title}\n{table.text()}")
+        for note in study.notes:
+            print(f"\n{results.title}: {note}")
+        print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
     return SUCCESS
-
-
-def _one(study: Study, folder: Path) -> None:
-    from continuation.chart import run as run_study
-    from continuation.chart.run import report, tables
-
-    results = run_study(study, _watch(study.name))
-    for title, table in tables(results).items():
-        print(f"\n{results.title}: {title}\n{table.text()}")
-    for note in study.notes:
-        print(f"\n{results.title}: {note}")
-    print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
 
 
 def _watch(name: str) -> Watch | None:

@@ -83,29 +83,25 @@ def check_picture(option: str, file: str) -> None:
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
-    """Save the axes that `draw` fills, above step sizes."""
+    """Save the axes that `draw` fills, above step sizes if a path is given, whole or not at all."""
     from matplotlib.figure import Figure
 
+    from continuation.archive.atomic import beside, publish
     from continuation.plot import plot_steps
 
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    above, below = figure.subplots(2, 1, height_ratios=(3, 1))
-    draw(above)
-    above.set_title(title, fontsize="medium")
-    plot_steps(path, below)
-    write(figure, Path(file))
-
-
-def write(figure: Any, file: Path) -> None:
-    """Write a figure, whole or not at all."""
-    from continuation.archive.atomic import beside, publish
-
+    figure = Figure(figsize=(6.5, 4.0) if path is None else (7.0, 6.0), layout="constrained")
+    ratios = [1] if path is None else [3, 1]
+    panels = figure.subplots(len(ratios), 1, height_ratios=ratios, squeeze=False)[:, 0]
+    draw(panels[0])
+    figure.suptitle(title, fontsize="medium")
+    if path is not None:
+        plot_steps(path, panels[1])
     picture = BytesIO()
-    figure.savefig(picture, format=file.suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
     # A full disk must not destroy the old file.
-    with beside(file) as part:
+    with beside(Path(file)) as part:
         part.write_bytes(picture.getvalue())
-        publish(part, file, replace=True)
+        publish(part, Path(file), replace=True)
 
 
 def _draw(axes: Any, path: Any, arguments: argparse.Namespace) -> None:

@@ -105,6 +105,8 @@ def _entry(name: str, described: plugins.Description, plugin: plugins.Plugin | N
 
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation.archive import PathLog
+    from continuation.budget import Budget
+    from continuation.events import TurningPoint
     from continuation.step import presets
     from continuation.tracing import trace
 
@@ -115,15 +117,21 @@ def _trace(arguments: argparse.Namespace) -> int:
         check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"):
         log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
-    preset = getattr(presets, arguments.preset.upper())
+    limits = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
+    options: dict[str, Any] = {"budget": Budget(**{name: value for name, value in limits.items() if value is not None})}
+    if arguments.target is not None:
+        options["target"] = None if math.isnan(arguments.target) else arguments.target
+    if arguments.turning_points is not None:
+        options["events"] = [TurningPoint(terminal=arguments.turning_points)]
     with refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
             homotopy,
             archive=log,
             progress=arguments.progress,
-            preset=preset,
+            preset=getattr(presets, arguments.preset.upper()),
             tolerance=arguments.tolerance,
-            **_course(arguments),
+            direction=arguments.direction or 0,
+            **options,
         )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
@@ -138,21 +146,6 @@ def _trace(arguments: argparse.Namespace) -> int:
 
         save(arguments.plot, path, f"{title}: {path.status.name}", lambda axes: plot_components(path, axes))
     return SUCCESS if path.success else FAILURE
-
-
-def _course(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Options of `continuation.trace` for direction and end."""
-    from continuation.budget import Budget
-    from continuation.events import TurningPoint
-
-    target, turns = arguments.target, arguments.turning_points
-    limits = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
-    return {
-        "direction": arguments.direction or 0,
-        "budget": Budget(**{name: value for name, value in limits.items() if value is not None}),
-        **({} if target is None else {"target": None if math.isnan(target) else target}),
-        **({} if turns is None else {"events": [TurningPoint(terminal=turns)]}),
-    }
 
 
 def _as_text(title: str, path: Path) -> Iterator[str]:

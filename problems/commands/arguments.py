@@ -1,31 +1,14 @@
-"""Shared by commands: file formats, and library errors as argument errors."""
+"""Shared by commands: files of problems."""
 
 from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from continuation.cli import UsageError
-
 PROBLEM_FORMATS = ".npz, .json, .mat or .h5 with A and q, or A alone as .mtx, .npy, .txt, .csv"
-
-
-@contextmanager
-def named(arguments: Mapping[str, str]) -> Iterator[None]:
-    """Turn a library error about a parameter into a UsageError about the argument.
-
-    `arguments`: parameter name, which begins the message, to typed argument. Other errors pass.
-    """
-    try:
-        yield
-    except (ValueError, TypeError, OSError) as error:
-        parameter, _, complaint = str(error).partition(":")
-        if parameter not in arguments:
-            raise
-        raise UsageError(arguments[parameter], complaint) from error
 
 
 _BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"\x89HDF": ".h5", b"%%MatrixMarket": ".mtx", b"MATLAB": ".mat"}

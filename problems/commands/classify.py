@@ -5,20 +5,20 @@ from __future__ import annotations
 import argparse
 
 from continuation.cli import SUCCESS, Subparsers
-from continuation.cli.parser import positive
-from problems.commands.arguments import PROBLEM_FORMATS, named
+from continuation.cli.archives import complaints
+from continuation.cli.parser import add_command, argument, positive
+from problems.commands.arguments import PROBLEM_FORMATS
 
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    parser = subparsers.add_parser(
-        "classify",
+    add_command(
+        subparsers, run, "classify",
+        argument("file", metavar="FILE", help=f"A, alone or beside q: {PROBLEM_FORMATS}"),
+        argument("--width", type=positive, default=110, help="longest evidence in characters (default: 110)"),
         help="the matrix classes of A, each with its evidence",
         description="Every class test on A in exact arithmetic; floats are taken as the rationals that they are.",
-    )
-    parser.add_argument("file", metavar="FILE", help=f"A, alone or beside q: {PROBLEM_FORMATS}")
-    parser.add_argument("--width", type=positive, default=110, help="longest evidence in characters (default: 110)")
-    parser.set_defaults(run=run)
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.lcp.classes import classify, table
     from problems.lcp.data.files import read_matrix
 
-    with named({"path": "FILE", "A": "FILE"}):
+    with complaints("FILE", names={"path": "FILE", "A": "FILE"}):
         A = read_matrix(arguments.file)
         classification = classify(A)
     print(table(classification, arguments.width))

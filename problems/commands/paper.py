@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
-from continuation.cli.parser import new_folder
+from continuation.cli.parser import add_command, argument, new_folder
 
 if TYPE_CHECKING:
     from problems.paper_report import Row
@@ -18,17 +18,15 @@ DEFAULT_OUTPUT = "continuation-paper"
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    parser = subparsers.add_parser(
-        "paper",
+    add_command(
+        subparsers, run, "paper",
+        argument("--output", metavar="DIR", default=DEFAULT_OUTPUT,
+                 help=f"where the files go (default: {DEFAULT_OUTPUT})"),
+        argument("--methods", metavar="all|NAME,...", help="compare other methods too, in a second table"),
         help="the ten examples of Dutta, Das and Jana: a table, an archive, figures",
         description="Trace the KKT path of each example from the paper's start, with the paper's own algorithm beside "
         "it. Exit status: 0 if all ten end at a solution.",
-    )
-    parser.add_argument(
-        "--output", metavar="DIR", default=DEFAULT_OUTPUT, help=f"where the files go (default: {DEFAULT_OUTPUT})"
-    )
-    parser.add_argument("--methods", metavar="all|NAME,...", help="compare other methods too, in a second table")
-    parser.set_defaults(run=run)
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from continuation.arguments.plugins import SCENES
 from continuation.cli import FAILURE, SUCCESS, UsageError
-from continuation.cli.figures import check_picture, write
+from continuation.cli.figures import check_picture, save
 from continuation.cli.making import homotopy_of, refused
 from continuation.cli.parser import paint
 
@@ -47,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print("\n".join(_as_text(title, scene, order(problem), well, answer)))
     if arguments.plot is not None and well:
-        _draw(scene, solution, title, Path(arguments.plot))
+        save(arguments.plot, None, title, lambda axes: scene.draw(solution, axes))
     return SUCCESS if well else FAILURE
 
 
@@ -63,12 +62,3 @@ def _as_text(title: str, scene: Any, unknowns: int, well: bool, answer: Any) -> 
         lines.append(f"{name:{wide}}  {shown or 'none'} {scene.units.get(name, '')}".rstrip())
     return lines
 
-
-def _draw(scene: Any, solution: Any, title: str, file: Path) -> None:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.5, 4.0), layout="constrained")
-    axes = figure.subplots()
-    scene.draw(solution, axes)
-    figure.suptitle(title, fontsize="medium")
-    write(figure, file)

@@ -10,9 +10,9 @@ from typing import Any
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.archives import complaints
-from continuation.cli.parser import above_zero, paint, parsed
+from continuation.cli.parser import above_zero, add_command, argument, paint, parsed
 from problems.commands import scene
-from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
+from problems.commands.arguments import PROBLEM_FORMATS, file_of
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
@@ -26,36 +26,29 @@ _ARGUMENTS = {
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    parser = subparsers.add_parser(
-        "solve",
+    formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
+    add_command(
+        subparsers, run, "solve",
+        argument("file", metavar="FILE", help=formats),
+        argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {scene.WORD}: which, its parameters"),
+        argument("--q", metavar="FILE", help="q in a file of its own"),
+        argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto"),
+        argument("--x0", metavar="FILE", help="the start, x0 > 0; what A x0 + q lacks is relaxed away"),
+        argument("--path", action="store_true", help="trace a path even where none is needed"),
+        argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist"),
+        argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path"),
+        argument("--tolerance", metavar="EPS", type=_tolerance, default=1e-8, help="default: 1e-8"),
+        argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto"),
+        argument("--seed", metavar="N", type=_counted, default=0, help="of the random starts; default: 0"),
+        argument("--budget-seconds", "--seconds", dest="seconds", metavar="S", type=above_zero,
+                 help="wall-clock time; default: work that takes about a minute"),
+        argument("--progress", action="store_true", help="show the progress on stderr"),
+        argument("--json", action="store_true", help="print everything as one JSON object"),
         help="solve a linear complementarity problem, with bounds or not, or a quadratic program",
         description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0; with bounds in the file, x between them. "
         "Or minimise 1/2 x'P x + c'x under the constraints in the file. With the word scene for the file: a scene of "
         "`continuation plugins` by its name, and its answer. Exit status: 0 solved, 1 not, 2 bad input.",
-    )
-    formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
-    parser.add_argument("file", metavar="FILE", help=formats)
-    parser.add_argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {scene.WORD}: which, its parameters")
-    parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
-    parser.add_argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto")
-    parser.add_argument("--x0", metavar="FILE", help="the start, x0 > 0; what A x0 + q lacks is relaxed away")
-    parser.add_argument("--path", action="store_true", help="trace a path even where none is needed")
-    parser.add_argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist")
-    parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path")
-    parser.add_argument("--tolerance", metavar="EPS", type=_tolerance, default=1e-8, help="default: 1e-8")
-    parser.add_argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto")
-    parser.add_argument("--seed", metavar="N", type=_counted, default=0, help="of the random starts; default: 0")
-    parser.add_argument(
-        "--budget-seconds",
-        "--seconds",
-        dest="seconds",
-        metavar="S",
-        type=above_zero,
-        help="wall-clock time; default: work that takes about a minute",
-    )
-    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
-    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
-    parser.set_defaults(run=run)
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
-    with complaints("--archive", new="--archive"), named(_ARGUMENTS), file_of(arguments.file) as file:
+    with complaints("--archive", new="--archive", names=_ARGUMENTS), file_of(arguments.file) as file:
         program = read_program(file) if arguments.q is None else None
         problem = read_problem(file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
@@ -104,12 +97,14 @@ def _counted(text: str) -> int:
 
 
 def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
+    named = {name: _numbers(values) for name, values in solution.named.items()}
+    program = {} if solution.program is None else {"objective": _number(solution.objective), "named": named}
     return {
         "file": arguments.file,
         "homotopy": arguments.homotopy,
         "outcome": solution.outcome.name,
         "message": solution.message,
-        **({} if solution.program is None else _program_as_json(solution)),
+        **program,
         "x": _numbers(solution.x),
         "w": _numbers(solution.w),
         "residual": _number(solution.residual),
@@ -118,11 +113,6 @@ def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
         "counts": solution.counts.as_dict(),
         "seconds": solution.seconds,
     }
-
-
-def _program_as_json(solution: Any) -> dict[str, Any]:
-    named = {name: _numbers(values) for name, values in solution.named.items()}
-    return {"objective": _number(solution.objective), "named": named}
 
 
 def _numbers(vector: Array | None) -> list[float | None] | None:

@@ -107,8 +107,6 @@ def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array,
             return M + M.T, q, none, np.zeros(0), M, -q, found.lower, found.upper
         return M, q, none, np.zeros(0), none, np.zeros(0), found.lower, found.upper
     n, A = problem.n, sp.csr_array(found.A)
-    if problem.both.size:
-        raise ArithmeticError("rows with two sides are not handed on")
     R, equal = A[n:, :n], np.isneginf(found.lower[n:])
     free, signed = np.flatnonzero(equal), np.flatnonzero(~equal)
     b = -found.q[n:]

@@ -23,7 +23,6 @@ from continuation.counts import Counts
 from continuation.linear.factoring import Factoring
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
-from problems.lcp.data.ranges import ranges
 
 PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
 """The first penalty, as published: times the ratio of the objective to the violations. The penalty, and the inverse of
@@ -36,9 +35,9 @@ STEPS_PER_CHANGE = 100
 
 @frozen(eq=False)
 class Saddle:
-    """A program from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
+    """A program from its optimality conditions: P, c, rows R x + d >= 0, some = 0, x in [lower, upper].
 
-    `multiplier`, `activity`: each row's indices (-1: none).
+    `free`: Whether a row is an equation, whose multiplier has no bounds.
     """
 
     problem: MixedLCP
@@ -46,41 +45,18 @@ class Saddle:
     R: Matrix
     c: Array
     d: Array
-    low: Array
-    high: Array
-    multiplier: NDArray[np.intp]
-    activity: NDArray[np.intp]
+    free: NDArray[np.bool_]
 
     @classmethod
     def of(cls, problem: MixedLCP) -> Saddle | None:
         """The program in the first `problem.primal` unknowns, or None."""
         n, A = problem.primal, problem.A
-        pairs = ranges(problem)
-        activity, down = np.full(problem.n, -1, dtype=np.intp), np.zeros(problem.n)
-        rows = np.arange(n, problem.n)
-        if pairs is not None:
-            # A slack without cost only looks like an activity.
-            own = (pairs.activity >= n) & (pairs.multiplier >= n)
-            at, mu = pairs.activity[own], pairs.multiplier[own]
-            activity[mu], down[mu] = at, pairs.down[own]
-            rows = np.setdiff1d(rows, at)
-            if not ((pairs.up[own] > 0.0) & (pairs.down[own] < 0.0)).all() or problem.q[at].any():
-                return None
-        activity, down = activity[rows], down[rows]
-        P, R = A[:n][:, :n], A[rows][:, :n]
-        if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, rows]) or A[rows][:, rows].sum() != 0.0:
+        P, R, low, high = A[:n][:, :n], A[n:][:, :n], problem.lower[n:], problem.upper[n:]
+        if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, n:]) or abs(A[n:][:, n:]).sum() != 0.0:
             return None
-        # mu >= 0: the row is at its lower side; mu free: an equation.
-        ends = problem.lower[rows], problem.upper[rows]
-        positive, negative = (ends[0] == 0.0) & np.isinf(ends[1]), np.isinf(ends[0]) & (ends[1] == 0.0)
-        free = np.isinf(ends[0]) & np.isinf(ends[1])
-        if not (positive | negative | free).all():
-            return None
-        low, high = np.where(negative, -np.inf, 0.0), np.where(positive, np.inf, 0.0)
-        two = activity >= 0
-        low[two] = -down[two] * problem.lower[activity[two]]
-        high[two] = -down[two] * problem.upper[activity[two]]
-        return cls(problem, P, R, problem.q[:n], problem.q[rows], low, high, rows, activity)
+        free = np.isinf(low)
+        known = np.isinf(high).all() and (free | (low == 0.0)).all()
+        return cls(problem, P, R, problem.q[:n], problem.q[n:], free) if known else None
 
 
 def _same(one: Matrix, other: Matrix) -> bool:
@@ -103,13 +79,13 @@ class Penalised:
 
     def pulled(self, y: Array) -> Array:
         """The gradient of y'`values`."""
-        m = self.saddle.multiplier.size
+        m = self.saddle.d.size
         back: Array = self.saddle.R.T @ y[:m] + y[m:]
         return back
 
     def hessian(self, active: NDArray[np.bool_]) -> Matrix:
         """The Hessian on the piece that violates these rows and bounds."""
-        R, m = self.saddle.R, self.saddle.multiplier.size
+        R, m = self.saddle.R, self.saddle.d.size
         part, diagonal = R[np.flatnonzero(active[:m])], self.sigma * active[m:] + 1.0 / self.weight
         penalised = self.sigma * (part.T @ part)
         if sp.issparse(R):
@@ -142,8 +118,9 @@ def guesses(
 
     `below`: exceeds what makes P positive semidefinite; 0 if P is. `counts`: adds up factorisations.
     """
-    problem, n, m = saddle.problem, x.size, saddle.multiplier.size
-    low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])
+    problem, n, m = saddle.problem, x.size, saddle.d.size
+    low = np.append(np.zeros(m), problem.lower[:n])
+    high = np.append(np.where(saddle.free, 0.0, np.inf), problem.upper[:n])
     one = Penalised(saddle, low, high, 0.0, 1.0)
     y, violated = np.zeros(m + n), one.values(x) - np.clip(one.values(x), low, high)
     objective = abs(float(0.5 * x @ (saddle.P @ x) + saddle.c @ x))
@@ -156,7 +133,10 @@ def guesses(
         x, t = found
         nearest = np.clip(t, low, high)
         y = sigma * (t - nearest)
-        yield _state(saddle, t, low, high), _point(saddle, x, y, nearest)
+        state = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
+        # A violated row holds; the multiplier of another is zero.
+        state[:m] = np.where(saddle.free | (state[:m] == LOWER), BETWEEN, LOWER)
+        yield np.roll(state, n), problem.clipped(np.append(x, -y[:m]))
         centre, accurate, sigma = x, accurate / PENALTY_GROWTH, min(PENALTY_GROWTH * sigma, MOST_PENALTY)
         weight = weight if below > 0.0 else min(PENALTY_GROWTH * weight, MOST_PENALTY)
 
@@ -191,26 +171,3 @@ def _minimised(
         x = x + one.step(t, dv, slope, float(d @ (saddle.P @ d)) + float(d @ d) / one.weight) * d
     return x, one.values(x) + y / one.sigma
 
-
-def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
-    problem, n, m = saddle.problem, saddle.c.size, saddle.multiplier.size
-    side = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
-    state: State = np.full(problem.n, BETWEEN)
-    state[:n] = side[m:]
-    signed = np.isfinite(problem.lower[saddle.multiplier]) | np.isfinite(problem.upper[saddle.multiplier])
-    at_zero = np.where(np.isfinite(problem.lower[saddle.multiplier]), LOWER, UPPER)
-    state[saddle.multiplier] = np.where(signed & (side[:m] == BETWEEN), at_zero, BETWEEN)
-    two = saddle.activity >= 0
-    state[saddle.activity[two]] = side[:m][two]
-    return state
-
-
-def _point(saddle: Saddle, x: Array, y: Array, nearest: Array) -> Array:
-    problem, n, m = saddle.problem, x.size, saddle.multiplier.size
-    point = np.zeros(problem.n)
-    point[:n], point[saddle.multiplier] = x, -y[:m]
-    two = saddle.activity >= 0
-    if two.any():
-        at, mu = saddle.activity[two], saddle.multiplier[two]
-        point[at] = nearest[:m][two] / -np.asarray(problem.A[mu, at]).ravel()
-    return problem.clipped(point)

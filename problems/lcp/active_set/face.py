@@ -21,7 +21,7 @@ from continuation.linear.refine import Factored
 from continuation.linear.silence import without_warnings
 from continuation.linear.superlu import SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
-from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.matrix_structure import Structure, scaled_band
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w
 
@@ -59,7 +59,7 @@ class Face:
     active: Mask
     inverse: Callable[[Array], Array]
     exact: bool
-    shift: float | Array
+    shift: float
     q: Array
 
     @without_warnings(over="ignore", invalid="ignore")
@@ -81,7 +81,7 @@ class Face:
     def w(self, x: Array) -> Array:
         """``A x + shift x + q``, shape (n,)."""
         w: Array = self.problem.A.dot(x) + self.q
-        return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
+        return w + self.shift * x if self.shift else w
 
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
@@ -188,26 +188,20 @@ class Faces:
     def _made(self, state: State, shift: float, centre: Array | None, regular: bool, near: Array | None) -> Face | None:
         problem = self.problem
         active = state == BETWEEN
-        ranges = None if problem.standard else self.structure.ranges
-        inside = active.nonzero()[0] if ranges is None else ranges.inside(active)
-        shifts = ranges.shifts(shift) if ranges is not None and shift else shift
-        q = problem.q if centre is None else problem.q - shifts * centre
+        inside = active.nonzero()[0]
+        q = problem.q if centre is None else problem.q - shift * centre
         inverse: Callable[[Array], Array] | None
         if inside.size == 0:
             inverse, exact = _same, True
-        elif problem.sparse and ranges is None and self.structure.band is not None:
+        elif problem.sparse and self.structure.band is not None:
             inverse, exact = self._banded(active, shift), True
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
             factor, exact = self._sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
-            if not (exact or regular or shift or problem.sparse) and ranges is None:
-                factor = self._nearest(state, inside, near) or factor
+            if problem.standard and not (exact or regular or shift or problem.sparse):
+                factor = self._nearest(inside, near) or factor
             inverse = None if factor is None else factor.solve
-        if inverse is None:
-            return None
-        if ranges is not None:
-            inverse = ranges.completed(active, inside, inverse, shift)
-        return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
+        return None if inverse is None else Face(problem, state, active, inverse, exact or centre is not None, shift, q)
 
     def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
         # This indexing is quickest and gives LAPACK's order.
@@ -228,8 +222,8 @@ class Faces:
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
         return (_cholesky if definite else _lu)(block), False
 
-    def _nearest(self, state: State, inside: NDArray[np.intp], near: Array | None) -> Factored | None:
-        """The shortest corrections from a point, if they solve the equations of the singular face.
+    def _nearest(self, inside: NDArray[np.intp], near: Array | None) -> Factored | None:
+        """An LCP's shortest corrections from a point, if they solve the equations of the singular face.
 
         Otherwise the solution of the shifted equations grows along a null vector, whose signs tell which x_i leave. For
         semidefinite A the shift loses nothing and is quicker.
@@ -237,7 +231,7 @@ class Faces:
         problem = self.problem
         if self.structure.symmetric and self.structure.semidefinite:
             return None
-        x = problem.at(state)
+        x = np.zeros(problem.n)
         if near is not None:
             x[inside] = near[inside]
         rows = problem.A[inside]
@@ -265,7 +259,7 @@ class Faces:
         """Solve in the whole band, with unit rows off the face: no index moves."""
         assert self.structure.band is not None
         kept = active.astype(float)
-        factor = factor_band(self.structure.band.scaled(kept, kept, np.where(active, shift, 1.0)))
+        factor = factor_band(scaled_band(self.structure.band, kept, kept, np.where(active, shift, 1.0)))
         if factor is None:
             return None
 

@@ -39,8 +39,7 @@ def suitable(structure: Structure) -> bool:
     problem = structure.problem
     if not problem.sparse or problem.n <= COARSEST_ORDER or (problem.A.diagonal() <= 0.0).any():
         return False
-    few = int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
-    return few and (problem.standard or structure.ranges is None)
+    return int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
 
 
 def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:

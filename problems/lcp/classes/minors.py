@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from attrs import evolve
 
+from problems.lcp.classes.cones import is_s
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
@@ -150,33 +151,19 @@ def is_nondegenerate(matrix: ExactMatrix) -> Membership:
 def is_z(matrix: ExactMatrix) -> Membership:
     """Z: off-diagonal entries nonpositive."""
     cited = CPS + ", section 3.11"
-    for i, row in enumerate(matrix.entries):
-        for j, entry in enumerate(row):
-            if i != j and entry > 0:
-                value = Fraction(entry, matrix.scale)
-                sentence = f"the off-diagonal entry {(i, j)} is {value}, positive"
-                return Membership("Z", False, Evidence(sentence, (i, j), value), cited)
-    return Membership("Z", True, Evidence("no off-diagonal entry is positive"), cited)
+    pairs = ((i, j) for i, row in enumerate(matrix.entries) for j, entry in enumerate(row) if i != j and entry > 0)
+    if (found := next(pairs, None)) is None:
+        return Membership("Z", True, Evidence("no off-diagonal entry is positive"), cited)
+    value = Fraction(matrix.entries[found[0]][found[1]], matrix.scale)
+    return Membership("Z", False, Evidence(f"the off-diagonal entry {found} is {value}, positive", found, value), cited)
 
 
 @matrix_class
 def is_k(matrix: ExactMatrix) -> Membership:
-    """K: Z and P (nonsingular M-matrix), tested by leading principal minors."""
-    cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
+    """K: Z and P (nonsingular M-matrix); a Z-matrix is P exactly if it is S."""
     z = is_z(matrix)
-    if not z.holds:
-        return Membership("K", False, z.certificate, cited)
-    work = [list(row) for row in matrix.entries]
-    previous = 1
-    for order in range(1, matrix.n + 1):
-        top, rest = work[0], work[1:]
-        if top[0] <= 0:
-            value, alpha = Fraction(top[0], matrix.scale**order), tuple(range(order))
-            sentence = f"the leading principal minor of order {order} is {value}, not positive"
-            return Membership("K", False, Evidence(sentence, alpha, value), cited)
-        work = [[(top[0] * v - row[0] * t) // previous for v, t in zip(row[1:], top[1:])] for row in rest]
-        previous = top[0]
-    return Membership("K", True, Evidence("Z, and all leading principal minors are positive"), cited)
+    part = is_s(matrix) if z.holds else z
+    return Membership("K", part.holds, part.certificate, CPS + ", section 3.11 (Fiedler and Pták 1962)")
 
 
 @matrix_class

@@ -33,8 +33,8 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     return bounds
 
 
-def ordered_bounds(lower: Array, upper: Array) -> None:
-    """Raise ValueError, naming the first index, where lower > upper."""
-    if (lower > upper).any():
-        i = int(np.argmax(lower > upper))
-        raise ValueError(f"lower: expected at most upper, found lower[{i}] = {lower[i]} > upper[{i}] = {upper[i]}")
+def ordered_bounds(low: Array, high: Array, name: str = "lower", other: str = "upper") -> None:
+    """Raise ValueError, naming the first index, where low > high."""
+    if (low > high).any():
+        i = int(np.argmax(low > high))
+        raise ValueError(f"{name}: expected at most {other}, found {name}[{i}] = {low[i]} > {other}[{i}] = {high[i]}")

@@ -14,26 +14,23 @@ from problems.lcp.data.problem import MixedLCP
 class WithoutFixed:
     """A problem without its fixed unknowns.
 
-    `problem`: The rest, with q rounded, or None. `kept`: Its indices.
+    `problem`: The rest, with q rounded, perhaps without unknowns. `kept`: Its indices.
     """
 
     whole: MixedLCP
-    problem: MixedLCP | None
+    problem: MixedLCP
     kept: NDArray[np.intp]
 
-    def x(self, rest: Array | None) -> Array:
+    def x(self, rest: Array) -> Array:
         """All unknowns, from those of the rest."""
         x = self.whole.lower.copy()
-        if rest is not None:
-            x[self.kept] = rest
+        x[self.kept] = rest
         return x
 
 
 def without_fixed(problem: MixedLCP) -> WithoutFixed:
     """Take the fixed unknowns into q."""
     kept = np.flatnonzero(~problem.fixed)
-    if not kept.size:
-        return WithoutFixed(problem, None, kept)
     q = problem.w(np.where(problem.fixed, problem.lower, 0.0))[kept]
     block = problem.A[kept][:, kept]
     primal = int(np.searchsorted(kept, problem.primal))

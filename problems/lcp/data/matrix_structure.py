@@ -12,7 +12,6 @@ from scipy.linalg.lapack import dpotrf
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
-from problems.lcp.data.ranges import Ranges, ranges
 
 WIDEST_BAND = 16
 """Most diagonals, gaps included, of a banded matrix."""
@@ -50,43 +49,38 @@ def semidefinite(symmetric: Array) -> bool:
     return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
 
-@frozen(eq=False)
-class Band:
-    """The diagonals of a banded matrix: ``rows[lower + k, i] = A[i, i + k]`` for -lower <= k <= upper, else 0."""
+def scaled_band(band: Banded, rows: float | Array, columns: Array, diagonal: Array) -> Banded:
+    """``diag(rows) A diag(columns) + diag(diagonal)`` of a banded A."""
+    ab = band.ab * columns * _by_rows(band, rows)
+    ab[band.upper] += diagonal
+    return Banded(ab, band.lower, band.upper)
 
-    rows: Array
-    lower: int
-    upper: int
 
-    def scaled(self, factor: float | Array, columns: Array, diagonal: Array) -> Banded:
-        """``factor A diag(columns) + diag(diagonal)``; one factor, or one a row."""
-        n = self.rows.shape[1]
-        rows = factor * self.rows
-        ab = np.zeros((self.lower + self.upper + 1, n))
-        for k in range(-self.lower, self.upper + 1):
-            begin, end = max(0, -k), min(n, n - k)
-            ab[self.upper - k, begin + k : end + k] = rows[self.lower + k, begin:end] * columns[begin + k : end + k]
-        ab[self.upper] += diagonal
-        return Banded(ab, self.lower, self.upper)
+def _by_rows(band: Banded, values: float | Array) -> Array:
+    """A row's value at the place of each entry: ``values[j + r - upper]`` at (r, j)."""
+    n = band.shape[0]
+    # np.pad takes longer than a small face.
+    padded = np.zeros(n + band.lower + band.upper)
+    padded[band.upper : band.upper + n] = values
+    step = padded.itemsize
+    return np.ndarray((len(band.ab), n), float, padded, strides=(step, step))
 
-    def normal(self, factor: float, weights: Array, diagonal: Array) -> Banded:
-        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, half bandwidth lower + upper."""
-        n, width = self.rows.shape[1], self.lower + self.upper
-        ab = np.zeros((2 * width + 1, n))
-        offsets = range(-self.lower, self.upper + 1)
-        for k in offsets:
-            weighted = weights * self.rows[self.lower + k]
-            for m in offsets:
-                begin, end = max(0, -k, -m), min(n, n - k, n - m)
-                if begin < end:
-                    ab[width + k - m, begin + m : end + m] += (weighted * self.rows[self.lower + m])[begin:end]
-            begin, end = max(0, -k), min(n, n - k)
-            entries = self.rows[self.lower + k, begin:end]
-            ab[width - k, begin + k : end + k] += entries
-            ab[width + k, begin:end] += entries
-        ab *= factor
-        ab[width] += diagonal
-        return Banded(ab, width, width)
+
+def normal_band(band: Banded, factor: float, weights: Array, diagonal: Array) -> Banded:
+    """``factor (A + A' + A' diag(weights) A) + diag(diagonal)`` of a banded A, half bandwidth lower + upper."""
+    ab, n, width = band.ab, band.shape[0], band.lower + band.upper
+    weighted = ab * _by_rows(band, weights)
+    whole = np.zeros((2 * width + 1, n))
+    for k in range(min(width + 1, n)):
+        # The entries (j + k, j).
+        found = (weighted[k:, : n - k] * ab[: width + 1 - k, k:]).sum(axis=0)
+        if k <= band.lower:
+            found += ab[band.upper + k, : n - k]
+        if k <= band.upper:
+            found += ab[band.upper - k, k:]
+        whole[width + k, : n - k] = whole[width - k, k:] = factor * found
+    whole[width] += diagonal
+    return Banded(whole, width, width)
 
 
 @frozen(eq=False, slots=False)
@@ -116,23 +110,18 @@ class Structure:
         return sp.csr_array(self.problem.A + self.transpose) if self.problem.sparse else self.problem.A + self.transpose
 
     @cached_property
-    def band(self) -> Band | None:
-        """The diagonals of a sparse matrix with few near the main one, else None."""
+    def band(self) -> Banded | None:
+        """A sparse matrix with few diagonals near the main one as these, else None."""
         if not self.problem.sparse:
             return None
         entries = self.problem.A.tocoo()
-        offsets = entries.col.astype(np.int64) - entries.row
-        lower, upper = int(max(0, -offsets.min(initial=0))), int(max(0, offsets.max(initial=0)))
+        below = entries.row.astype(np.int64) - entries.col
+        lower, upper = int(max(0, below.max(initial=0))), int(max(0, -below.min(initial=0)))
         if lower + upper + 1 > min(WIDEST_BAND, self.n):
             return None
-        rows = np.zeros((lower + upper + 1, self.n))
-        rows[lower + offsets, entries.row] = entries.data
-        return Band(rows, lower, upper)
-
-    @cached_property
-    def ranges(self) -> Ranges | None:
-        """The two-sided rows, if any."""
-        return ranges(self.problem)
+        ab = np.zeros((lower + upper + 1, self.n))
+        ab[upper + below, entries.col] = entries.data
+        return Banded(ab, lower, upper)
 
     @cached_property
     def squarable(self) -> bool:
@@ -163,18 +152,56 @@ class Structure:
         if (diagonal < 0.0).any():
             return False
         if self.problem.sparse:
-            few = int((np.diff(self.symmetrized.indptr) > 0).sum()) <= LARGEST_SYMMETRIC_PART
-            if few and not self.problem.standard:
-                return self.definite_where_it_has_entries()
-            return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
+            S = self.symmetrized
+            S.eliminate_zeros()
+            # A program has entries in the rows of P alone.
+            rows = np.flatnonzero(np.diff(S.indptr) > 0)
+            if rows.size <= LARGEST_SYMMETRIC_PART and not self.problem.standard:
+                return not rows.size or semidefinite(S[rows][:, rows].toarray())
+            return bool((2.0 * diagonal >= np.asarray(abs(S).sum(axis=1))).all())
         return semidefinite(self.symmetrized)
 
-    def definite_where_it_has_entries(self) -> bool:
-        """Whether a sparse A + A' is semidefinite, by its nonempty rows (a program's P)."""
-        S = self.symmetrized
-        S.eliminate_zeros()
-        rows = np.flatnonzero(np.diff(S.indptr) > 0)
-        return not rows.size or semidefinite(S[rows][:, rows].toarray())
+    @cached_property
+    def negative_diagonal(self) -> bool:
+        """Whether some a_ii < 0: not copositive, Wang's path mostly diverges."""
+        return bool(self.problem.A.diagonal().min() < 0.0)
+
+    @property
+    def z_matrix(self) -> bool:
+        """Whether off-diagonal entries are <= 0.
+
+        Then active sets from x = 0 reach the least feasible element within n steps, or fail.
+        """
+        return self._off_diagonal[1] <= 0.0
+
+    @property
+    def nonnegative(self) -> bool:
+        """Whether all entries are >= 0: copositive, as for bimatrix games."""
+        return self._off_diagonal[0] >= 0.0 and not self.negative_diagonal
+
+    @cached_property
+    def _off_diagonal(self) -> tuple[float, float]:
+        A, n = self.problem.A, self.n
+        if self.problem.sparse:
+            entries = A.tocoo()
+            values = entries.data[entries.row != entries.col]
+        else:
+            # Drops the diagonal.
+            values = A.ravel()[1:].reshape(n - 1, n + 1)[:, :-1] if n > 1 else np.zeros(0)
+        return float(values.min(initial=0.0)), float(values.max(initial=0.0))
+
+    @property
+    def said(self) -> str:
+        """What was found of A, in words."""
+        parts = ["symmetric" if self.symmetric else "not symmetric"]
+        if "semidefinite" in vars(self):
+            parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
+        named = {
+            "Z": self.z_matrix,
+            "nonnegative": self.nonnegative,
+            "a negative diagonal entry": self.negative_diagonal,
+        }
+        return ", ".join([*parts, *(name for name, holds in named.items() if holds)])
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
         """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A.
@@ -189,7 +216,7 @@ class Structure:
         ndarray, sparse array or Banded
         """
         if self.band is not None:
-            return self.band.scaled(factor, columns, diagonal)
+            return scaled_band(self.band, factor, columns, diagonal)
         if self.problem.sparse:
             return sp.csc_array(self.problem.A @ sp.diags_array(factor * columns) + sp.diags_array(diagonal))
         dense = self.problem.A * (factor * columns)
@@ -209,7 +236,7 @@ class Structure:
         ndarray, sparse array or Banded
         """
         if self.band is not None:
-            return self.band.normal(factor, weights, diagonal)
+            return normal_band(self.band, factor, weights, diagonal)
         A = self.problem.A
         if self.problem.sparse:
             square = self.transpose @ (sp.diags_array(weights) @ A)

@@ -22,8 +22,8 @@ from problems.options import check_finite, finite_vector, real_array, sound_spar
 class Program:
     """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
 
-    Made by `from_qp` or `from_lp`. The unknowns of `problem` are x, free multipliers of equations, nonnegative ones of
-    one-sided rows, free ones of two-sided rows, and these rows' values G x::
+    Made by `from_qp` or `from_lp`. An equation is a row with equal sides; a row with two sides is two rows. The
+    unknowns of `problem` are x, and one multiplier a side::
 
         P x + c = A_eq' equations + G' rows + bounds
 
@@ -34,23 +34,20 @@ class Program:
     c : Array of shape (n,)
     problem : MixedLCP
         The optimality conditions.
-    equations : tuple of int
-        Begin and end of their multipliers.
-    equal, above, below, both : ndarray of int
-        Rows of G that are equations, or have an upper side, a lower side, or both, in the order of multipliers.
-    rows : int
-        The number of rows of G.
+    shape : tuple of int
+        The numbers of rows of A_eq and of G.
+    row : ndarray of int
+        The row of [A_eq; G] of each multiplier: equations, upper sides, lower sides.
+    sign : ndarray
+        -1 for upper sides, else 1.
     """
 
     P: Matrix
     c: Array
     problem: MixedLCP
-    equations: tuple[int, int]
-    equal: NDArray[np.intp]
-    above: NDArray[np.intp]
-    below: NDArray[np.intp]
-    both: NDArray[np.intp]
-    rows: int
+    shape: tuple[int, int]
+    row: NDArray[np.intp]
+    sign: Array
 
     @property
     def n(self) -> int:
@@ -81,13 +78,10 @@ class Program:
         unknowns, w : ndarray
             Of `problem`.
         """
-        begin, end = self.equations
-        kinds = self.equal, self.above, self.below, self.both
-        multipliers = unknowns[end : end + sum(kind.size for kind in kinds)]
-        rows = np.zeros(self.rows)
-        rows[np.concatenate(kinds)] = multipliers
-        rows[self.above] *= -1.0
-        return {"x": unknowns[: self.n], "equations": unknowns[begin:end], "rows": rows, "bounds": w[: self.n]}
+        total = np.zeros(sum(self.shape))
+        np.add.at(total, self.row, self.sign * unknowns[self.n :])
+        equations, rows = np.split(total, self.shape[:1])
+        return {"x": unknowns[: self.n], "equations": equations, "rows": rows, "bounds": w[: self.n]}
 
     def reading(self, multiplier: Array) -> str:
         """The meaning of a proof that the conditions have no solution.
@@ -163,29 +157,23 @@ def from_qp(
     b = np.zeros(0) if b_eq is None else finite_vector("b_eq", b_eq, B.shape[0])
     m = G.shape[0]
     high, low = bound_vector("h", h, m, np.inf), bound_vector("rows_lower", rows_lower, m, -np.inf)
-    if (low > high).any():
-        i = int(np.argmax(low > high))
-        raise ValueError(f"rows_lower: expected at most h, found rows_lower[{i}] = {low[i]} > h[{i}] = {high[i]}")
+    ordered_bounds(low, high, "rows_lower", "h")
     x_low, x_high = bound_vector("lower", lower, n, -np.inf), bound_vector("upper", upper, n, np.inf)
     ordered_bounds(x_low, x_high)
-    has_low, has_high = low > -np.inf, high < np.inf
-    equal, both = np.flatnonzero(low == high), np.flatnonzero(has_low & has_high & (low != high))
-    above, below = np.flatnonzero(has_high & ~has_low), np.flatnonzero(has_low & ~has_high)
-    parts = [
-        (B, -b), (G[equal], -low[equal]), (-1 * G[above], high[above]), (G[below], -low[below]),
-        (G[both], np.zeros(both.size)),
-    ]  # fmt: skip
-    free, signed = B.shape[0] + equal.size, above.size + below.size
-    A = _optimality(P, [part for part, _ in parts if part.shape[0]], both.size)
-    q = np.concatenate([c, *(constant for _, constant in parts), np.zeros(both.size)])
-    none = np.full(both.size, np.inf)
+    low, high = np.append(b, low), np.append(b, high)
+    equal = low == high
+    kinds = [np.flatnonzero(kind) for kind in (equal, np.isfinite(high) & ~equal, np.isfinite(low) & ~equal)]
+    row, sizes = np.concatenate(kinds), [kind.size for kind in kinds]
+    sign = np.repeat([1.0, -1.0, 1.0], sizes)
+    A = _optimality(P, B, G, row, sign) if row.size else P
     problem = MixedLCP(
-        A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed), -none, low[both]]),
-        np.concatenate([x_high, np.full(free + signed, np.inf), none, high[both]]), primal=n,
+        A, np.append(c, -sign * np.where(sign > 0.0, low[row], high[row])),
+        np.concatenate([x_low, np.repeat([-np.inf, 0.0], [sizes[0], row.size - sizes[0]])]),
+        np.append(x_high, np.full(row.size, np.inf)), primal=n,
     )  # fmt: skip
-    if problem.n == n:
+    if not row.size:
         problem.known["symmetric"] = True
-    return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, both, m)
+    return Program(P, c, problem, (B.shape[0], m), row, sign)
 
 
 def from_lp(
@@ -240,16 +228,10 @@ def _check_symmetric(P: Matrix) -> None:
         raise ValueError(f"P: expected a symmetric matrix, found P[{i}, {j}] unlike P[{j}, {i}]; give (P + P') / 2")
 
 
-def _optimality(P: Matrix, rows: list[Matrix], both: int) -> Matrix:
-    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for stacked rows R; E marks two-sided rows."""
-    if not rows:
-        return P
-    if sp.issparse(P) or any(sp.issparse(part) for part in rows):
-        R = sp.vstack([sp.csr_array(part) for part in rows], format="csr")
-        E = sp.eye_array(R.shape[0], format="csr")[:, R.shape[0] - both :]
-        whole = sp.block_array([[sp.csr_array(P), -R.T, None], [R, None, -E], [None, E.T, sp.csr_array((both, both))]])
-        return sp.csr_array(whole)
-    R = np.vstack(rows)
-    k, n = R.shape
-    E, none = np.eye(k)[:, k - both :], np.zeros((n, both))
-    return np.block([[P, -R.T, none], [R, np.zeros((k, k)), -E], [none.T, E.T, np.zeros((both, both))]])
+def _optimality(P: Matrix, B: Matrix, G: Matrix, row: NDArray[np.intp], sign: Array) -> Matrix:
+    """[[P, -R'], [R, 0]] for rows R of [B; G] with signs."""
+    if any(sp.issparse(part) for part in (P, B, G)):
+        R = sp.diags_array(sign) @ sp.vstack([sp.csr_array(B), sp.csr_array(G)], format="csr")[row]
+        return sp.csr_array(sp.block_array([[sp.csr_array(P), -R.T], [R, None]]))
+    R = sign[:, None] * np.vstack([B, G])[row]
+    return np.block([[P, -R.T], [R, np.zeros((len(R), len(R)))]])

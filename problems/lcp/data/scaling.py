@@ -31,9 +31,6 @@ error changes no scaled entry."""
 LOGARITHM_TOLERANCE = 1e-6
 """Tolerance of the logarithms: far below the 1/2 where rounding decides."""
 
-LEAST_EXPONENT = -1021
-"""Base-2 exponent of the smallest normal floats: below, scaling may round."""
-
 HALVES = 1e-3
 """Fractions this near to 1/2 round up: above the noise, below differences that matter."""
 
@@ -49,7 +46,8 @@ LEVEL = 0.02
 class Scaled:
     """LCP(R q, R A C), R = diag(2^rows), C = diag(2^columns); its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,). `exact`: Whether no entry was rounded (entries below 1e-290 of others may be).
+    `rows`, `columns`, of shape (n,). `exact`: Whether scaling back gives the same entries (others 1e290 times as large
+    round them).
     """
 
     problem: MixedLCP
@@ -84,19 +82,23 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
         return None
-    A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
-    scaled: MixedLCP
-    if problem.standard:
-        scaled = LCP(A, q, primal=problem.primal)
-    else:
-        bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
-        ends = zip(bounds, (problem.lower, problem.upper))
-        if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
-            return None  # it would change the problem
-        scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
+    given = () if problem.standard else (problem.lower, problem.upper)
+    bounds = [_times(end, -columns) for end in given]
+    if not all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, given)):
+        return None  # it would change the problem
+    scaled = _by(problem, rows, columns, _times(problem.q, rows), *bounds)
     # A balanced problem needs no other units.
-    scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
-    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
+    scaled.problem.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
+    return scaled
+
+
+def _by(problem: MixedLCP, rows: Exponents, columns: Exponents, q: Array, *bounds: Array) -> Scaled:
+    A = _scaled(problem.A, rows, columns)
+    back = _scaled(A, -rows, -columns)
+    same = np.array_equal(back.data, problem.A.data) if problem.sparse else np.array_equal(back, problem.A)
+    exact = same and np.array_equal(_times(q, -rows), problem.q)
+    scaled = MixedLCP(A, q, *bounds, primal=problem.primal) if bounds else LCP(A, q, primal=problem.primal)
+    return Scaled(scaled, rows, columns, exact)
 
 
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
@@ -111,10 +113,8 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
     q = _times(problem.q, rows)
-    if not np.isfinite(q).all() or not _smallest(problem, rows, columns) > LEAST_EXPONENT:
-        return None, False
-    scaled = LCP(_scaled(problem.A, rows, columns), q, primal=problem.primal)
-    return Scaled(scaled, rows, columns, exact=True), True
+    scaled = _by(problem, rows, columns, q) if np.isfinite(q).all() else None
+    return (scaled, True) if scaled is not None and scaled.exact else (None, False)
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
@@ -261,12 +261,3 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
     exponents = np.repeat(rows, np.diff(stored.indptr)) + columns[stored.indices]
     return sp.csr_array((_times(stored.data, exponents), stored.indices, stored.indptr), shape=A.shape)
 
-
-def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
-    if sp.issparse(problem.A):
-        entries = sp.coo_array(problem.A)
-        values, exponents = entries.data, rows[entries.row] + columns[entries.col]
-    else:
-        values, exponents = problem.A, rows[:, None] + columns
-    parts = ((values, exponents), (problem.q, rows))
-    return min(int((np.frexp(part)[1] + powers)[part != 0.0].min(initial=0)) for part, powers in parts)

@@ -19,10 +19,6 @@ UNIT_SPREAD = 256.0
 1.3 ms); arches of five stones have 50."""
 
 
-ARRAY_ORDER = 100
-"""Up to this order forming |A| is cheaper; at n = 300 it takes most of the time."""
-
-
 def level(problem: MixedLCP) -> bool:
     """Whether largest entries are within `LEVELLED` of each other and of 1."""
     least, most = largest_entries(problem)
@@ -48,29 +44,15 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
-    elif problem.n <= ARRAY_ORDER:
-        sizes = np.abs(problem.A)
-        both = np.concatenate([np.maximum.reduce(sizes, 0), np.maximum.reduce(sizes, 1)])
     else:
+        # |A| would take most of the time of a large matrix.
         A = problem.A
         both = np.concatenate([np.maximum(np.maximum.reduce(A, k), -np.minimum.reduce(A, k)) for k in (0, 1)])
     return least(both), largest(both)
 
 
-def far_apart(problem: MixedLCP) -> bool:
-    """Whether largest and least entry differ by more than `EXTREME`."""
-    low, high = _range(problem)
-    return high * (1.0 / EXTREME) > low
-
-
 def extreme(problem: MixedLCP) -> bool:
     """Whether products of three entries may overflow or vanish."""
-    low, high = _range(problem)
-    return high > EXTREME or low < 1.0 / EXTREME
-
-
-def _range(problem: MixedLCP) -> tuple[float, float]:
-    """The least nonzero and the largest |entry|, or 1."""
     size = np.abs(np.concatenate([problem.A.data if problem.sparse else problem.A.ravel(), problem.q]))
     size = size if np.count_nonzero(size) == size.size else size[size > 0.0]
-    return (least(size), largest(size)) if size.size else (1.0, 1.0)
+    return bool(size.size) and (largest(size) > EXTREME or least(size) < 1.0 / EXTREME)

@@ -20,7 +20,7 @@ all faces (0.1 s for ten).
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
-    """All rays, including that of arrival; the edges if they fill a cone.
+    """All rays, including that of arrival; the edges if they fill a cone; one ray of many switches, by Lemke's method.
 
     Parameters
     ----------
@@ -29,6 +29,9 @@ def rays(S: Array, r: Array) -> list[Ray]:
         The path arrived with e' = 1 and u' = r <= 0.
     """
     m = r.size
+    if m > LARGEST_LISTED:
+        grown = _a_solution(S, r)
+        return [] if grown is None else [Ray(grown, 1.0)]
     # Comparable units make zero recognisable.
     unit = np.maximum(np.abs(r), np.abs(S).max(axis=1))
     unit = np.where(unit > 0.0, unit, 1.0)
@@ -67,14 +70,8 @@ def _edges(signs: Array) -> list[Array]:
     return [c for c in candidates if (signs @ c >= -ZERO_COMPONENT).all()]
 
 
-def a_solution(S: Array, r: Array) -> Array | None:
-    """A complementary v' >= 0 with ``S v' + r >= 0`` by Lemke's method, or None.
-
-    Parameters
-    ----------
-    S : ndarray, shape (m, m)
-    r : ndarray, shape (m,)
-    """
+def _a_solution(S: Array, r: Array) -> Array | None:
+    """A complementary v' >= 0 with ``S v' + r >= 0``, or None."""
     path = covering(LCP(S, r), np.ones(r.size))
     if path is None or path.run(PIVOTS_PER_SWITCH * r.size) is not Ended.REACHED:
         return None

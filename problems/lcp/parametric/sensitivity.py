@@ -12,7 +12,7 @@ from scipy.linalg.lapack import dgetrf
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
+from problems.lcp.parametric.corner import rays
 from problems.options import finite_vector, real_array
 
 BIACTIVE = 1e-10
@@ -159,17 +159,12 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
 
 
 def _only(S: Array, r: Array) -> Array:
-    if r.size <= LARGEST_LISTED:
-        found = [ray.grown / ray.driven for ray in rays(S, r) if ray.driven > 0.0]
-        if len(found) != 1:
-            raise NotDifferentiableError(
-                f"dq, dA: expected a direction in which the solution moves one way, found {len(found) or 'no'} ways"
-            )
-        return found[0]
-    grown = a_solution(S, r)
-    if grown is None:
-        raise NotDifferentiableError("dq, dA: expected a direction in which the solution moves, found none")
-    return grown
+    found = [ray.grown / ray.driven for ray in rays(S, r) if ray.driven > 0.0]
+    if len(found) != 1:
+        raise NotDifferentiableError(
+            f"dq, dA: expected a direction in which the solution moves one way, found {len(found) or 'no'} ways"
+        )
+    return found[0]
 
 
 def _square(name: str, value: Any, n: int) -> Array:

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.linalg import qr
 
 from continuation.arrays import Array
-from continuation.kinks.pivots import ZERO_COMPONENT, Ray
+from continuation.kinks.pivots import ZERO_COMPONENT
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
+from problems.lcp.parametric.corner import rays
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.parametric.ties import aim, small
 from problems.lcp.parametric.walk import FLAT, Walk
@@ -58,11 +58,7 @@ def from_solution(
     walk.find_tied()
     if walk.tied.size:
         S, r, along = small(walk)
-        if walk.tied.size > LARGEST_LISTED:
-            grown = a_solution(S, r)
-            found = [] if grown is None else [Ray(grown, 1.0)]
-        else:
-            found = rays(S, r)
+        found = rays(S, r)
         directions = [along @ np.append(one.grown, one.driven) for one in found]
         wanted = [_agreement(one, ray, sign) for one in directions]
         if not wanted or max(wanted) <= 0.0:

@@ -6,7 +6,7 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array, largest, least
 from continuation.linear.silence import without_warnings
@@ -34,6 +34,9 @@ MOST_MADE_UP = 2.0**-50
 """2^-1074 times the largest float bounds the effect of a subnormal x_j on a row."""
 
 
+_quiet = without_warnings(over="ignore", under="ignore", invalid="ignore")
+
+
 @frozen(eq=False)
 class Certificate:
     """How well x solves the problem, in twice the working precision.
@@ -42,18 +45,13 @@ class Certificate:
 
     Attributes
     ----------
+    problem : MixedLCP
     x, w : Array of shape (n,)
         w = A x + q, correctly rounded unless 32 digits cancel.
-    residual : float
-        max_i |min(x_i, w_i)|, in the problem's units.
     relative_residual : float
         The residual relative to the terms (|A| |x| + |q|)_i of each row, independent of units. For x >= 0 with exact
         zeros it is the componentwise backward error: the least eps such that x solves an LCP(q + dq, A + dA) with |dq|
         <= eps |q|, |dA| <= eps |A|.
-    negative_x, negative_w : float
-        Largest violation of bounds by x, and of signs by w.
-    complementarity : float
-        max_i |x_i w_i|; with bounds, the distance from the bound replaces x_i.
     drowned : float
         Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`), zero up to 1e-10.
         It is large if x runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
@@ -64,14 +62,39 @@ class Certificate:
     coefficients and right-hand sides, Numer. Math. 6, 1964.
     """
 
+    problem: MixedLCP = field(repr=False)
     x: Array
     w: Array
-    residual: float
     relative_residual: float
-    negative_x: float
-    negative_w: float
-    complementarity: float
     drowned: float
+
+    @property
+    @_quiet
+    def residual(self) -> float:
+        """max_i |min(x_i, w_i)|, in the problem's units."""
+        return float(np.abs(self.problem.natural_map(self.x, self.w)).max(initial=0.0))
+
+    @property
+    @_quiet
+    def negative_x(self) -> float:
+        """Largest violation of bounds by x."""
+        return float(np.maximum(self.problem.lower - self.x, self.x - self.problem.upper).max(initial=0.0))
+
+    @property
+    @_quiet
+    def negative_w(self) -> float:
+        """Largest violation of signs by w."""
+        below, above = np.isinf(self.problem.upper), np.isinf(self.problem.lower)
+        return float(np.maximum(np.where(below, -self.w, 0.0), np.where(above, self.w, 0.0)).max(initial=0.0))
+
+    @property
+    @_quiet
+    def complementarity(self) -> float:
+        """max_i |x_i w_i|; with bounds, the distance from the bound replaces x_i."""
+        above, below = self.x - self.problem.lower, self.problem.upper - self.x
+        distance = np.where(np.isinf(below) | ((self.w > 0.0) & np.isfinite(above)), above, below)
+        products = np.where((distance == 0.0) | (self.w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * self.w))
+        return float(products.max(initial=0.0))
 
     def solves(self, tolerance: float = 1e-10) -> bool:
         """Whether the relative residual and `drowned` are small.
@@ -109,7 +132,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     require_problem(problem)
     if problem.n == 0:
         nothing = np.zeros(0)
-        return Certificate(nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Certificate(problem, nothing, nothing, 0.0, 0.0)
     x = finite_vector("x", x, problem.n)
     if zero > 0.0:
         near = zero * natural_units(problem)[0]
@@ -120,7 +143,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     return certified(problem, x)
 
 
-@without_warnings(over="ignore", under="ignore", invalid="ignore")
+@_quiet
 def certified(problem: MixedLCP, x: Array) -> Certificate:
     """The certificate of a finite, immutable x.
 
@@ -130,32 +153,21 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     x : Array of shape (n,)
     """
     terms = row_terms(problem, x)
-    if problem.standard and not np.count_nonzero(terms.exponents):
-        return _of_lcp(problem, terms, x)
-    w = np.ldexp(terms.w, terms.exponents)
-    relative = terms.w / np.where(terms.size > 0.0, terms.size, 1.0)
-    above, below = x - problem.lower, problem.upper - x
-    distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
-    products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
-    forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
+    relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
+    above = x - problem.lower
     shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
+        below = problem.upper - x
         relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
-    return Certificate(
-        x=x,
-        w=w,
-        residual=float(np.abs(problem.natural_map(x, w)).max()),
-        relative_residual=largest(_counted(problem, terms, x, off)),
-        negative_x=float(np.maximum(np.maximum(-above, -below), 0.0).max()),
-        negative_w=float(np.maximum(forbidden, 0.0).max()),
-        complementarity=float(products.max()),
-        drowned=drowned_part(problem, terms, off),
-    )
+    w, worst = np.ldexp(terms.w, terms.exponents), largest(_counted(problem, terms, x, off))
+    return Certificate(problem, x, w, worst, drowned_part(problem, terms, off))
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """Defects, zero in rows where rounding of subnormal x_j explains them."""
+    if largest(off) <= ROUND_OFF:
+        return off
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
@@ -167,30 +179,6 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
     made_up = asked & (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
     return np.where(made_up, 0.0, off)
-
-
-def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
-    """A faster `certified` for unscaled LCPs."""
-    w, low = terms.w, least(x)
-    relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
-    complementarity = largest(x * w)
-    asked = relative > ROUND_OFF
-    asked &= x != 0.0
-    if low < 0.0:
-        asked |= x < 0.0
-    shares = shares_in_rows(terms, x, x, asked) if np.count_nonzero(asked) else np.where(x > 0.0, np.inf, 0.0)
-    off = np.abs(np.minimum(shares, relative))
-    worst = largest(off)
-    return Certificate(
-        x=x,
-        w=w,
-        residual=largest(np.minimum(x, w)),
-        relative_residual=worst if worst <= ROUND_OFF else largest(_counted(problem, terms, x, off)),
-        negative_x=max(-low, 0.0),
-        negative_w=max(-least(w), 0.0),
-        complementarity=complementarity,
-        drowned=drowned_part(problem, terms, off),
-    )
 
 
 @frozen(eq=False)

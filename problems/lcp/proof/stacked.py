@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
@@ -17,21 +16,9 @@ POINT_CORRECTIONS = 2
 """Corrections with w in twice the working precision, as in `active_set.finish`."""
 
 
-@frozen(eq=False)
-class Judged:
-    """Points of a stack of LCPs, and which are solutions.
-
-    `x` of shape (k, n). `solves`, of shape (k,): False decides nothing. `residual`, `relative_residual`, of shape (k,):
-    As in `Certificate`.
-    """
-
-    x: Array
-    solves: NDArray[np.bool_]
-    residual: Array
-    relative_residual: Array
-
-
-def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> Judged:
+def judged(
+    A: Array, q: Array, active: NDArray[np.bool_], tolerance: float
+) -> tuple[NDArray[np.bool_], Array, Array, Array]:
     """Points of faces, corrected in twice the working precision.
 
     Parameters
@@ -40,6 +27,14 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     q : ndarray, shape (k, n)
     active : ndarray of bool, shape (k, n)
     tolerance : float
+
+    Returns
+    -------
+    solves : ndarray of bool, shape (k,)
+        False decides nothing.
+    x : ndarray, shape (k, n)
+    residual, relative_residual : ndarray, shape (k,)
+        As in `Certificate`.
     """
     n = q.shape[1]
     inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
@@ -60,7 +55,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     if n <= LARGEST_DECIDED:
         exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
         solves &= exact | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
-    return Judged(x, solves, np.abs(np.minimum(x, w)).max(axis=1), worst)
+    return solves, x, np.abs(np.minimum(x, w)).max(axis=1), worst
 
 
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:

@@ -19,6 +19,7 @@ from problems.lcp.classes.exact import indices
 from problems.lcp.classes.faces import face_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.pivoting.starts import unit_of
 from problems.lcp.proof.groups import Excluding, Fixed, Group, Groups
 from problems.lcp.reference.enumeration import Exhaustion
 
@@ -43,7 +44,7 @@ class Node:
 class Branching:
     """The tree of one problem.
 
-    `problem`: dense, with entries of about 1. `accepts`: whether the caller accepts the face with these w_i = 0.
+    `problem`: dense. `accepts`: whether the caller accepts the face with these w_i = 0.
     `accepted`: whether it did.
     """
 
@@ -62,7 +63,8 @@ class Branching:
         self._excluding = Excluding(problem)
         # Different costs leave few pivots tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
-        table = np.vstack([np.column_stack([problem.A, problem.q]), np.append(costs, 0.0)])
+        rows = np.column_stack([problem.A, problem.q]) / unit_of(problem)
+        table = np.vstack([rows, np.append(costs, 0.0)])
         root = Dictionary(table, np.arange(n, 2 * n + 1), np.arange(n))
         self._waiting.append(Node(np.zeros(2 * n + 1, dtype=bool), root))
 

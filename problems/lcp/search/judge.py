@@ -14,7 +14,7 @@ from problems.lcp.data.fixed import WithoutFixed
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
-from problems.lcp.data.spread import far_apart
+from problems.lcp.data.spread import extreme
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
@@ -79,7 +79,7 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
         scaled, alike = without_far_factor(problem)
         # Balancing may round these: then exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
-        if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
+        if alike and (problem.n > LARGEST_DECIDED or not extreme(plain)):
             return scaled
     return balanced(problem)
 
@@ -109,16 +109,12 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     return _at(found, scaled.x(found.x), tolerance, rounded)
 
 
-def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
-    """The answer with fixed unknowns put back and proofs repeated; `rest` is None if all are fixed."""
+def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solution:
+    """The answer with fixed unknowns put back and proofs repeated."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
     said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
-    if rest is None:
-        certificate = certify(problem, small.x(None))
-        message = f"{Outcome.SOLVED} All unknowns are fixed."
-        return Solution(problem, Outcome.SOLVED, message, certificate, (), -1, Counts(), 0.0)
     rounded = _rounded(rest, tolerance)
     found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
     if found.exhaustion is not None:

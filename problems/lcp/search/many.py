@@ -140,10 +140,10 @@ def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> 
     left = np.ones(k, dtype=bool)
 
     def settle(which: NDArray[np.intp], active: NDArray[np.bool_]) -> None:
-        found = judged(A[which], q[which], active, tolerance)
-        good = which[found.solves]
-        x[good], residual[good] = found.x[found.solves], found.residual[found.solves]
-        relative[good], outcome[good], left[good] = found.relative_residual[found.solves], Outcome.SOLVED, False
+        solves, *found = judged(A[which], q[which], active, tolerance)
+        good = which[solves]
+        x[good], residual[good], relative[good] = (values[solves] for values in found)
+        outcome[good], left[good] = Outcome.SOLVED, False
 
     with np.errstate(all="ignore"):
         if 0 < n <= LARGEST_TOGETHER:

@@ -17,7 +17,6 @@ from continuation.counts import Counts
 from continuation.path import Path
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import AT_END, Policy
-from problems.lcp.data.matrix_facts import MatrixFacts
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.homotopies import Structure
@@ -126,9 +125,9 @@ class Search:
         return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
-    def facts(self) -> MatrixFacts:
-        """Facts of the matrix."""
-        return MatrixFacts(self.structure)
+    def facts(self) -> Structure:
+        """The matrix, if a method asked what it is: then the message says so."""
+        return self.structure
 
     @property
     def solved(self) -> bool:

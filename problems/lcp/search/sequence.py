@@ -16,7 +16,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
-from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled
+from problems.lcp.data.scaling import Scaled
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering, unit_of
 from problems.lcp.search.judge import answer, units_of_its_own, unscaled
@@ -101,7 +101,7 @@ class Solver:
         scaled, current = self._scaled, problem
         if scaled is not None:
             moved = np.ldexp(problem.q, scaled.rows)
-            if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= LEAST_EXPONENT).any():
+            if not np.array_equal(np.ldexp(moved, -scaled.rows), problem.q):
                 return None
             assert isinstance(scaled.problem, LCP)
             current = scaled.problem.with_q(moved)

@@ -147,8 +147,7 @@ def solve(
         left = _given(locals())
         left["x0"] = None if start is None else start[small.kept]
         left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
-        rest = None if small.problem is None else solve(small.problem, homotopy, **left, **options)
-        return with_fixed(small, rest, tolerance)
+        return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
     scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
@@ -252,7 +251,7 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
+    parts = [f"A is {search.facts.said}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
         return " ".join(part for part in (*parts, settled, factored) if part)

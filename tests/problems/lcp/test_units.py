@@ -159,6 +159,14 @@ def test_solutions_that_no_float_holds_are_not_claimed():
         assert solution.relative_residual >= 1.0
 
 
+@pytest.mark.parametrize("k", [93, 143, 193])
+def test_groups_of_faces_are_excluded_whatever_the_common_factor(k):
+    r = np.random.default_rng([77, k])
+    A, q = campaign.z_matrix(int(r.integers(13, 25)), r)
+    for factor in (1.0, 2.0**-100, 2.0**100):
+        assert lcp.solve(lcp.LCP(factor * A, factor * q)).outcome is Outcome.UNSOLVABLE
+
+
 def test_entries_too_far_apart_for_floats_are_decided_exactly():
     wild = 10.0 ** np.random.default_rng(6).uniform(-300, 300, (5, 4))
     small = lcp.LCP(wild[:4], -wild[4])

@@ -1,4 +1,4 @@
-"""Rows with two sides: one unknown of each is in what is factored, and all that is solved is the same."""
+"""Rows with two sides: one multiplier of each is in what is factored."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from scipy.optimize import linprog
 
 from continuation.testing import check_homotopy
 from problems import lcp
-from problems.lcp.data.ranges import ranges
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 from .util import orders
@@ -40,7 +39,7 @@ def random_program(rng, n, m, sparse=False, rank=None, width=0.5):
 def test_active_sets_factor_what_is_of_order_n_and_the_rows(monkeypatch, name, sparse):
     rng, n, m = np.random.default_rng(3), 30, 20
     program = random_program(rng, n, m, sparse, rank=15)
-    assert program.both.size == 13
+    assert program.row.size == m + 13
     found = orders(monkeypatch)
     quick = lcp.solve(program)
     assert quick.success
@@ -91,20 +90,3 @@ def test_solves_and_signs_agree_with_the_full_system(name, sparse):
 def test_every_check_of_a_plug_in_passes_with_a_row_of_two_sides():
     problem = lcp.from_qp(np.diag([2.0, 1.0]), [-3.0, 1.0], [[1.0, 2.0]], [1.0], rows_lower=-1, lower=0).problem
     check_homotopy(HOMOTOPIES["wang"].make(problem, None))
-
-
-INDEFINITE = [[2.0, -1.0, 0.0], [1.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
-TWICE = [[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
-
-
-@pytest.mark.parametrize(
-    ("A", "lower", "upper"),
-    [
-        (INDEFINITE, [0, 0, 0], [INF, INF, 1]),
-        ([*INDEFINITE[:2], [0.0, 1.0, 1.0]], [0, -INF, 0], [INF, INF, 1]),
-        (TWICE, [-INF, 0, 0], [INF, 1, 1]),
-    ],
-)
-def test_what_only_looks_like_a_row_with_two_sides_is_none(A, lower, upper):
-    assert ranges(lcp.MixedLCP(A, np.zeros(3), lower, upper)) is None
-    assert ranges(lcp.MixedLCP(INDEFINITE, np.ones(3), [0, -INF, 0], [INF, INF, 1])).activity.tolist() == [2]

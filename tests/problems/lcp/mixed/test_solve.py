@@ -1,7 +1,10 @@
 """Problems with bounds against enumeration, closed forms and other software; what is claimed is true."""
 
+import itertools
+
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from hypothesis import given, settings
 
 from continuation.archive import open_archive
@@ -85,16 +88,23 @@ def test_the_nearest_point_of_a_box_is_clipped_exactly():
     np.testing.assert_array_equal(solution.x, np.clip(c, -1 / 3, 1 / 7))
 
 
-def test_multipliers_by_name_satisfy_the_optimality_conditions():
+@pytest.mark.parametrize("stored", list(itertools.product((np.asarray, sp.csr_array), repeat=3)))
+@pytest.mark.parametrize(("equations", "rows"), [(4, 8), (4, 0), (0, 0)])
+def test_multipliers_by_name_satisfy_the_optimality_conditions(stored, equations, rows):
     rng, n = np.random.default_rng(6), 25
-    M, G, B = rng.standard_normal((12, n)), rng.standard_normal((8, n)), rng.standard_normal((4, n))
+    M, G, B = rng.standard_normal((12, n)), rng.standard_normal((rows, n)), rng.standard_normal((equations, n))
     P, c, inside = M.T @ M, rng.standard_normal(n), rng.random(n)
-    h = G @ inside + rng.random(8)
-    solution = lcp.solve(lcp.from_qp(P, c, G, h, B, B @ inside, 0, 1, rows_lower=h - 1.5))
-    x, equations, rows, bounds = (solution.named[name] for name in ("x", "equations", "rows", "bounds"))
-    np.testing.assert_allclose(P @ x + c, B.T @ equations + G.T @ rows + bounds, atol=1e-12)
-    np.testing.assert_allclose(np.minimum(rows, 0.0) * (h - G @ x), 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.maximum(rows, 0.0) * (G @ x - h + 1.5), 0.0, atol=1e-12)
+    h = G @ inside + rng.random(rows)
+    (as_P, as_G, as_B), constraints = stored, {}
+    if rows:
+        constraints |= {"G": as_G(G), "h": h, "rows_lower": h - 1.5}
+    if equations:
+        constraints |= {"A_eq": as_B(B), "b_eq": B @ inside}
+    solution = lcp.solve(lcp.from_qp(as_P(P), c, **constraints, lower=0, upper=1))
+    x, of_B, of_G, bounds = (solution.named[name] for name in ("x", "equations", "rows", "bounds"))
+    np.testing.assert_allclose(P @ x + c, B.T @ of_B + G.T @ of_G + bounds, atol=1e-12)
+    np.testing.assert_allclose(np.minimum(of_G, 0.0) * (h - G @ x), 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.maximum(of_G, 0.0) * (G @ x - h + 1.5), 0.0, atol=1e-12)
     assert (bounds[x == 0.0] >= 0.0).all()
     assert (bounds[x == 1.0] <= 0.0).all()
     assert solution.objective == pytest.approx(0.5 * x @ P @ x + c @ x)

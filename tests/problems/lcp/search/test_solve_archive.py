@@ -57,7 +57,7 @@ def test_an_archive_without_a_path_holds_the_solution_as_the_end_of_the_kkt_path
 
 def test_the_archive_of_a_problem_beyond_floats_holds_the_answer(tmp_path):
     file = tmp_path / "run.h5"
-    problem = lcp.LCP([[1.0, 1e-320], [2.0, 1.0]], [-1.0, 1.0])
+    problem = lcp.LCP([[1e-300, 1e300], [1e300, 1e-300]], [-1.0, 1.0])
     solution = lcp.solve(problem, archive=file)
     assert "too far apart for floats" in solution.message
     with open_archive(file) as archive:
