@@ -7,7 +7,6 @@ from fractions import Fraction
 
 from attrs import evolve
 
-from problems.lcp.classes.cones import is_s
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
@@ -160,10 +159,22 @@ def is_z(matrix: ExactMatrix) -> Membership:
 
 @matrix_class
 def is_k(matrix: ExactMatrix) -> Membership:
-    """K: Z and P (nonsingular M-matrix); a Z-matrix is P exactly if it is S."""
+    """K: Z and P (nonsingular M-matrix), tested by leading principal minors."""
+    cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
     z = is_z(matrix)
-    part = is_s(matrix) if z.holds else z
-    return Membership("K", part.holds, part.certificate, CPS + ", section 3.11 (Fiedler and Pták 1962)")
+    if not z.holds:
+        return Membership("K", False, z.certificate, cited)
+    work = [list(row) for row in matrix.entries]
+    previous = 1
+    for order in range(1, matrix.n + 1):
+        top, rest = work[0], work[1:]
+        if top[0] <= 0:
+            value, alpha = Fraction(top[0], matrix.scale**order), tuple(range(order))
+            sentence = f"the leading principal minor of order {order} is {value}, not positive"
+            return Membership("K", False, Evidence(sentence, alpha, value), cited)
+        work = [[(top[0] * v - row[0] * t) // previous for v, t in zip(row[1:], top[1:])] for row in rest]
+        previous = top[0]
+    return Membership("K", True, Evidence("Z, and all leading principal minors are positive"), cited)
 
 
 @matrix_class
