@@ -89,10 +89,12 @@ def leading(shares: Sequence[Share]) -> Contents:
     return found
 
 
-def append(store: Store, share: Share) -> None:
-    """Append a share in one commit."""
+def append(store: Store, share: Share, file: str) -> int:
+    """Append a finished path of `file` in one commit; its number in the store."""
     number = store.committed.paths
-    store.commit(_numbered(share, store, share.rows, number) if share.size else None, _rows(share, store, number))
+    own = sourced(share, store.identifier, file, first=number)
+    store.commit(_numbered(own, store, own.rows, number) if own.size else None, _rows(own, store, number))
+    return number
 
 
 def write_copy(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
@@ -40,36 +40,46 @@ class Archive(Sequence[Path]):
     Attributes
     ----------
     file : pathlib.Path
-    attributes : dict
-        Origin of the file.
-    points, paths : Table
+    points : Table
         Columns by name: ``archive.points["arclength"]``.
-    event_names : tuple of str
-        Names that ``event_index`` numbers.
     closed_by_writer : bool
         False if the file is growing or its writer was killed.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
-        self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
-        self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
+        self.file, self.layout, self.closed_by_writer = contents.file, contents.layout, contents.closed_by_writer
         # A snapshot; the growing file may be opened anew.
-        self.points, self.paths = contents.table("point"), contents.table("path")
-        try:
-            lengths = self.paths["n_points"]
-            self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
-            rest = self.points.size - int(self._first_rows[-1])
-            if rest < 0 or np.any(lengths < 0):
-                raise contents.damaged(ValueError("its paths have other lengths than its points"))
-            if rest:
-                self._first_rows = np.append(self._first_rows, self.points.size)
-                row = row_columns(self._unended(rest), self.layout)
-                columns = {name: np.concatenate((self.paths[name], row[name])) for name in self.paths}
-                self.paths = Table.of(self.layout, "path", columns)
-        except BaseException:
-            self.close()
-            raise
+        self.points, self._ended = contents.table("point"), contents.table("path")
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Origin of the file."""
+        return self.contents.attributes
+
+    @property
+    def event_names(self) -> tuple[str, ...]:
+        """Names that ``event_index`` numbers."""
+        return self.contents.event_names
+
+    @cached_property
+    def paths(self) -> Table:
+        """The path table; an unfinished path is its last row."""
+        if len(self) == self._ended.size:
+            return self._ended
+        rest = self.rows(self._ended.size)
+        row = row_columns(self._unended(rest.stop - rest.start), self.layout)
+        columns = {name: np.concatenate((self._ended[name], row[name])) for name in self._ended}
+        return Table.of(self.layout, "path", columns)
+
+    @cached_property
+    def _first_rows(self) -> Any:
+        """The first row of each path, and the number of rows."""
+        lengths = self._ended["n_points"]
+        first = np.concatenate(([0], np.cumsum(lengths))).astype(int)
+        if self.points.size < first[-1] or np.any(lengths < 0):
+            raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
+        return first if self.points.size == first[-1] else np.append(first, self.points.size)
 
     def __len__(self) -> int:
         return len(self._first_rows) - 1
@@ -209,8 +219,8 @@ class Archive(Sequence[Path]):
 
     def _unended(self, rows: int) -> dict[str, Any]:
         """A row for the unfinished path, from its checkpoint."""
-        number = self.paths.size
-        member = int(self.paths["member"][-1]) + 1 if number else 0
+        number = self._ended.size
+        member = int(self._ended["member"][-1]) + 1 if number else 0
         # Counts of an older checkpoint are out of date.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         row |= {"path": number, "member": member, "n_points": rows}

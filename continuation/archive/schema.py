@@ -46,21 +46,23 @@ class Column:
     long_name: str
     dimensions: tuple[str, ...] = ("point",)
     more: Mapping[str, Any] = field(factory=dict)
+    length: int = field(init=False)
+    """Bytes of a text, else 0."""
+    storage: np.dtype[Any] = field(init=False)
+    """The array type of the column."""
+
+    @length.default
+    def _length(self) -> int:
+        return int(self.dtype.removeprefix("utf8:")) if self.dtype.startswith("utf8:") else 0
+
+    @storage.default
+    def _storage(self) -> np.dtype[Any]:
+        return np.dtype(f"S{self.length}" if self.length else self.dtype)
 
     @property
     def attributes(self) -> dict[str, Any]:
         """The attributes in the file."""
         return {"units": self.units, "long_name": self.long_name, **self.more}
-
-    @property
-    def length(self) -> int:
-        """Bytes of a text, else 0."""
-        return int(self.dtype.removeprefix("utf8:")) if self.dtype.startswith("utf8:") else 0
-
-    @property
-    def storage(self) -> np.dtype[Any]:
-        """The array type of the column."""
-        return np.dtype(f"S{self.length}" if self.length else self.dtype)
 
     @property
     def missing(self) -> Any:
