@@ -49,8 +49,8 @@ from continuation.archive.tables import Table
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
-FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
-"""Exceptions that h5py raises for a damaged file."""
+FAULTS = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError, ArithmeticError)
+"""Exceptions that h5py, and what a damaged file holds, may raise."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
@@ -73,7 +73,7 @@ class Contents:
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
         self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         try:
-            self._guarded(lambda: None)
+            self.guarded(lambda: None)
         except BaseException:
             self.close()
             raise
@@ -85,8 +85,8 @@ class Contents:
                 held.close()
         self.root = self._image = None
 
-    def _guarded(self, read: Callable[[], _T]) -> _T:
-        """The result of `read`, retried under a live writer."""
+    def guarded(self, read: Callable[[], _T]) -> _T:
+        """The result of `read`, retried under a live writer; `ArchiveError` for what makes no sense."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -153,12 +153,12 @@ class Contents:
     @cached_property
     def attributes(self) -> dict[str, Any]:
         """The root attributes, checked."""
-        return self._guarded(self._read_attributes)
+        return self.guarded(self._read_attributes)
 
     @cached_property
     def event_names(self) -> tuple[str, ...]:
         """The names that `event_index` numbers, checked."""
-        return self._guarded(self._read_names)
+        return self.guarded(self._read_names)
 
     def _read_attributes(self) -> dict[str, Any]:
         found: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(self.root.attrs), {})
@@ -225,7 +225,7 @@ class Contents:
 
     def read(self, table: str, name: str, rows: slice) -> Array:
         """Committed rows of a column, checked."""
-        return self._guarded(lambda: self._read(table, name, rows))
+        return self.guarded(lambda: self._read(table, name, rows))
 
     def _read(self, table: str, name: str, rows: slice) -> Array:
         fetch, ledger = partial(self._fetch, self._columns[table][name]), self._ledger(table)
@@ -262,7 +262,7 @@ class Contents:
             found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
             return [slot.tobytes() for slot in found[()]]
 
-        return self._guarded(read) if RESUME in self._present else []
+        return self.guarded(read) if RESUME in self._present else []
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The problem group."""
@@ -272,7 +272,7 @@ class Contents:
             return read_problem(group, self.checked, self.allowance)
 
         nothing = read_problem(None, False, self.allowance)
-        return self._guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
+        return self.guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
 
 
 _BLOCKS = 64
@@ -285,18 +285,21 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
     kind, _, version = str(schema).rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
     known = kind == ours and version.isdecimal() and len(version) < 9
-    if schema is None and not complete:
-        raise ArchiveError(f"{name}: is an HDF5 file, but not an archive of paths (it has no attribute `schema`)")
-    if not known:
-        raise ArchiveError(f"{name}: has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}")
-    if int(version) > int(newest):
-        writer = str(attributes.get("library_version") or "unknown")[:20]
-        raise ArchiveError(
-            f"{name}: has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
-            f"{writer} or later, or read it with h5py or xarray"
-        )
-    if not complete:
-        raise ArchiveError(f"{name}: truncated, its writer ended before the structure was complete")
+    writer = attributes.get("library_version") or "unknown"
+    said = (
+        "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)"
+        if schema is None and not complete
+        else f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}"
+        if not known
+        else f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
+        f"{str(writer)[:20]} or later, or read it with h5py or xarray"
+        if int(version) > int(newest)
+        else "truncated, its writer ended before the structure was complete"
+        if not complete
+        else ""
+    )
+    if said:
+        raise ArchiveError(f"{name}: {said}")
 
 
 def _layout(file: Any, present: set[str], allowance: Allowance) -> Layout:

@@ -226,22 +226,27 @@ def dataset(
     if not isinstance(found, h5py.Dataset):
         raise StructureError(f"{name} is no dataset")
     stored, lengths, properties = found.id.dtype, found.id.shape or (), found.id.get_create_plist()
-    kept, external = properties.get_layout(), properties.get_external_count()
+    kept = properties.get_layout()
     filters = [properties.get_filter(k)[0] for k in range(properties.get_nfilters())]
     chunk = properties.get_chunk() if kept == h5d.CHUNKED else (0,)
     shaped = shape is None or (len(lengths) == len(shape) and all(n in (None, m) for n, m in zip(shape, lengths)))
     texts = kind is not None and kind.kind == stored.kind == "S" and stored.itemsize == kind.itemsize
     typed = stored.kind in "fiubc" if kind is None else texts or stored == kind
-    if not typed:
-        raise StructureError(f"{name} holds {stored}, expected {kind or 'numbers'}")
-    if not shaped or found.id.shape is None:
-        raise StructureError(f"{name} has the shape {found.id.shape}, expected {shape}")
-    if kept == h5d.VIRTUAL or external:
-        raise StructureError(f"{name} is stored outside of the file")
-    if not set(filters) <= _FILTERS:
-        raise StructureError(f"{name} is stored by a filter of {filters}, which h5py does not bring itself")
-    if rows is not None and (not lengths or lengths[0] < rows):
-        raise StructureError(f"{name} has fewer rows than were committed")
+    said = (
+        f"holds {stored}, expected {kind or 'numbers'}"
+        if not typed
+        else f"has the shape {found.id.shape}, expected {shape}"
+        if not shaped or found.id.shape is None
+        else "is stored outside of the file"
+        if kept == h5d.VIRTUAL or properties.get_external_count()
+        else f"is stored by a filter of {filters}, which h5py does not bring itself"
+        if not set(filters) <= _FILTERS
+        else "has fewer rows than were committed"
+        if rows is not None and (not lengths or lengths[0] < rows)
+        else ""
+    )
+    if said:
+        raise StructureError(f"{name} {said}")
     # HDF5 unpacks whole chunks; two filters copy each.
     if 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
         raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")

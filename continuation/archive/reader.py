@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
-from typing import Any, TypeVar, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -25,8 +25,6 @@ from continuation.counts import Counts
 from continuation.path import LocatedEvent, Path, Step
 from continuation.plot.html import archive_page
 from continuation.status import Status
-
-_T = TypeVar("_T")
 
 _STEP_BYTES, _COPIES = 1400, 6
 """Bytes of a step's objects, and copies of its vectors."""
@@ -119,13 +117,7 @@ class Archive(Sequence[Path]):
             raise complain(TypeError, "index", "an integer or a slice", index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
-        return self._sensible(partial(self._path, int(index) % len(self), whole))
-
-    def _sensible(self, read: Callable[[], _T]) -> _T:
-        try:
-            return read()
-        except (ValueError, LookupError) as error:
-            raise self.contents.damaged(error) from error
+        return self.contents.guarded(partial(self._path, int(index) % len(self), whole))
 
     def _path(self, index: int, whole: bool) -> Path:
         steps: Any
@@ -182,7 +174,7 @@ class Archive(Sequence[Path]):
             If the stored number is no status.
         """
         index = range(len(self))[index]
-        return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
+        return self.contents.guarded(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, equal to ``xarray.open_dataset(file)``."""
