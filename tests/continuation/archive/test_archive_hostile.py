@@ -176,6 +176,19 @@ def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
     assert recover(file) == file
 
 
+def test_what_is_not_asked_for_may_be_damaged(tmp_path, base):
+    file = tmp_path / "run.h5"
+    shutil.copy(base, file)
+    with h5py.File(file, "r+", libver="latest") as opened:
+        opened.attrs["title"] = "another"
+        opened["n_points"][0] += 1
+    with open_archive(file) as archive, open_archive(base) as whole:
+        assert np.array_equal(archive.points["y"], whole.points["y"])
+        for asked in (lambda: archive.attributes, lambda: len(archive), lambda: archive.paths["status"]):
+            with pytest.raises(ArchiveError, match="not what was written|not what were written"):
+                asked()
+
+
 def test_events_that_do_not_fit_the_archive(base, tmp_path):
     events = [TargetValue(0.3), TargetValue(0.4)]
     with pytest.raises(ValueError, match="events: expected 2, as in the archive, found 4"):
