@@ -185,7 +185,7 @@ def test_what_is_not_asked_for_may_be_damaged(tmp_path, base):
     with open_archive(file) as archive, open_archive(base) as whole:
         assert np.array_equal(archive.points["y"], whole.points["y"])
         for asked in (lambda: archive.attributes, lambda: len(archive), lambda: archive.paths["status"]):
-            with pytest.raises(ArchiveError, match="not what was written|not what were written"):
+            with pytest.raises(ArchiveError, match=r"not what was written"):
                 asked()
 
 
