@@ -217,7 +217,7 @@ class _Kept:
             self.stack.close()
             gather(files, self.target)
         for file in files:
-            file.unlink()
+            file.unlink(missing_ok=True)
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
