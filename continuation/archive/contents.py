@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path as File
@@ -30,7 +30,7 @@ from continuation.archive.checks import (
 )
 from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, subgroup
+from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, names, subgroup
 from continuation.archive.schema import (
     EVENT_NAME,
     OBSERVED,
@@ -49,8 +49,8 @@ from continuation.archive.tables import Table
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
-FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
-"""Exceptions that h5py raises for a damaged file."""
+FAULTS = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError, ArithmeticError)
+"""Exceptions that h5py, and what a damaged file holds, may raise."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
@@ -73,7 +73,7 @@ class Contents:
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
         self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         try:
-            self._guarded(lambda: None)
+            self.guarded(lambda: None)
         except BaseException:
             self.close()
             raise
@@ -85,8 +85,8 @@ class Contents:
                 held.close()
         self.root = self._image = None
 
-    def _guarded(self, read: Callable[[], _T]) -> _T:
-        """The result of `read`, retried under a live writer."""
+    def guarded(self, read: Callable[[], _T]) -> _T:
+        """The result of `read`, retried under a live writer; `ArchiveError` for what makes no sense."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -129,33 +129,44 @@ class Contents:
     def _open(self) -> None:
         self._image = image = Image(self.file)
         self.closed_by_writer, self.size, self.descriptor = image.closed_by_writer, image.length, image.descriptor
-        self.flaws, self._datasets, self._ledgers = list[str](), dict[str, Any](), dict[str, Ledger]()
+        self.flaws, self._datasets, self._ledgers = list[str](), dict[str, Any](), dict[str, Ledger | None]()
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
         self.root = file = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
-        # Single names first: if they are damaged, HDF5 1.14 ends a process that lists all.
-        attributes = {name: file.attrs.get(name) for name in ("schema", "library_version")}
-        _ = [name in file for name in ("committed_points", "committed_paths", GROUP)]
-        present = set(file)
+        self._present = present = names(file)
         self.checked = GROUP in present
-        _check_schema(self.file, attributes, present)
+        _check_schema(self.file, file.attrs, present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
         self.layout = _layout(file, present, self.allowance)
         self._columns = {table: {column.name: column for column in self.layout.columns(table)} for table in TABLES}
+        self._row_bytes = {table: self.layout.row_bytes(table) for table in TABLES}
+        for table, size in self._row_bytes.items():
+            self.allowance.take(f"a row of {table}s", size)
         self.committed, self.cut_off = self._read_committed(), dict.fromkeys(TABLES, 0)
-        for table in TABLES:
-            rows = self._read_ledger(table) if self.checked else getattr(self.committed, f"{table}s")
-            self.committed = evolve(self.committed, **{f"{table}s": rows})
-            held = rows * self.layout.row_bytes(table) + len(self._columns[table]) * COLUMN_BYTES
-            self.allowance.take(f"the table of {table}s", held)
-        self.attributes: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(file.attrs), {})
-        if self.checked and of_attributes(self.attributes) != int(subgroup(file, GROUP).attrs["attributes"]):
-            self._flaw("its attributes are not what was written")
-            plain = {
-                k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in self.attributes.items()
-            }
-            self.attributes = {name.encode(errors="replace").decode(): value for name, value in plain.items()}
-        self.event_names = self._read_names()
+        if self._salvage:
+            for table in TABLES:
+                before, ledger = getattr(self.committed, f"{table}s"), self._ledger(table)
+                rows = before if ledger is None else ledger.rows
+                self.committed, self.cut_off[table] = evolve(self.committed, **{f"{table}s": rows}), before - rows
+            _ = self.attributes, self.event_names
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """The root attributes, checked."""
+        return self.guarded(self._read_attributes)
+
+    @cached_property
+    def event_names(self) -> tuple[str, ...]:
+        """The names that `event_index` numbers, checked."""
+        return self.guarded(self._read_names)
+
+    def _read_attributes(self) -> dict[str, Any]:
+        found: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(self.root.attrs), {})
+        if not self.checked or of_attributes(found) == int(subgroup(self.root, GROUP).attrs["attributes"]):
+            return found
+        self._flaw("its attributes are not what was written")
+        plain = {k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in found.items()}
+        return {name.encode(errors="replace").decode(): value for name, value in plain.items()}
 
     def _read_committed(self) -> Committed:
         if self.checked:
@@ -170,16 +181,22 @@ class Contents:
             raise DamageError(f"it has {points} points and {paths} paths")
         return Committed(points=points, paths=paths)
 
-    def _read_ledger(self, table: str) -> int:
-        """Read a table's checksums; return how many rows they cover."""
-        columns, rows = list(self._columns[table]), getattr(self.committed, f"{table}s")
-        blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
-        sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
-        self._ledgers[table] = ledger = Ledger(sums, columns, None if self._salvage else rows)
-        self.cut_off[table] = rows - ledger.rows
-        if ledger.rows != rows:
-            self._flaw(f"the checksums of {rows - ledger.rows} {table}s are missing")
-        return ledger.rows
+    def _ledger(self, table: str) -> Ledger | None:
+        """The checksums of a table, read once, before its memory is counted; None in a file without."""
+        if table in self._ledgers:
+            return self._ledgers[table]
+        columns, rows, ledger = list(self._columns[table]), getattr(self.committed, f"{table}s"), None
+        if self.checked:
+            blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
+            sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
+            ledger = Ledger(sums, columns, None if self._salvage else rows)
+            if ledger.rows != rows:
+                self._flaw(f"the checksums of {rows - ledger.rows} {table}s are missing")
+                rows = ledger.rows
+        held = rows * self._row_bytes[table] + len(columns) * COLUMN_BYTES
+        self.allowance.take(f"the table of {table}s", held)
+        self._ledgers[table] = ledger
+        return ledger
 
     def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
         """The first rows of a dataset, as far as HDF5 finds its chunks."""
@@ -208,10 +225,10 @@ class Contents:
 
     def read(self, table: str, name: str, rows: slice) -> Array:
         """Committed rows of a column, checked."""
-        return self._guarded(lambda: self._read(table, name, rows))
+        return self.guarded(lambda: self._read(table, name, rows))
 
     def _read(self, table: str, name: str, rows: slice) -> Array:
-        fetch, ledger = partial(self._fetch, self._columns[table][name]), self._ledgers.get(table)
+        fetch, ledger = partial(self._fetch, self._columns[table][name]), self._ledger(table)
         return fetch(rows) if ledger is None else ledger.read(name, rows, fetch)
 
     def _fetch(self, column: Column, rows: slice) -> Array:
@@ -227,7 +244,8 @@ class Contents:
 
     def unsound(self, table: str) -> list[tuple[int, int]]:
         """Blocks of rows with a damaged or unreadable column."""
-        blocks = list(pairwise(self._ledgers[table].bounds.tolist())) if self.checked else []
+        ledger = self._ledger(table)
+        blocks = [] if ledger is None else list(pairwise(ledger.bounds.tolist()))
 
         def is_sound(start: int, stop: int) -> bool:
             rows = slice(start, stop)
@@ -244,17 +262,17 @@ class Contents:
             found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
             return [slot.tobytes() for slot in found[()]]
 
-        return self._guarded(read) if RESUME in set(self.root) else []
+        return self.guarded(read) if RESUME in self._present else []
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The problem group."""
 
         def read() -> tuple[str, Mapping[str, Any]]:
-            group = subgroup(self.root, PROBLEM) if PROBLEM in set(self.root) else None
+            group = subgroup(self.root, PROBLEM) if PROBLEM in self._present else None
             return read_problem(group, self.checked, self.allowance)
 
         nothing = read_problem(None, False, self.allowance)
-        return self._guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
+        return self.guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
 
 
 _BLOCKS = 64
@@ -262,24 +280,26 @@ _BLOCKS = 64
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
-    schema, writer = (attributes.get(key) for key in ("schema", "library_version"))
+    schema = attributes.get("schema")
     complete = {"committed_points", "committed_paths"} <= present and (schema in (UNCHECKED, None) or GROUP in present)
     kind, _, version = str(schema).rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
     known = kind == ours and version.isdecimal() and len(version) < 9
-    newer = (
-        f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
-        f"{str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
+    writer = attributes.get("library_version") or "unknown"
+    said = (
+        "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)"
+        if schema is None and not complete
+        else f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}"
+        if not known
+        else f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
+        f"{str(writer)[:20]} or later, or read it with h5py or xarray"
+        if int(version) > int(newest)
+        else "truncated, its writer ended before the structure was complete"
+        if not complete
+        else ""
     )
-    refused = {
-        "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)": schema is None and not complete,
-        f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}": not known,
-        newer: known and int(version) > int(newest),
-        "truncated, its writer ended before the structure was complete": not complete,
-    }
-    for what, wrong in refused.items():
-        if wrong:
-            raise ArchiveError(f"{name}: {what}")
+    if said:
+        raise ArchiveError(f"{name}: {said}")
 
 
 def _layout(file: Any, present: set[str], allowance: Allowance) -> Layout:

@@ -16,7 +16,7 @@ from continuation.archive.reader import Archive
 from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
 from continuation.archive.schema import ORIGIN_COLUMNS, ORIGINS, SCHEMA, Layout, text
 from continuation.archive.store import Store
-from continuation.archive.tables import Block, Table
+from continuation.archive.tables import Block, Table, joined
 from continuation.path import Path
 
 
@@ -89,10 +89,12 @@ def leading(shares: Sequence[Share]) -> Contents:
     return found
 
 
-def append(store: Store, share: Share) -> None:
-    """Append a share in one commit."""
+def append(store: Store, share: Share, file: str) -> int:
+    """Append a finished path of `file` in one commit; its number in the store."""
     number = store.committed.paths
-    store.commit(_numbered(share, store, share.rows, number) if share.size else None, _rows(share, store, number))
+    own = sourced(share, store.identifier, file, first=number)
+    store.commit(_numbered(own, store, own.rows, number) if own.size else None, _rows(own, store, number))
+    return number
 
 
 def write_copy(
@@ -124,7 +126,7 @@ def write_copy(
             store.commit(block)
         counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
         rows = [_rows(share, store, number) for share, number in zip(shares, counts)]
-        store.commit(paths=_joined(rows) if counts[-1] else None, checkpoints=checkpoints)
+        store.commit(paths=joined(rows) if counts[-1] else None, checkpoints=checkpoints)
     except BaseException:
         store.close()
         raise
@@ -142,15 +144,11 @@ def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
             waiting.append(_numbered(share, store, rows, path))
             held += rows.stop - rows.start
             if held >= size:
-                yield _joined(waiting)
+                yield joined(waiting)
                 waiting, held = [], 0
         path += len(share.paths["path"])
     if waiting:
-        yield _joined(waiting)
-
-
-def _joined(blocks: Sequence[Block]) -> Block:
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+        yield joined(waiting)
 
 
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:

@@ -15,7 +15,7 @@ from typing import Any
 from attrs import define, evolve
 
 from continuation.archive.atomic import new_file, own
-from continuation.archive.copies import Share, append, share_of, share_of_path, sourced, write_copy
+from continuation.archive.copies import append, share_of, share_of_path, sourced, write_copy
 from continuation.archive.provenance import process, root_attributes
 from continuation.archive.reader import StoredSteps, open_archive
 from continuation.archive.resume import check_homotopy
@@ -48,13 +48,6 @@ def dataframe_of(path: Path) -> Any:
     return frame.rename(columns=called)
 
 
-def _add(store: Store, share: Share, file: File) -> int:
-    """Append a path; its number in the file."""
-    number = store.committed.paths
-    append(store, sourced(share, store.identifier, file.name, first=number))
-    return number
-
-
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
     """Write paths of one homotopy, with equal observed scalars, to a new archive."""
     target = new_file("file", file)
@@ -64,7 +57,7 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     def write(beside: File) -> Store:
         store = Store(beside, shares[0].layout, _attributes(many[0], title or "A path"))
         for share in shares:
-            _add(store, share, target)
+            append(store, share, target.name)
         return store
 
     put(target, write)
@@ -107,7 +100,7 @@ class Growing:
         if self._store is None:
             about = _attributes(path, self.title)
             self._store = put(self.file, partial(Store, layout=share.layout, attributes=about), grows=True)
-        return self._kept(path, _add(self._store, share, self.file))
+        return self._kept(path, append(self._store, share, self.file.name))
 
     def _kept(self, path: Path, number: int) -> Path:
         if self.keep == "all":

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import COUNT_NAMES, PARAMETER
@@ -42,16 +41,15 @@ def describe(archive: Archive) -> str:
     """
     if not isinstance(archive, Archive):
         raise complain(TypeError, "archive", "an open Archive, as open_archive(file) returns", archive)
-    try:
-        few = len(archive) <= _DETAILED
-        parts = [_one_path(archive, k) for k in range(len(archive))] if few else [_many_paths(archive)]
-        page = "\n\n".join(filter(None, (_head(archive), *(parts or ["No path was begun."]), _hint(archive)))) + "\n"
-    except ArchiveError:
-        raise
-    except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
-        raise archive.contents.damaged(error) from error
+    page = archive.contents.guarded(lambda: _page(archive))
     # A foreign title must not send control codes to the terminal.
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
+
+
+def _page(archive: Archive) -> str:
+    few = len(archive) <= _DETAILED
+    parts = [_one_path(archive, k) for k in range(len(archive))] if few else [_many_paths(archive)]
+    return "\n\n".join(filter(None, (_head(archive), *(parts or ["No path was begun."]), _hint(archive)))) + "\n"
 
 
 def _head(archive: Archive) -> str:

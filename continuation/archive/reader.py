@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
-from typing import Any, TypeVar, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -26,8 +26,6 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.plot.html import archive_page
 from continuation.status import Status
 
-_T = TypeVar("_T")
-
 _STEP_BYTES, _COPIES = 1400, 6
 """Bytes of a step's objects, and copies of its vectors."""
 
@@ -40,36 +38,46 @@ class Archive(Sequence[Path]):
     Attributes
     ----------
     file : pathlib.Path
-    attributes : dict
-        Origin of the file.
-    points, paths : Table
+    points : Table
         Columns by name: ``archive.points["arclength"]``.
-    event_names : tuple of str
-        Names that ``event_index`` numbers.
     closed_by_writer : bool
         False if the file is growing or its writer was killed.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
-        self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
-        self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
+        self.file, self.layout, self.closed_by_writer = contents.file, contents.layout, contents.closed_by_writer
         # A snapshot; the growing file may be opened anew.
-        self.points, self.paths = contents.table("point"), contents.table("path")
-        try:
-            lengths = self.paths["n_points"]
-            self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
-            rest = self.points.size - int(self._first_rows[-1])
-            if rest < 0 or np.any(lengths < 0):
-                raise contents.damaged(ValueError("its paths have other lengths than its points"))
-            if rest:
-                self._first_rows = np.append(self._first_rows, self.points.size)
-                row = row_columns(self._unended(rest), self.layout)
-                columns = {name: np.concatenate((self.paths[name], row[name])) for name in self.paths}
-                self.paths = Table.of(self.layout, "path", columns)
-        except BaseException:
-            self.close()
-            raise
+        self.points, self._ended = contents.table("point"), contents.table("path")
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Origin of the file."""
+        return self.contents.attributes
+
+    @property
+    def event_names(self) -> tuple[str, ...]:
+        """Names that ``event_index`` numbers."""
+        return self.contents.event_names
+
+    @cached_property
+    def paths(self) -> Table:
+        """The path table; an unfinished path is its last row."""
+        if len(self) == self._ended.size:
+            return self._ended
+        rest = self.rows(self._ended.size)
+        row = row_columns(self._unended(rest.stop - rest.start), self.layout)
+        columns = {name: np.concatenate((self._ended[name], row[name])) for name in self._ended}
+        return Table.of(self.layout, "path", columns)
+
+    @cached_property
+    def _first_rows(self) -> Any:
+        """The first row of each path, and the number of rows."""
+        lengths = self._ended["n_points"]
+        first = np.concatenate(([0], np.cumsum(lengths))).astype(int)
+        if self.points.size < first[-1] or np.any(lengths < 0):
+            raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
+        return first if self.points.size == first[-1] else np.append(first, self.points.size)
 
     def __len__(self) -> int:
         return len(self._first_rows) - 1
@@ -109,13 +117,7 @@ class Archive(Sequence[Path]):
             raise complain(TypeError, "index", "an integer or a slice", index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
-        return self._sensible(partial(self._path, int(index) % len(self), whole))
-
-    def _sensible(self, read: Callable[[], _T]) -> _T:
-        try:
-            return read()
-        except (ValueError, LookupError) as error:
-            raise self.contents.damaged(error) from error
+        return self.contents.guarded(partial(self._path, int(index) % len(self), whole))
 
     def _path(self, index: int, whole: bool) -> Path:
         steps: Any
@@ -172,7 +174,7 @@ class Archive(Sequence[Path]):
             If the stored number is no status.
         """
         index = range(len(self))[index]
-        return self._sensible(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
+        return self.contents.guarded(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, equal to ``xarray.open_dataset(file)``."""
@@ -209,8 +211,8 @@ class Archive(Sequence[Path]):
 
     def _unended(self, rows: int) -> dict[str, Any]:
         """A row for the unfinished path, from its checkpoint."""
-        number = self.paths.size
-        member = int(self.paths["member"][-1]) + 1 if number else 0
+        number = self._ended.size
+        member = int(self._ended["member"][-1]) + 1 if number else 0
         # Counts of an older checkpoint are out of date.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         row |= {"path": number, "member": member, "n_points": rows}

@@ -38,29 +38,24 @@ CONTROLLER_STATE = 4
 
 @frozen
 class Column:
-    """A variable; `dtype` is NumPy's, ``utf8:n`` text of at most n bytes."""
+    """A variable; bytes are text, in UTF-8."""
 
     name: str
-    dtype: str
+    storage: np.dtype[Any] = field(converter=np.dtype)
     units: str
     long_name: str
     dimensions: tuple[str, ...] = ("point",)
     more: Mapping[str, Any] = field(factory=dict)
 
     @property
+    def length(self) -> int:
+        """Bytes of a text, else 0."""
+        return self.storage.itemsize if self.storage.kind == "S" else 0
+
+    @property
     def attributes(self) -> dict[str, Any]:
         """The attributes in the file."""
         return {"units": self.units, "long_name": self.long_name, **self.more}
-
-    @property
-    def length(self) -> int:
-        """Bytes of a text, else 0."""
-        return int(self.dtype.removeprefix("utf8:")) if self.dtype.startswith("utf8:") else 0
-
-    @property
-    def storage(self) -> np.dtype[Any]:
-        """The array type of the column."""
-        return np.dtype(f"S{self.length}" if self.length else self.dtype)
 
     @property
     def missing(self) -> Any:
@@ -133,7 +128,7 @@ PATH_COLUMNS = (
         ("path",),
         _flags(tuple(s.flag for s in Status), tuple(int(s) for s in Status)),
     ),
-    Column("message", f"utf8:{TEXT}", "1", "how the path ended, in words", ("path",)),
+    Column("message", f"S{TEXT}", "1", "how the path ended, in words", ("path",)),
     Column("member", "i8", "1", "index of the homotopy in its sweep; the number of the path outside of one", ("path",)),
     Column("seed", "i8", "1", "seed of the homotopy's random numbers; -1 where there are none", ("path",)),
     Column("n_points", "i8", "1", "rows of this path in the point table", ("path",)),
@@ -145,10 +140,10 @@ PATH_COLUMNS = (
 )
 
 ORIGIN_COLUMNS = (
-    Column("homotopy", "utf8:160", "1", "class of the homotopy", ("path",)),
+    Column("homotopy", "S160", "1", "class of the homotopy", ("path",)),
     Column(
         "source",
-        "utf8:160",
+        "S160",
         "1",
         "identifier of the file that the path was written to, its number there, and the file's name then",
         ("path",),
@@ -156,7 +151,7 @@ ORIGIN_COLUMNS = (
 )
 """Origin of each path; older files lack it."""
 
-EVENT_NAME = Column("event_name", f"utf8:{NAME}", "1", "name of the event", ("event",))
+EVENT_NAME = Column("event_name", f"S{NAME}", "1", "name of the event", ("event",))
 COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
 
 
@@ -261,12 +256,12 @@ def _build(file: Any, layout: Layout, compression: int) -> None:
         grows(name, ">f4", _CHUNKS[name]).make_scale(_NO_VARIABLE.format(0))
     file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))
     grows("path", "i8", _CHUNKS["path"]).make_scale("path")
-    component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.dtype))
+    component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.storage))
     component.attrs.update(COMPONENT.attributes)
     component.make_scale("component")
     for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME):
         if column.name not in file:
-            dtype = h5py.string_dtype("utf-8", column.length) if column.length else column.dtype
+            dtype = h5py.string_dtype("utf-8", column.length) if column.length else column.storage
             own = {} if column.length else filters
             made = grows(column.name, dtype, _CHUNKS[column.dimensions[0]], layout.width(column), **own)
             for axis, dimension in enumerate(column.dimensions):

@@ -171,11 +171,7 @@ def _swept(
                     # In a terminal, Ctrl-C reaches workers too.
                     with suppress(KeyboardInterrupt):
                         kept.add(number, future.result())
-    if target is not None and kept.parts:
-        files = [store.file for store in kept.parts.values()]
-        gather(files, target)
-        for file in files:
-            file.unlink()
+        kept.finish()
     paths = [kept.paths[number] for number in sorted(kept.paths)]
     if stopped:
         raise Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
@@ -190,6 +186,8 @@ class _Kept:
     token: str = field(factory=partial(secrets.token_hex, 4))
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
+    numbers: list[int] = field(factory=list)
+    """Of the paths in the parts, in the order in which they came back."""
 
     def add(self, number: int, found: Result) -> None:
         """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
@@ -201,10 +199,25 @@ class _Kept:
         if isinstance(found, Path):
             self.paths[number], status = found, found.status
         else:
-            append(self.parts.get(found.layout) or self._part(found, task), found)
+            assert self.target is not None
+            append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
+            self.numbers.append(number)
             status = Status(int(found.paths["status"][0]))
         if status is Status.INTERRUPTED:
             raise KeyboardInterrupt
+
+    def finish(self) -> None:
+        """Make the archive: of one part in order, or by sorting several."""
+        files, stores = [store.file for store in self.parts.values()], [*self.parts.values()]
+        if self.target is None or not files:
+            return
+        if len(files) == 1 and self.numbers == sorted(self.numbers):
+            put(self.target, lambda part: stores[0])
+        else:
+            self.stack.close()
+            gather(files, self.target)
+        for file in files:
+            file.unlink(missing_ok=True)
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None

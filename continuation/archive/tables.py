@@ -109,6 +109,11 @@ def kept_whole(keep: str) -> bool:
     return keep == "all"
 
 
+def joined(blocks: Sequence[Block]) -> Block:
+    """Blocks of rows, one after another."""
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
 def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
     return columns[name][rows]
 
@@ -123,7 +128,7 @@ def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, a
         for name, column in table.columns.items()
     }
     variables["event_name"] = (EVENT_NAME.dimensions, np.array(events), EVENT_NAME.attributes)
-    component = np.arange(unknowns, dtype=COMPONENT.dtype)
+    component = np.arange(unknowns, dtype=COMPONENT.storage)
     coordinates = {"path": variables.pop("path"), "component": (COMPONENT.dimensions, component, COMPONENT.attributes)}
     return xarray.Dataset(variables, coordinates, attributes)
 

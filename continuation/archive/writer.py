@@ -23,7 +23,7 @@ from continuation.archive.reader import StoredSteps
 from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, LOCATED, SLOTS, check_names
 from continuation.archive.store import Store, put
-from continuation.archive.tables import kept_whole
+from continuation.archive.tables import joined, kept_whole
 from continuation.arguments.checks import complain, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
@@ -96,8 +96,9 @@ class PathLog:
     file: File
     member: int | None = None
     _rows: tuple[int, list[Row]]
-    """Number of the first uncommitted row, and these rows: one assignment commits."""
-    _early: list[Record]
+    """Number of the first uncommitted row, and these rows."""
+    _ended: dict[int, Record]
+    """Uncommitted rows of ended paths, by number."""
     _many = _closed = False
     _store: Store | None = None
     _open: OpenPath | None = None
@@ -126,7 +127,7 @@ class PathLog:
         self._whole, self.file = kept_whole(keep), new_file("file", file)
         self._limits, self._save_every = limits or Limits(), int(save_every)
         self._durable, self._tangents, self._about = durable, tangents, (title, dict(parameters or {}))
-        self._rows, self._early = (0, []), []
+        self._rows, self._ended = (0, []), {}
 
     @classmethod
     def continued(cls, store: Store, checkpoint: Checkpoint, tracer: Tracer, whole: bool) -> PathLog:
@@ -142,7 +143,7 @@ class PathLog:
         """
         log = cls.__new__(cls)
         points = store.committed.points
-        log.file, log._store, log._rows, log._early = store.file, store, (points, []), []
+        log.file, log._store, log._rows, log._ended = store.file, store, (points, []), {}
         log._whole, log._known, log.member = (
             whole,
             (tracer.homotopy, checkpoint.run["homotopy"]),
@@ -196,10 +197,9 @@ class PathLog:
         if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
             row |= {"path": path.number, "n_points": self._rows[0] + len(self._rows[1]) - path.first}
             row["member"] = path.number if self.member is None else self.member
-            if self._store is None:
-                self._early.append(row)
-            else:
-                self._commit(row)
+            self._ended[path.number] = row
+            if self._store is not None:
+                self._commit()
         self._open = None
         if not self._many:
             self.close()
@@ -208,9 +208,9 @@ class PathLog:
         """Commit and close the file; idempotent."""
         if self._closed:
             return
-        store = self._store or (self._make(None, 1, ()) if self._early else None)
+        store = self._store or (self._make(None, 1, ()) if self._ended else None)
         if store is not None:
-            if self._rows[1] and store.ours:
+            if (self._rows[1] or self._ended) and store.ours:
                 self._commit()
             store.close()
         self._closed = True
@@ -229,7 +229,9 @@ class PathLog:
         if path is None:
             if self._closed:
                 raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
-            number = len(self._early) if self._store is None else self._store.committed.paths
+            number = max(self._ended, default=-1) + 1
+            if self._store is not None:
+                number = max(number, self._store.committed.paths)
             self._open = path = OpenPath(tracer, number, self._rows[0])
             self._commit_at = time.monotonic() + self._limits.seconds
         if path.tracer is not tracer:
@@ -247,7 +249,7 @@ class PathLog:
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
-        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, early=self._early)
+        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, early=self._ended.values())
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, *self._about)
@@ -256,14 +258,12 @@ class PathLog:
         for event in tracer.settings.events if tracer is not None else ():
             store.name_event(event.name)
         store.commit()
-        for row in self._early:
-            self._commit(row)
         return store
 
-    def _commit(self, row: Record | None = None) -> None:
+    def _commit(self) -> None:
         store, path = self._store, self._open
         assert store is not None
-        points, paths, checkpoints = None, None, {}
+        points, checkpoints = None, {}
         # The commit that Ctrl-C interrupted may be complete.
         start = store.committed.points
         rows = self._rows[1][start - self._rows[0] :]
@@ -272,16 +272,19 @@ class PathLog:
         if path is not None and path.resume is not None:
             sequence = store.committed.checkpoint + 1
             checkpoints = {sequence % SLOTS: self._checkpoint(path, path.resume, sequence)}
-        if row is not None and row["path"] >= store.committed.paths:
-            row["source"] = f"{store.identifier} {row['path']} {self.file.name}"
-            paths = row_columns(row, store.layout)
+        ended = [
+            row_columns({**row, "source": f"{store.identifier} {number} {self.file.name}"}, store.layout)
+            for number, row in self._ended.items()
+            if number >= store.committed.paths
+        ]
+        paths = joined(ended) if ended else None
         try:
             store.commit(points, paths, checkpoints)
         except ArchiveError:
             self._closed = True
             store.close()
             raise
-        self._rows = (start + len(rows), [])
+        self._rows, self._ended = (start + len(rows), []), {}
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
         self._commit_at = time.monotonic() + self._limits.seconds

@@ -41,8 +41,8 @@ DIVISIONS, INSIDE_ARC = 8, 1e-6
 """Most divisions of an arc; least relative distance from its ends."""
 
 PASSES, NEARLY_ZERO = 60, 1e-10
-"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if two passes did
-not halve it."""
+"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if a pass did
+not halve it: secants leave less than half, even of a zero of high order, until round-off."""
 
 SLOPE = 1e-3
 """Step of the difference quotient, in parts: three digits, as the model has."""
@@ -211,7 +211,7 @@ def root(
         elif not slope * chord > 0.0:
             slope = chord
         step = -now[1] / slope if slope else math.inf
-        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled > 1
+        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled
         if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
             break
         last, t = now, t + step

@@ -29,9 +29,12 @@ OFF_AXIS = EPS / SIX_DIGITS
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
 
-DIMENSIONS, LOOK_EVERY = 40, 6
-"""Largest Krylov dimension per wanted eigenvalue and one more, and steps between tests, each as costly as ten
-solves."""
+NEARER = 0.01
+"""Part of a shift at which a tenth of Arnoldi's steps suffices."""
+
+DIMENSIONS, LOOKS = 40, 6
+"""DIMENSIONS: largest Krylov dimension per wanted eigenvalue and one more. LOOKS: eigenvalues are tested when the
+dimension has grown by a sixth, so that all tests cost little more than the last."""
 
 
 @frozen(eq=False)
@@ -147,9 +150,9 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     # A singular matrix needs a shift. If all are stable, the shift is comparable to oscillations.
-    shift = SHIFT * max(real, 0.1 * imaginary, SIX_DIGITS * float(np.abs(matrix.diagonal()).max()))
-    inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
-    wanted, solves = min(k, n), 0
+    least = SHIFT * SIX_DIGITS * float(np.abs(matrix.diagonal()).max())
+    shift = max(SHIFT * max(real, 0.1 * imaginary), least)
+    inverse, wanted, solves = _solver(matrix, shift), min(k, n), 0
 
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
@@ -158,9 +161,20 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
         return bool(((off <= SIX_DIGITS) | (error <= SIX_DIGITS**2 * np.abs(theta))).all())
 
     while True:
-        theta, more = dominant(inverse, generic_vector(n), wanted, known)
+        try:
+            theta, more = dominant(inverse, generic_vector(n), wanted, known)
+        except ArithmeticError:
+            # The bound is far from the eigenvalues, as that of differences of high order: Arnoldi's steps grow like the
+            # root of the shift (Saad, Numerical Methods for Large Eigenvalue Problems, Section 6.6).
+            if shift <= least:
+                raise
+            solves += min(n, DIMENSIONS * (wanted + 1))
+            shift = max(NEARER * shift, least)
+            inverse = _solver(matrix, shift)
+            continue
         solves += more
         found = shift + 1.0 / theta
+        corner = float(np.hypot(max(shift, real - shift), imaginary))
         covered = wanted == n or real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
         if covered or not (found.real > 0.0).all():
             return evolve(_counted(found, covered), solves=solves)
@@ -177,7 +191,7 @@ def dominant(
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))
-    Q, H = np.zeros((most + 1, n)), np.zeros((most + 1, most))
+    Q, H, look = np.zeros((most + 1, n)), np.zeros((most + 1, most)), 3 * k
     Q[0] = start / np.linalg.norm(start)
     for j in range(1, most + 1):
         x = apply(Q[j - 1])
@@ -189,7 +203,8 @@ def dominant(
             x = x - part @ Q[:j]
         H[j, j - 1] = float(np.linalg.norm(x))
         exhausted = j == n or H[j, j - 1] <= BACKWARD_ERROR * size
-        if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK_EVERY == 0):
+        if exhausted or j == most or j >= look:
+            look = j + max(j // LOOKS, 1)
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]
             error = H[j, j - 1] * np.abs(vectors[-1, largest])

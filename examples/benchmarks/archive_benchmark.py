@@ -1,6 +1,6 @@
-"""The archive, measured: cost a step; memory of a long path.
+"""The archive, measured: cost a step; memory of a long path; what files, sweeps and columns cost beside none or h5py.
 
-python examples/benchmarks/archive_benchmark.py [cost] [memory] [--points N]
+python examples/benchmarks/archive_benchmark.py [cost] [memory] [beside] [--points N]
 """
 
 import os
@@ -8,13 +8,15 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
+import h5py
 import numpy as np
 from attrs import evolve
 from campaign import asked, timed
 
 from continuation import Budget, Step, Tracer, from_functions, trace
-from continuation.archive import PathLog
+from continuation.archive import PathLog, open_archive, trace_many
 from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
 
 def cost(folder: Path) -> None:
@@ -66,14 +68,47 @@ def memory(folder: Path, points: int) -> None:
     print(f"  one of them, read: lam = {middle.lam:.6f}; {_resident() - begin:.1f} MiB above the start then")
 
 
+def beside(folder: Path, rounds: int = 15, members: int = 60) -> None:
+    """Milliseconds of the processor, the least of some rounds in turn: with a file and without, by us and by h5py."""
+    names = (folder / f"{k}.h5" for k in range(10 * rounds))
+    one, many = FreudensteinRoth(), [FreudensteinRoth() for _ in range(members)]
+    read = next(names)
+    trace(ExponentialCosine(10), archive=read)
+
+    def column() -> None:
+        with open_archive(read) as archive:
+            archive.points["y"]
+
+    def bare() -> None:
+        with h5py.File(read) as file:
+            file["y"][: file["committed_points"][()]]
+
+    jobs = {
+        "a trace": lambda: trace(one),
+        "a trace with a file": lambda: trace(one, archive=next(names)),
+        "a sweep": lambda: trace_many(many),
+        "a sweep with a file": lambda: trace_many(many, archive=next(names)).close(),
+        "a column": column,
+        "a column by h5py": bare,
+    }
+    least = {name: min(1e3 * timed(job)[1] for _ in range(2)) for name, job in jobs.items()}
+    for _ in range(rounds):
+        for name, job in jobs.items():
+            least[name] = min(least[name], 1e3 * timed(job)[1])
+    file, sweep = (least[f"{name} with a file"] - least[name] for name in ("a trace", "a sweep"))
+    print(f"a file adds {file:.2f} ms to a trace of {least['a trace']:.2f} ms")
+    alone = least["a sweep"] / members
+    print(f"a file adds {sweep / members:.2f} ms to a path of {alone:.2f} ms in a sweep of {members}")
+    print(f"a column in {least['a column']:.2f} ms, by h5py {least['a column by h5py']:.2f} ms")
+
+
 def _resident() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 if __name__ == "__main__":
     names, _, options = asked(points=100_000)
-    with tempfile.TemporaryDirectory() as place:
-        if "memory" not in names:
-            cost(Path(place))
-        if "cost" not in names:
-            memory(Path(place), options.points)
+    rows = {"cost": cost, "memory": lambda folder: memory(folder, options.points), "beside": beside}
+    for row in names or rows:
+        with tempfile.TemporaryDirectory() as place:
+            rows[row](Path(place))

@@ -1,4 +1,5 @@
-"""What a step costs: time, calls, factorisations, on the problems of the record of behaviour.
+"""What a step costs: time, calls, factorisations, on the problems of the record of behaviour; and how many times the
+time of a path that is not examined.
 
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/step.py [NAME ...]
 
@@ -40,12 +41,15 @@ def measured(name: str, rounds: int = 20) -> dict[str, float]:
     """A path in numbers."""
     make, options = PROBLEMS[name]
     homotopy = make()
+    plain = {**options, "examine": False}
     path, seconds = timed(lambda: continuation.trace(homotopy, **options), rounds)
+    _, least = timed(lambda: continuation.trace(homotopy, **plain), rounds)
     steps = path.counts.accepted + path.counts.rejected
     number = calls(lambda: continuation.trace(homotopy, **options))
-    return {"steps": steps, **path.counts.as_dict(), "calls a step": number / steps, "us a step": 1e6 * seconds / steps}
+    cost = {"calls a step": number / steps, "us a step": 1e6 * seconds / steps, "times unexamined": seconds / least}
+    return {"steps": steps, **path.counts.as_dict(), **cost}
 
 
 if __name__ == "__main__":
     for name in asked()[0] or PROBLEMS:
-        print(name, {key: round(value) for key, value in measured(name).items()}, flush=True)
+        print(name, {key: float(f"{value:.3g}") for key, value in measured(name).items()}, flush=True)

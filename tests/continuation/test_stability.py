@@ -107,9 +107,9 @@ def test_what_stability_and_a_hopf_point_cost_on_a_large_sparse_branch(target, f
     assert [event.lam for event in hopf_points(watched)] == pytest.approx(found * [homotopy.rate(1)], abs=1e-10)
     np.testing.assert_array_equal(watched.u, alone.u)
     # One factorisation a point, none to find out that nothing crosses, and no H_y beyond those of the steps: it is kept
-    # there, so that an arc which is looked at again needs it once. A secant needs three spectra: two on the way, and
-    # that of the point.
-    assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 3 * found
+    # there, so that an arc which is looked at again needs it once. A secant needs two spectra: one on the way, and that
+    # of the point.
+    assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 2 * found
     more = watched.counts.jacobians - alone.counts.jacobians
     assert 4 * found - 1 <= more <= 4 * found
     assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + found)

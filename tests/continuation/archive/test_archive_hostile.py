@@ -132,8 +132,8 @@ def test_points_that_are_claimed_with_a_checksum(tmp_path, base):
     shutil.copy(base, tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5", "r+", libver="latest") as opened:
         claimed(opened, 10**12)
-    with pytest.raises(ArchiveError, match="the checksums are damaged"):
-        open_archive(tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive, pytest.raises(ArchiveError, match="the checksums are damaged"):
+        archive.points["y"]
 
 
 def test_an_archive_of_the_first_version_is_read_and_resumed(tmp_path, base):
@@ -174,6 +174,19 @@ def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
         assert path.message.endswith("The rest of it was damaged.")
     assert (tmp_path / "run.h5.damaged").read_bytes() == damaged
     assert recover(file) == file
+
+
+def test_what_is_not_asked_for_may_be_damaged(tmp_path, base):
+    file = tmp_path / "run.h5"
+    shutil.copy(base, file)
+    with h5py.File(file, "r+", libver="latest") as opened:
+        opened.attrs["title"] = "another"
+        opened["n_points"][0] += 1
+    with open_archive(file) as archive, open_archive(base) as whole:
+        assert np.array_equal(archive.points["y"], whole.points["y"])
+        for asked in (lambda: archive.attributes, lambda: len(archive), lambda: archive.paths["status"]):
+            with pytest.raises(ArchiveError, match=r"not what was written"):
+                asked()
 
 
 def test_events_that_do_not_fit_the_archive(base, tmp_path):

@@ -219,6 +219,22 @@ def test_ctrl_c_within_a_path(tmp_path):
         assert [path.status for path in archive] == [Status.INTERRUPTED]
 
 
+@pytest.mark.parametrize("links", [True, False])
+def test_a_part_in_order_is_the_archive(tmp_path, monkeypatch, links):
+    def refuses(*_):
+        raise PermissionError(1, "no links here")
+
+    if not links:
+        monkeypatch.setattr(os, "link", refuses)
+    trace_many(GOOD, archive=tmp_path / "run.h5").close()
+    assert [file.name for file in tmp_path.iterdir()] == ["run.h5"]
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.closed_by_writer
+        assert archive.attributes["history"].count("\n") == 0
+        own = archive.attributes["identifier"].encode()
+        assert list(archive.paths["source"]) == [b"%s %d run.h5" % (own, k) for k in range(5)]
+
+
 def test_what_another_sweep_left_is_in_nobodys_way(tmp_path, expected):
     for name in ("run.h5.stop", "run.0001.h5", "run.sweep-00000000.0001.h5", "run.sweep-00000000.stop"):
         (tmp_path / name).write_bytes(b"left behind")

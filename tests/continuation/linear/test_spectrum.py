@@ -38,6 +38,9 @@ LONG = np.diag(np.linspace(0.3, -40.0, 150))
 LONG += np.diag(np.linspace(1.0, 2.0, 149), -1) - np.diag(np.linspace(2.0, 1.0, 149), 1)
 # All that are asked for are unstable, so more are computed.
 TWENTY = np.diag(np.concatenate([np.linspace(1.0, 2.0, 20), np.linspace(-9.0, -1.0, 200)]))
+# Swift and Hohenberg's operator: the bound on real parts is 1e5 times the largest eigenvalue.
+BENDING = np.diff(np.pad(np.eye(300), 1, mode="edge")[:, 1:-1], 2, axis=0) * (300 / 40.0) ** 2 + np.eye(300)
+BENDING = 0.14 * np.eye(300) - BENDING @ BENDING
 
 
 @pytest.mark.parametrize(
@@ -46,8 +49,9 @@ TWENTY = np.diag(np.concatenate([np.linspace(1.0, 2.0, 20), np.linspace(-9.0, -1
         *((LONG, make, 10) for make in (np.asarray, sp.csc_array, banded)),
         *((ALIKE, make, None) for make in (np.asarray, sp.csc_array)),
         (TWENTY, sp.csc_array, None),
+        (BENDING, sp.csc_array, None),
     ],
-    ids=["dense", "sparse", "banded", "alike, dense", "alike, sparse", "twenty"],
+    ids=["dense", "sparse", "banded", "alike, dense", "alike, sparse", "twenty", "bending"],
 )
 def test_the_rightmost_of_a_large_matrix_are_found_whatever_its_structure(matrix, make, k):
     exact = np.linalg.eigvals(matrix)
