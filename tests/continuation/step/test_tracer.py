@@ -195,14 +195,6 @@ def test_the_homotopys_target_can_be_overridden(target):
     assert target in (None, path.endpoint.lam)
 
 
-@every_preset
-def test_a_path_may_start_in_its_turning_point(preset):
-    homotopy = from_functions(lambda y, lam: y**2 + lam - 1.0, start=([0.0], 1.0), target=0.0)
-    path = trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert abs(path.endpoint.y[0]) == pytest.approx(1.0, rel=1e-9)
-
-
 def test_an_unexamined_trace_follows_the_same_path_for_less():
     """Steps are those of a full trace up to the end; no turning point is located, and that is what is saved."""
     full, light = (trace(FreudensteinRoth(), examine=examine) for examine in (True, False))
