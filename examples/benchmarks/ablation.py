@@ -34,7 +34,7 @@ def mix(number: int, seed: int) -> Iterator[Any]:
         yield from family(number, seed)
     for k in range(number):
         r = np.random.default_rng([seed, k])
-        yield from (lcp.LCP(*kind(round(2.0 * 40.0 ** r.random()), r)) for kind in claims.KINDS)
+        yield from (lcp.LCP(*kind(round(2.0 * 40.0 ** r.random()), r)) for kind in claims.KINDS.values())
         yield lcp.LCP(*claims.hostile(k, r))
         yield claims.random_problem(r)
     problems = [getattr(make(name), "problem", None) for name in available()]

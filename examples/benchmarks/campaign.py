@@ -28,9 +28,9 @@ Cases = Callable[[int, int], Iterable[Any]]
 """A number and a seed to as many cases."""
 
 
-def drawn(make: Callable[[np.random.Generator], Any]) -> Cases:
-    """Cases of which each has a generator of its own."""
-    return lambda number, seed: (make(np.random.default_rng([seed, k])) for k in range(number))
+def drawn(make: Callable[[int, np.random.Generator], Any]) -> Cases:
+    """Cases by number, each with a generator of its own."""
+    return lambda number, seed: (make(k, np.random.default_rng([seed, k])) for k in range(number))
 
 
 @frozen

@@ -36,9 +36,9 @@ def stacked(kind: Callable[[int, np.random.Generator], claims.Data], units: floa
 
 
 KINDS: dict[str, Kind] = {
-    "p_matrices": stacked(claims.monotone), "semidefinite": stacked(claims.semidefinite),
-    "indefinite": stacked(claims.nonmonotone), "unsolvable": stacked(claims.infeasible),
-    "degenerate": stacked(claims.integer), "badly_scaled": stacked(claims.monotone, 6.0),
+    "p_matrices": stacked(claims.KINDS["monotone"]), "semidefinite": stacked(claims.KINDS["semidefinite"]),
+    "indefinite": stacked(claims.KINDS["nonmonotone"]), "unsolvable": stacked(claims.KINDS["infeasible"]),
+    "degenerate": stacked(claims.KINDS["integer"]), "badly_scaled": stacked(claims.KINDS["monotone"], 6.0),
 }  # fmt: skip
 
 

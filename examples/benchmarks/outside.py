@@ -10,14 +10,13 @@ import math
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 from bodies import arches, piles, stacks
-from campaign import Campaign, Cases, Verdict, asked
+from campaign import Campaign, Verdict, asked, drawn
 from scipy.optimize import linprog
 
 from continuation import Budget
@@ -180,22 +179,13 @@ def grids(k: int, r: np.random.Generator) -> LCP:
 Problem = LCP | lcp.MixedLCP | lcp.Program
 
 
-def cases(make: Callable[[int, np.random.Generator], Problem]) -> Cases:
-    """Problems by number, each with a generator of its own."""
-
-    def draw(number: int, seed: int) -> Iterator[Problem]:
-        return (make(k, np.random.default_rng([seed, k])) for k in range(number))
-
-    return draw
-
-
 FAMILIES = {
-    make.__name__: cases(make)
+    make.__name__: drawn(make)
     for make in (boxes, optimality, collapse, unsolvable, games, gaussian, nonmonotone, monotone, small, grids,
                  stacks, arches, piles)
 } | {
-    "large games": cases(partial(games, actions=(500,))),
-    "traffic": cases(lambda k, r: traffic((6, 12, 24)[k % 3], r)),
+    "large games": drawn(partial(games, actions=(500,))),
+    "traffic": drawn(lambda k, r: traffic((6, 12, 24)[k % 3], r)),
 }  # fmt: skip
 
 

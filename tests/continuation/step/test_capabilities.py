@@ -58,7 +58,7 @@ def test_a_finish_that_gives_no_point_is_named(end):
 @pytest.mark.parametrize("unit", [1.0, 1e8, 1e-8])
 def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said(unit):
     path = trace(Straight(residual=lambda y, lam: unit * (y - lam), finish=lambda y, lam: np.ones(1) + 1e-12))
-    assert (path.status, len(path)) == (Status.REACHED_TARGET, 3)
+    assert (path.status, len(path), path.counts.accepted) == (Status.REACHED_TARGET, 3, 2)
     assert path.message.endswith(f"the residual of H there is {path.endpoint.residual_norm:.1e}.")
     assert path.arclength[-1] > path.arclength[-2]
 

@@ -87,6 +87,25 @@ def test_the_verdict_of_a_certificate_knows_no_units(seed):
     assert (one.relative_residual, one.drowned) == (other.relative_residual, other.drowned)
 
 
+@given(st.integers(0, 2**32 - 1))
+@settings(deadline=None)
+def test_a_residual_between_bounds_knows_no_units_beyond_the_range_of_floats(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 7))
+    A, q = rng.integers(-2, 3, (n, n)).astype(float), rng.integers(-2, 3, n).astype(float)
+    x, lower = rng.choice([-1.0, 1.0, 2.0], n) * 10.0 ** rng.uniform(-12, 2, n), rng.integers(-2, 3, n).astype(float)
+    upper = lower + rng.choice([1.0, np.inf], n)
+    D, E = powers(rng, n, 900), powers(rng, n, 100)
+    problem, other = lcp.MixedLCP(A, q, lower, upper), lcp.MixedLCP(D[:, None] * A * E, D * q, lower / E, upper / E)
+    expected = lcp.certify(problem, x).relative_residual
+    assert lcp.certify(other, x / E).relative_residual == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize("size", [1e300, 1.0, 1e-5])
+def test_what_only_a_subnormal_entry_is_off_by_is_rounding(size):
+    assert lcp.certify(lcp.LCP([[size, 0.0], [0.0, 1.0]], [0.0, 1.0]), np.array([5e-324, 0.0])).solves()
+
+
 @pytest.mark.parametrize(("share", "solves"), [(1.001, True), (0.999, False)])
 def test_the_relative_residual_is_a_backward_error(share, solves):
     """x solves the problem whose entries are changed by that much relatively, and none whose are changed by less."""

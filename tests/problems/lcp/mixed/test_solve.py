@@ -128,6 +128,7 @@ def test_an_archive_of_a_problem_with_bounds(tmp_path, path):
     with open_archive(tmp_path / "run.h5") as archive:
         (stored,) = archive
         np.testing.assert_allclose(stored.endpoint.u[:2], solution.x, atol=1e-14)
+        np.testing.assert_array_equal(stored.lam, solution.path.lam)
 
 
 def test_homotopies_without_bounds_are_refused_by_name():
