@@ -94,9 +94,10 @@ def test_noise_is_measured_and_followed(preset, noise):
 
 @every_preset
 @pytest.mark.parametrize("d", [1e-2, 1e-6, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15])
-def test_the_error_of_an_end_is_a_bound(preset, d):
-    # The second unknown follows the parameter in a small unit.
-    residual, start = lambda y, lam: np.stack([y[0] ** 2 + lam**2 - 1.0, y[1] - 1e-6 * lam]), ([1.0, 0.0], 0.0)
+@pytest.mark.parametrize("slope", [0.0, 1e-6])
+def test_the_error_of_an_end_is_a_bound(preset, slope, d):
+    # The second unknown stands still, or follows the parameter in a small unit.
+    residual, start = lambda y, lam: np.stack([y[0] ** 2 + lam**2 - 1.0, y[1] - slope * lam]), ([1.0, 0.0], 0.0)
     homotopy = from_functions(residual, start=start, target=1.0 - d)
     path = trace(homotopy, preset=preset)
     with mp.workdps(50):
