@@ -78,8 +78,7 @@ def judge(case: tuple[LCP, Outcome], way: Any) -> Verdict:
 CAMPAIGN = Campaign({name: agreeing(kind) for name, kind in KINDS.items()}, judge, {"": None})
 
 if __name__ == "__main__":
-    names, numbers, _ = asked()
-    number = numbers[0] if numbers else 100_000
+    names, (number,), _ = asked(100_000)
     for n, k in ((5, number), (10, number // 4), (20, number // 10)):
         print(together(n, k), flush=True)
     sys.exit(min(CAMPAIGN.run(max(number // 100, 8), 1, names), 1))

@@ -213,7 +213,7 @@ def measured(problem: Problem, limit: float, homotopy: str = "auto") -> Verdict:
 
 
 if __name__ == "__main__":
-    names, numbers, options = asked(limit=10.0, homotopy="auto")
+    names, numbers, options = asked(24, 2026, limit=10.0, homotopy="auto")
     ways = {options.homotopy: options.homotopy}
     campaign = Campaign(FAMILIES, lambda case, way: measured(case, options.limit, way), ways, "ms")
-    sys.exit(campaign.run(*(numbers + [24, 2026][len(numbers) :]), names))
+    sys.exit(campaign.run(*numbers, names))
