@@ -12,12 +12,11 @@ from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Status, fr
 from continuation.metric import Euclidean
 from continuation.step.tracer import Tracer
 
-from ..util import benchmark
+from ..util import benchmark, by_preset
 
 families = benchmark("ends.py")
-PRESETS = (FAST, DEFAULT, CONSERVATIVE, SERIES)
-without_series = pytest.mark.parametrize("preset", PRESETS[:3], ids=[preset.name for preset in PRESETS[:3]])
-every_preset = pytest.mark.parametrize("preset", PRESETS, ids=[preset.name for preset in PRESETS])
+without_series = by_preset(FAST, DEFAULT, CONSERVATIVE)
+every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
 
 
 @every_preset
@@ -36,7 +35,7 @@ def test_families_in_random_units(family, preset):
     [("zero by symmetry", [k, 77]) for k in (36, 48, 51, 95)]
     + [("trusses", seed) for seed in ([1, 3, 7], [1, 4, 7], [1, 8, 7], [20261127, 7], [20261128, 21])],
 )
-@pytest.mark.parametrize("preset", [FAST, CONSERVATIVE], ids=lambda preset: preset.name)
+@by_preset(FAST, CONSERVATIVE)
 def test_noise_that_vanishes_at_the_start_or_looks_smooth_on_a_grid(family, seed, preset):
     """Each of these ended as STEP_TOO_SMALL: scales were those of round-off."""
     generator = np.random.default_rng(seed)

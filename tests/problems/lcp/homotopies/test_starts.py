@@ -101,10 +101,3 @@ def test_a_start_moves_with_its_bounds_and_is_mirrored_with_them(w0):
     np.testing.assert_allclose(moved, y + np.append(low, np.zeros(4)), rtol=1e-14)
     mirrored, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, -q, -np.inf, -low), -low - x0, w0=w0).start()
     np.testing.assert_allclose(mirrored[[0, 1, 4, 5]], -moved[[0, 1, 4, 5]], rtol=1e-14)
-
-
-@pytest.mark.parametrize("unit", [1e-3, 1e3])
-def test_multipliers_of_rows_in_a_box_depend_on_the_ratio_of_its_forces(unit):
-    problem, forces = lcp.MixedLCP(np.eye(2), np.ones(2), 0.0, [2.0, 3.0]), np.array([0.5, 0.2, 0.3, 0.9])
-    one, other = (lcp.KKTHomotopy(problem, [1.0, 1.0], w0=c * forces) for c in (1.0, unit))
-    np.testing.assert_allclose(*(h.rows.split(h.start()[0])[2] for h in (one, other)), rtol=1e-14)
