@@ -93,10 +93,10 @@ def test_noise_is_measured_and_followed(preset, noise):
 
 @every_preset
 @pytest.mark.parametrize("d", [1e-2, 1e-6, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15])
-@pytest.mark.parametrize("slope", [0.0, 1e-6])
-def test_the_error_of_an_end_is_a_bound(preset, slope, d):
+@pytest.mark.parametrize(("at", "slope"), [(2.0, 0.0), (0.0, 1e-6)])
+def test_the_error_of_an_end_is_a_bound(preset, at, slope, d):
     # The second unknown stands still, or follows the parameter in a small unit.
-    residual, start = lambda y, lam: np.stack([y[0] ** 2 + lam**2 - 1.0, y[1] - slope * lam]), ([1.0, 0.0], 0.0)
+    residual, start = lambda y, lam: np.stack([y[0] ** 2 + lam**2 - 1.0, y[1] - at - slope * lam]), ([1.0, at], 0.0)
     homotopy = from_functions(residual, start=start, target=1.0 - d)
     path = trace(homotopy, preset=preset)
     with mp.workdps(50):
@@ -205,16 +205,23 @@ def test_samples_of_one_field_have_one_scale():
     """Of two fields of three samples, and the parameter, which is no part of one."""
     size = np.array([1.0, 10.0, 0.1, 1e6, 1e5, 1e7])
 
-    def residual(y, lam):
-        return y / size + (y / size) ** 3 - lam
+    class Fields:
+        blocks = (0, 0, 0, 1, 1, 1)
+        target = 1.0
 
-    homotopy = from_functions(residual, start=(np.zeros(6), 0.0), target=1.0)
-    tracer = Tracer(homotopy, metric=continuation.Automatic(blocks=np.array([0, 0, 0, 1, 1, 1])))
-    next(iter(tracer))
-    weights = tracer.state.weights
-    assert len(set(weights[:3])) == len(set(weights[3:6])) == 1
-    assert weights[0] / weights[3] == pytest.approx(1e12, rel=1e-6)
-    assert tracer.run().status is Status.REACHED_TARGET
+        def start(self):
+            return np.zeros(6), 0.0
+
+        def residual(self, y, lam):
+            return y / size + (y / size) ** 3 - lam
+
+    told = from_functions(Fields().residual, start=Fields().start(), target=1.0)
+    for tracer in (Tracer(Fields()), Tracer(told, metric=continuation.Automatic(blocks=np.array(Fields.blocks)))):
+        next(iter(tracer))
+        weights = tracer.state.weights
+        assert len(set(weights[:3])) == len(set(weights[3:6])) == 1
+        assert weights[0] / weights[3] == pytest.approx(1e12, rel=1e-6)
+        assert tracer.run().status is Status.REACHED_TARGET
 
 
 @every_preset
