@@ -42,15 +42,13 @@ FARTHEST = 3.0
 class BranchPointOnArc:
     """A branch point on or ahead of an arc.
 
-    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no confusable branch
-    point is near.
+    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses.
     """
 
     u: Array
     simple: SimpleBranchPoint | None = None
     order: float = 1.0
     lost: int = 1
-    alone: bool = True
 
     @property
     def odd(self) -> bool:
