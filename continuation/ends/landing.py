@@ -86,8 +86,6 @@ class Landing:
             h = min(LEAP * h, longest)
         high = min(prediction.reach, STRETCH * h)
         try:
-            if not (prediction(high)[-1] - target) * gap >= 0.0:
-                return None
             reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)
             if reached is None:
                 return None

@@ -17,7 +17,7 @@ from attrs import define, evolve, field, frozen
 from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
-from continuation.events.crossing import EIGENVALUE_ACCURACY, SAME, changes, multiplicity
+from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
 from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
@@ -241,7 +241,7 @@ class _Looks:
             # The arc ends on another branch.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
-        if not (seen.alone and all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items())):
+        if not all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items()):
             others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
             # The arc must end before another eigenvalue vanishes.
             behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
@@ -283,9 +283,7 @@ class _Looks:
             t = min(position(arc, u) / arc.length, 1.0)
             if lost == 1 and order <= SIMPLE_ORDER and (lost := self._lost(u, t)) == 1:
                 return None
-            others = [mu for mu in self.look(u, t, Z_ROUND_OFF) if abs(mu - 1.0) > SAME] if lost > 1 else []
-            alone = not any(abs(mu - 1.0) <= NEAR_CROSSING for mu in others)
-            found = BranchPointOnArc(u, order=order, lost=lost, alone=alone)
+            found = BranchPointOnArc(u, order=order, lost=lost)
         return found
 
     def _lost(self, u: Array, t: float) -> int:

@@ -42,15 +42,13 @@ FARTHEST = 3.0
 class BranchPointOnArc:
     """A branch point on or ahead of an arc.
 
-    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses. `alone`: no confusable branch
-    point is near.
+    `simple`: None if degenerate. `order`: of the zero of z. `lost`: ranks that H' loses.
     """
 
     u: Array
     simple: SimpleBranchPoint | None = None
     order: float = 1.0
     lost: int = 1
-    alone: bool = True
 
     @property
     def odd(self) -> bool:
@@ -110,7 +108,7 @@ def degenerate_point(
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         order = min(max((ahead - t) / (beyond - left), 1.0), HIGHEST_ORDER)
         # Points on the path may cost factorisations.
-        t, before, last = ahead - order * beyond, 0.0, np.inf
+        t, last = ahead - order * beyond, np.inf
         for _ in range(SECANTS_OF_Z):
             if not 0.0 < t < FARTHEST:
                 return None
@@ -121,10 +119,7 @@ def degenerate_point(
             if not abs(left) < MONOTONE * abs(last):
                 # M_a is nearly singular: the rest of z is round-off.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= BLURRED else None
-            if before and abs(left) > ROOT_OF_ROUND_OFF * t:
-                # Nearer, z' is round-off, and the order a chance.
-                order = min(max((t - before) / (left - last), 1.0), HIGHEST_ORDER)
-            before, last, t = t, left, t - order * left
+            last, t = left, t - order * left
     except ArithmeticError:
         # z is NaN, or secant points coincide.
         pass

@@ -99,7 +99,7 @@ def initial_extent(
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
-    if np.isfinite(gap) and v[-1] != 0.0:
+    if np.isfinite(gap):
         whole = abs(gap / v[-1])
         v = v * np.sign(gap / v[-1])
     whole = whole if np.isfinite(whole) else farthest

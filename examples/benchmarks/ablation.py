@@ -34,7 +34,7 @@ def mix(number: int, seed: int) -> Iterator[Any]:
         yield from family(number, seed)
     for k in range(number):
         r = np.random.default_rng([seed, k])
-        yield from (lcp.LCP(*kind(round(2.0 * 40.0 ** r.random()), r)) for kind in claims.KINDS)
+        yield from (lcp.LCP(*kind(round(2.0 * 40.0 ** r.random()), r)) for kind in claims.KINDS.values())
         yield lcp.LCP(*claims.hostile(k, r))
         yield claims.random_problem(r)
     problems = [getattr(make(name), "problem", None) for name in available()]
@@ -48,7 +48,7 @@ def judge(problem: Any, kept: tuple[str, ...], limit: float) -> Verdict:
 
 
 if __name__ == "__main__":
-    _, numbers, options = asked(limit=1.5)
+    _, numbers, options = asked(5, 5, limit=1.5)
     ways = {"the table": ROWS} | {f"without {name}": tuple(n for n in ROWS if n != name) for name in ROWS} | SETS
     campaign = Campaign({"the mix": mix}, lambda problem, kept: judge(problem, kept, options.limit), ways, "ms")
-    sys.exit(campaign.run(*(numbers + [5, 5][len(numbers) :])))
+    sys.exit(campaign.run(*numbers))

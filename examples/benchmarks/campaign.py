@@ -28,9 +28,9 @@ Cases = Callable[[int, int], Iterable[Any]]
 """A number and a seed to as many cases."""
 
 
-def drawn(make: Callable[[np.random.Generator], Any]) -> Cases:
-    """Cases of which each has a generator of its own."""
-    return lambda number, seed: (make(np.random.default_rng([seed, k])) for k in range(number))
+def drawn(make: Callable[[int, np.random.Generator], Any]) -> Cases:
+    """Cases by number, each with a generator of its own."""
+    return lambda number, seed: (make(k, np.random.default_rng([seed, k])) for k in range(number))
 
 
 @frozen
@@ -60,19 +60,19 @@ class Campaign:
 
     def main(self, number: int) -> int:
         """Run what the command line asks for; the exit status."""
-        names, numbers, _ = asked()
-        return min(self.run(*(numbers + [number, 0][len(numbers) :]), names), 1)
+        names, numbers, _ = asked(number, 0)
+        return min(self.run(*numbers, names), 1)
 
 
-def asked(**defaults: Any) -> tuple[list[str], list[int], argparse.Namespace]:
-    """The command line's names, its numbers, and its options, whose defaults say what they are."""
+def asked(*numbers: int, **defaults: Any) -> tuple[list[str], list[int], argparse.Namespace]:
+    """The command line's names, its numbers or the default ones, and its options, whose defaults say what they are."""
     parser = argparse.ArgumentParser()
     parser.add_argument("words", nargs="*", default=[])
     for name, default in defaults.items():
         parser.add_argument(f"--{name}", type=type(default), default=default)
     options = parser.parse_args()
-    numbers = [int(word) for word in options.words if word.isdigit()]
-    return [word for word in options.words if not word.isdigit()], numbers, options
+    given = [int(word) for word in options.words if word.isdigit()]
+    return [word for word in options.words if not word.isdigit()], [*given, *numbers[len(given) :]], options
 
 
 def timed(work: Callable[[], Any], rounds: int = 1) -> tuple[Any, float]:

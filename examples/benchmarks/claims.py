@@ -11,12 +11,11 @@ by rounding"), and powers of two are held to the same outcome.
 import math
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
-from campaign import WRONG, Campaign, Verdict, timed
+from campaign import WRONG, Campaign, Verdict, drawn, timed
 
 from continuation import Budget
 from continuation.arrays import Array
@@ -40,38 +39,24 @@ FARTHEST = 1e-10
 BUDGET = Budget(seconds=60.0)
 
 
-def planted(A: Array, r: np.random.Generator) -> Array:
-    """A q with a solution."""
+def planted(A: Array, r: np.random.Generator) -> Data:
+    """A with a q that has a solution."""
     n = len(A)
     support = r.random(n) < 0.5
     x, w = r.integers(1, 17, (2, n)) / 8.0  # so that no rounding spoils what integers plant
-    q: Array = np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
-    return q
+    return A, np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
 
 
-def definite(n: int, r: np.random.Generator) -> Data:
-    """Symmetric positive definite."""
-    M = r.standard_normal((n, n))
-    return M @ M.T / n + 0.1 * np.eye(n), r.standard_normal(n)
+def squared(M: Array) -> Array:
+    """M M'."""
+    return M @ M.T
 
 
 def monotone(n: int, r: np.random.Generator) -> Data:
     """Positive definite, not symmetric."""
-    A, q = definite(n, r)
+    A, q = KINDS["definite"](n, r)
     S = r.standard_normal((n, n))
     return A + S - S.T, q
-
-
-def semidefinite(n: int, r: np.random.Generator) -> Data:
-    """Symmetric, of half the rank, with a planted solution."""
-    M = r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)
-    A = M @ M.T
-    return A, planted(A, r)
-
-
-def z_matrix(n: int, r: np.random.Generator) -> Data:
-    """No positive entry off the diagonal; often infeasible."""
-    return np.diag(r.uniform(0.0, n, n)) - r.random((n, n)) * (1 - np.eye(n)), r.standard_normal(n)
 
 
 def game(n: int, r: np.random.Generator) -> Data:
@@ -81,25 +66,9 @@ def game(n: int, r: np.random.Generator) -> Data:
     return np.block([[np.zeros((m, m)), C], [D.T, np.zeros((m, m))]]), -np.ones(2 * m)
 
 
-def nonmonotone(n: int, r: np.random.Generator) -> Data:
-    """Of no class, with a planted solution."""
-    A = r.standard_normal((n, n))
-    return A, planted(A, r)
-
-
-def anything(n: int, r: np.random.Generator) -> Data:
-    """Of no class; solvable, unsolvable or infeasible."""
-    return r.standard_normal((n, n)), r.standard_normal(n)
-
-
-def integer(n: int, r: np.random.Generator) -> Data:
-    """Small integers, so that much is degenerate."""
-    return r.integers(-2, 3, (n, n)).astype(float), r.integers(-2, 3, n).astype(float)
-
-
 def sparse(n: int, r: np.random.Generator) -> Data:
     """Small integers, most of them zero."""
-    A, q = integer(n, r)
+    A, q = KINDS["integer"](n, r)
     return A * (r.random((n, n)) < 0.4), q
 
 
@@ -111,16 +80,34 @@ def infeasible(n: int, r: np.random.Generator) -> Data:
     return A, q
 
 
-KINDS: tuple[Callable[[int, np.random.Generator], Data], ...] = (
-    definite, monotone, semidefinite, z_matrix, game, nonmonotone, anything, integer, sparse, infeasible,
-)  # fmt: skip
+KINDS: dict[str, Callable[[int, np.random.Generator], Data]] = {
+    "definite": lambda n, r: (squared(r.standard_normal((n, n))) / n + 0.1 * np.eye(n), r.standard_normal(n)),
+    "monotone": monotone,
+    # Of half the rank.
+    "semidefinite": lambda n, r: planted(squared(r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)), r),
+    # No positive entry off the diagonal; often infeasible.
+    "z_matrix": lambda n, r: (
+        np.diag(r.uniform(0.0, n, n)) - r.random((n, n)) * (1 - np.eye(n)), r.standard_normal(n)
+    ),
+    "game": game,
+    "nonmonotone": lambda n, r: planted(r.standard_normal((n, n)), r),
+    "anything": lambda n, r: (r.standard_normal((n, n)), r.standard_normal(n)),
+    # Much is degenerate.
+    "integer": lambda n, r: (r.integers(-2, 3, (n, n)).astype(float), r.integers(-2, 3, n).astype(float)),
+    "sparse": sparse,
+    "infeasible": infeasible,
+}  # fmt: skip
 
-
-QUICK = (definite, monotone, z_matrix, game)
+QUICK = ("definite", "monotone", "z_matrix", "game")
 """Kinds that are solved before any path, at any order."""
 
 LARGE = (13, 25)
 """Orders from which on active sets are tried before a problem is put into units of its own."""
+
+
+def turn(k: int) -> tuple[str, int]:
+    """The kind of the k-th problem, and how often it had its turn before."""
+    return [*KINDS][k % len(KINDS)], k // len(KINDS)
 
 
 def solved(A: Array, q: Array) -> lcp.Solution:
@@ -130,65 +117,46 @@ def solved(A: Array, q: Array) -> lcp.Solution:
         return lcp.solve(lcp.LCP(A, q), budget=BUDGET)
 
 
-def same_outcome(one: lcp.Solution, other: lcp.Solution, exact: bool) -> bool:
-    """Whether both say the same, or, of data that were rounded, what only rounding can tell apart."""
-    if exact or one.outcome is other.outcome:
-        return one.outcome is other.outcome
-    return all(map(without_solution, (one, other))) or (one.solved and other.solved)
-
-
-def lost_in_rounding(one: lcp.Solution, other: lcp.Solution, E: Array) -> bool:
-    """Whether the solution of the one solves the other to the rounding of its entries, which exactly has none."""
-    return (
-        one.solved
-        and without_solution(other)
-        and lcp.certify(other.problem, one.x / E).relative_residual <= 4.0 * np.finfo(float).eps
-    )
-
-
 def without_solution(found: lcp.Solution) -> bool:
     """Whether it is said that there is no solution, or none that floats can hold."""
     unrepresented = found.outcome is Outcome.NOT_FOUND and found.exhaustion is not None
     return unrepresented or found.outcome in (Outcome.UNSOLVABLE, Outcome.INFEASIBLE_TO_PRECISION)
 
 
-def same_point(one: Array, other: Array) -> bool:
-    """Whether two points of one problem agree to round-off and its condition."""
-    size = max(float(np.abs(one).max()), 1e-300)
-    return bool(np.abs(one - other).max() <= SAME_X * size)
+def by_rounding(one: lcp.Solution, other: lcp.Solution, E: Array) -> bool:
+    """Whether only the rounding of its data can tell the other from the one, whose x has units 1 / E there."""
+    if without_solution(other) and one.solved:
+        return lcp.certify(other.problem, one.x / E).relative_residual <= 4.0 * np.finfo(float).eps
+    return (one.solved and other.solved) or (without_solution(one) and without_solution(other))
 
 
 def compared(one: lcp.Solution, other: lcp.Solution, exact: bool, E: Array) -> str:
     """What two answers come to, of which the other is of the same problem with x in units of 1 / E."""
     said = f"{one.outcome.name} and {other.outcome.name}"
-    if not (same_outcome(one, other, exact) or (not exact and lost_in_rounding(one, other, E))):
-        return f"{WRONG}: {said}"
     if one.outcome is not other.outcome:
-        return f"decided by rounding: {said}"
-    return "" if not one.solved or same_point(one.x, other.x * E) else "another solution"
+        return f"decided by rounding: {said}" if not exact and by_rounding(one, other, E) else f"{WRONG}: {said}"
+    same = not one.solved or np.abs(one.x - other.x * E).max() <= SAME_X * max(float(np.abs(one.x).max()), 1e-300)
+    return "" if same else "another solution"
 
 
-def in_units(A: Array, q: Array, D: Array, E: Array, exact: bool) -> Verdict:
-    """A problem, and the same in other units, which are perhaps powers of two."""
-    if exact:
+def units(k: int, r: np.random.Generator) -> Verdict:
+    """A problem, and the same in units for every row and column, powers of two in every second one."""
+    kind, before = turn(k)
+    A, q = KINDS[kind](int(r.integers(2, 13)), r)
+    D, E = 10.0 ** r.uniform(-8, 8, (2, len(q)))
+    if exact := bool(before % 2):
         D, E = np.exp2(np.round(np.log2(D))), np.exp2(np.round(np.log2(E)))
     return compared(solved(A, q), solved(D[:, None] * A * E, D * q), exact, E), math.nan
 
 
-def units(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
-    """Problems with units for every row and column, powers of two in every second one."""
-    for k in range(number):
-        r = np.random.default_rng([seed, k])
-        A, q = KINDS[k % len(KINDS)](int(r.integers(2, 13)), r)
-        yield partial(in_units, A, q, *10.0 ** r.uniform(-8, 8, (2, len(q))), bool(k // len(KINDS) % 2))
-
-
-def times_factors(A: Array, q: Array) -> Verdict:
-    """LCP(s q, s A) has the same solutions for all s.
+def factor(k: int, r: np.random.Generator) -> Verdict:
+    """A small problem, or every fifth of some kinds one that is not, has the same solutions times any s.
 
     The power of two next to s rounds nothing, and is to change no digit of the answer. s itself rounds the entries, and
     so may make a singular problem one that is not.
     """
+    kind, before = turn(k)
+    A, q = KINDS[kind](int(r.integers(*(LARGE if kind in QUICK and before % 5 == 4 else (1, 6)))), r)
     one, said = solved(A, q), {""}
     for s in FACTORS:
         two = 2.0 ** round(math.log2(s))
@@ -199,17 +167,9 @@ def times_factors(A: Array, q: Array) -> Verdict:
     return max(said, key=lambda text: (text.startswith(WRONG), text)), math.nan
 
 
-def factor(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
-    """Small problems, and every fifth of some kinds one that is not."""
-    for k in range(number):
-        r, kind = np.random.default_rng([seed, k]), KINDS[k % len(KINDS)]
-        large = kind in QUICK and k // len(KINDS) % 5 == 4
-        yield partial(times_factors, *kind(int(r.integers(*(LARGE if large else (1, 6)))), r))
-
-
 def hostile(k: int, r: np.random.Generator) -> Data:
     """A small problem; every third with entries 10^U(-200, 200)."""
-    A, q = KINDS[k % len(KINDS)](int(r.integers(1, 6)), r)
+    A, q = KINDS[turn(k)[0]](int(r.integers(1, 6)), r)
     if k % 3 == 0:
         A, q = A * 10.0 ** r.uniform(-200, 200, A.shape), q * 10.0 ** r.uniform(-200, 200, q.shape)
     return A, q
@@ -239,8 +199,9 @@ def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
     return min(y) >= 0 and below and sum(Fraction(a) * b for a, b in zip(q.tolist(), y)) < 0
 
 
-def judged(A: Array, q: Array) -> Verdict:
-    """SOLVED and UNSOLVABLE against enumeration; no exception, no warning, nothing slow."""
+def truth(k: int, r: np.random.Generator) -> Verdict:
+    """SOLVED and UNSOLVABLE of small problems against enumeration; no exception, no warning, nothing slow."""
+    A, q = hostile(k, r)
     try:
         found, seconds = timed(lambda: solved(A, q))
     except Exception as error:
@@ -256,11 +217,6 @@ def judged(A: Array, q: Array) -> Verdict:
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None and not proves(A, q, found.farkas.y):
         said = f"{WRONG}: {said}, no Farkas vector"
     return said if seconds <= SLOW else f"{WRONG}: slow", seconds
-
-
-def truth(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
-    """Small problems, hostile ones among them."""
-    return (partial(judged, *hostile(k, np.random.default_rng([seed, k]))) for k in range(number))
 
 
 def random_problem(rng: np.random.Generator) -> lcp.MixedLCP:
@@ -283,20 +239,16 @@ def random_problem(rng: np.random.Generator) -> lcp.MixedLCP:
     return lcp.MixedLCP(A, q, lower, upper)
 
 
-def within(problem: lcp.MixedLCP) -> Verdict:
-    """The outcome against all pieces in exact arithmetic."""
+def bounds(k: int, r: np.random.Generator) -> Verdict:
+    """The outcome of a problem with bounds against all pieces in exact arithmetic."""
+    problem = random_problem(r)
     (found, seconds), solvable = timed(lambda: lcp.solve(problem)), exhaust(problem).solvable
     false = found.success != solvable or (found.outcome is Outcome.UNSOLVABLE and solvable)
     return f"{WRONG}: {found.outcome.name} of {problem!r}" if false else found.outcome.name, seconds
 
 
-def bounds(number: int, seed: int) -> Iterator[Callable[[], Verdict]]:
-    """Problems with bounds."""
-    return (partial(within, random_problem(np.random.default_rng([seed, k]))) for k in range(number))
-
-
-FAMILIES = {family.__name__: family for family in (units, factor, truth, bounds)}
-CAMPAIGN = Campaign(FAMILIES, lambda case, way: case(), {"": None}, "seconds")
+FAMILIES = {family.__name__: drawn(family) for family in (units, factor, truth, bounds)}
+CAMPAIGN = Campaign(FAMILIES, lambda verdict, way: verdict, {"": None}, "seconds")
 
 if __name__ == "__main__":
     sys.exit(CAMPAIGN.main(1000))

@@ -105,12 +105,6 @@ def across(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     return numbered(path, [*path.steps[:i], *beyond], [])
 
 
-def unlisted(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
-    """A turning point dropped, or listed twice."""
-    event = path.turning_points[int(rng.integers(len(path.turning_points)))]
-    return changed(path, event, *([event, event] if rng.random() < 0.3 else []))
-
-
 def invented(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """A turning point listed at a step of the path, on the curve, where there is none."""
     away = [s for s in path.steps[1:-1] if all(abs(s.arclength - e.arclength) > 0.3 for e in path.turning_points)]
@@ -156,13 +150,14 @@ def drawn(path: Path, rng: np.random.Generator) -> Any:
     return among[int(rng.integers(len(among)))]
 
 
-def unkinked(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
-    """A kink dropped, and half of the times its point too."""
-    kink = drawn(path, rng)
-    if rng.random() < 0.5:
-        return changed(path, kink)
-    steps = [s for s in path.steps if s.index != kink.step]
-    return numbered(path, steps, [e for e in path.events if e is not kink])
+def unlisted(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+    """A kink dropped, half of the times with its point; or a turning point dropped, or listed twice."""
+    among, twice = [*path.kinks, *path.turning_points], rng.random() < 0.5
+    event = among[int(rng.integers(len(among)))]
+    if event.kind is not Kind.KINK:
+        return changed(path, event, *([event, event] if twice else []))
+    steps = [s for s in path.steps if twice or s.index != event.step]
+    return numbered(path, steps, [e for e in path.events if e is not event])
 
 
 def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
@@ -240,14 +235,14 @@ def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: An
     return evolve(found, status=Status.STOPPED_AT_EVENT)
 
 
-AT_KINKS = (unkinked, misplaced, pushed, renamed, turned_back, straight_on)
+AT_KINKS = (unlisted, misplaced, pushed, renamed, turned_back, straight_on)
 AT_TURNS = (unlisted, misplaced)
 ANYWHERE = (moved, swapped, jumped, invented, left_out, turned_back)
 
 
 def faults(homotopy: Any, path: Path) -> list[Any]:
     """What can be done to a path."""
-    found = [*ANYWHERE, *(AT_TURNS if path.turning_points else ()), *(AT_KINKS if path.kinks else ())]
+    found = [*ANYWHERE, *(AT_KINKS if path.kinks else AT_TURNS if path.turning_points else ())]
     return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from attrs import frozen
-from campaign import WRONG, Campaign, Verdict, drawn
+from campaign import WRONG, Campaign, Cases, Verdict, drawn
 
 import continuation
 from continuation import Status
@@ -166,13 +166,6 @@ def logarithm(generator: np.random.Generator) -> Case:
     return scalar(lambda y, lam: np.exp(-y / c) - 1.0 + lam, 0.0, 0.0, 1.0, ends=(Status.DIVERGED,))
 
 
-def before_fold(generator: np.random.Generator) -> Case:
-    """A circle to 1e-1 .. 1e-14 before its fold."""
-    d = 10.0 ** generator.uniform(-14.0, -1.0)
-    target = 1.0 - d
-    return scalar(lambda y, lam: y**2 + lam**2 - 1.0, 1.0, 0.0, target)
-
-
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "imperfections": imperfect,
     "zero by symmetry": ring,
@@ -184,18 +177,21 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "weak parameter": weak,
     "poles": pole,
     "logarithms": logarithm,
-    "before folds": before_fold,
+    # A circle to 1e-1 .. 1e-14 before its fold.
+    "before folds": lambda generator: scalar(
+        lambda y, lam: y**2 + lam**2 - 1.0, 1.0, 0.0, 1.0 - 10.0 ** generator.uniform(-14.0, -1.0)
+    ),
 }
 
 
-def in_units(family: Callable[[np.random.Generator], Case]) -> Callable[[np.random.Generator], tuple[Case, Any]]:
-    """A path, and the same in random units."""
+def in_units(family: Callable[[np.random.Generator], Case]) -> Cases:
+    """Paths, and the same in random units."""
 
-    def draw(generator: np.random.Generator) -> tuple[Case, Any]:
+    def draw(_: int, generator: np.random.Generator) -> tuple[Case, Any]:
         case = family(generator)
         return case, case.homotopy(*10.0 ** generator.uniform(-UNITS, UNITS, 3))
 
-    return draw
+    return drawn(draw)
 
 
 def wrong(path: continuation.Path, case: Case) -> str:
@@ -214,7 +210,7 @@ def judge(drawn_one: tuple[Case, Any], preset: continuation.Preset) -> Verdict:
     return wrong(path, case), ratio
 
 
-CAMPAIGN = Campaign({name: drawn(in_units(f)) for name, f in FAMILIES.items()}, judge, cost="cost")
+CAMPAIGN = Campaign({name: in_units(f) for name, f in FAMILIES.items()}, judge, cost="cost")
 
 if __name__ == "__main__":
     sys.exit(CAMPAIGN.main(100))

@@ -18,13 +18,6 @@ import continuation
 A, DX, DY, ENDS = 2.0, 0.008, 0.004, 1.2
 
 
-class Numpy:
-    """A residual with its Jacobian."""
-
-    def __init__(self, residual, jacobian, start, target):
-        self.residual, self.jacobian, self.start, self.target = residual, jacobian, lambda: start, target
-
-
 def brusselator(n):
     """x' = DX x'' + A - (B + 1) x + x^2 y, y' = DY y'' + B x - x^2 y, x = ENDS A, y = B / A at the ends; B from 4."""
     h2 = (1.0 / (n + 1)) ** 2
@@ -106,7 +99,7 @@ def ways(model):
         return continuation.from_sympy(list(shown), y, lam, start, target=target)
 
     made = {
-        "numpy": lambda: Numpy(in_numpy, jacobian, start, target),
+        "numpy": lambda: continuation.from_functions(in_numpy, jacobian, start=start, target=target),
         "jax": lambda: by_jax("dense"), "jax sparse": lambda: by_jax("sparse"),
         "casadi": by_casadi, "sympy": by_sympy,
         "residual only": lambda: continuation.from_functions(in_numpy, start=start, target=target),

@@ -36,9 +36,9 @@ def stacked(kind: Callable[[int, np.random.Generator], claims.Data], units: floa
 
 
 KINDS: dict[str, Kind] = {
-    "p_matrices": stacked(claims.monotone), "semidefinite": stacked(claims.semidefinite),
-    "indefinite": stacked(claims.nonmonotone), "unsolvable": stacked(claims.infeasible),
-    "degenerate": stacked(claims.integer), "badly_scaled": stacked(claims.monotone, 6.0),
+    "p_matrices": stacked(claims.KINDS["monotone"]), "semidefinite": stacked(claims.KINDS["semidefinite"]),
+    "indefinite": stacked(claims.KINDS["nonmonotone"]), "unsolvable": stacked(claims.KINDS["infeasible"]),
+    "degenerate": stacked(claims.KINDS["integer"]), "badly_scaled": stacked(claims.KINDS["monotone"], 6.0),
 }  # fmt: skip
 
 
@@ -78,8 +78,7 @@ def judge(case: tuple[LCP, Outcome], way: Any) -> Verdict:
 CAMPAIGN = Campaign({name: agreeing(kind) for name, kind in KINDS.items()}, judge, {"": None})
 
 if __name__ == "__main__":
-    names, numbers, _ = asked()
-    number = numbers[0] if numbers else 100_000
+    names, (number,), _ = asked(100_000)
     for n, k in ((5, number), (10, number // 4), (20, number // 10)):
         print(together(n, k), flush=True)
     sys.exit(min(CAMPAIGN.run(max(number // 100, 8), 1, names), 1))

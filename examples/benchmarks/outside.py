@@ -10,14 +10,14 @@ import math
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 from bodies import arches, piles, stacks
-from campaign import Campaign, Cases, Verdict, asked
+from campaign import Campaign, Verdict, asked, drawn
 from scipy.optimize import linprog
 
 from continuation import Budget
@@ -76,34 +76,48 @@ def unsolvable(k: int, r: np.random.Generator) -> LCP:
     return LCP(whole[np.ix_(order, order)], np.append(q, r.standard_normal(n - 2))[order])
 
 
-KINDS = "normal", "0-1", "covariant -.9", "covariant .5", "zero-sum", "unit vectors", "dual cyclic", "uniform"
+def unit_vectors(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
+    """Each column of the one player's costs has one entry; the other's are uniform."""
+    m, X = len(Y), np.zeros_like(Y)
+    Y = -r.random((m, m))
+    X[r.integers(0, m, m), np.arange(m)] = -1.0
+    return X, Y
+
+
+def dual_cyclic(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
+    """Of two polytopes on the moment curve."""
+    m = len(Y)
+    V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
+    V = V - V.mean(axis=0)
+    return -V[m:], -V[:m][r.permutation(m)].T
+
+
+def covariant(rho: float) -> Callable[[Array, Array, np.random.Generator], tuple[Array, Array]]:
+    """Costs of such a correlation."""
+    return lambda X, Y, r: (X, rho * X + math.sqrt(1.0 - rho * rho) * Y)
+
+
+KINDS: dict[str, Callable[[Array, Array, np.random.Generator], tuple[Array, Array]]] = {
+    "normal": lambda X, Y, r: (X, Y),
+    "0-1": lambda X, Y, r: ((X < 0.0).astype(float), (Y < 0.0).astype(float)),
+    "covariant -.9": covariant(-0.9),
+    "covariant .5": covariant(0.5),
+    "zero-sum": lambda X, Y, r: (X, -X),
+    "unit vectors": lambda X, Y, r: unit_vectors(Y, r),
+    "dual cyclic": lambda X, Y, r: dual_cyclic(Y, r),
+    "uniform": lambda X, Y, r: tuple(r.random((2, *X.shape))),
+}
 
 
 def game_of(kind: str, m: int, r: np.random.Generator) -> LCP:
-    """A game with m actions a player, of one of `KINDS`."""
-    X, Y = r.standard_normal((2, m, m))
-    if kind == "0-1":
-        X, Y = (X < 0.0).astype(float), (Y < 0.0).astype(float)
-    elif kind.startswith("covariant"):
-        rho = float(kind.split()[1])
-        Y = rho * X + math.sqrt(1.0 - rho * rho) * Y
-    elif kind == "zero-sum":
-        Y = -X
-    elif kind == "unit vectors":
-        X, Y = np.zeros((m, m)), -r.random((m, m))
-        X[r.integers(0, m, m), np.arange(m)] = -1.0
-    elif kind == "dual cyclic":
-        V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
-        V = V - V.mean(axis=0)
-        X, Y = -V[m:], -V[:m][r.permutation(m)].T
-    elif kind == "uniform":
-        X, Y = r.random((2, m, m))
+    """A game with m actions a player, of one of `KINDS`, made of normal costs."""
+    X, Y = KINDS[kind](*r.standard_normal((2, m, m)), r)
     return bimatrix(X - X.min() + 1.0, Y - Y.min() + 1.0)
 
 
 def games(k: int, r: np.random.Generator, actions: tuple[int, ...] = (20, 50, 150)) -> LCP:
     """Of all kinds, n = 40, 100, 300."""
-    return game_of(KINDS[k % 8], actions[k // 8 % len(actions)], r)
+    return game_of([*KINDS][k % 8], actions[k // 8 % len(actions)], r)
 
 
 STREETS = (
@@ -180,22 +194,13 @@ def grids(k: int, r: np.random.Generator) -> LCP:
 Problem = LCP | lcp.MixedLCP | lcp.Program
 
 
-def cases(make: Callable[[int, np.random.Generator], Problem]) -> Cases:
-    """Problems by number, each with a generator of its own."""
-
-    def draw(number: int, seed: int) -> Iterator[Problem]:
-        return (make(k, np.random.default_rng([seed, k])) for k in range(number))
-
-    return draw
-
-
 FAMILIES = {
-    make.__name__: cases(make)
+    make.__name__: drawn(make)
     for make in (boxes, optimality, collapse, unsolvable, games, gaussian, nonmonotone, monotone, small, grids,
                  stacks, arches, piles)
 } | {
-    "large games": cases(partial(games, actions=(500,))),
-    "traffic": cases(lambda k, r: traffic((6, 12, 24)[k % 3], r)),
+    "large games": drawn(partial(games, actions=(500,))),
+    "traffic": drawn(lambda k, r: traffic((6, 12, 24)[k % 3], r)),
 }  # fmt: skip
 
 
@@ -223,7 +228,7 @@ def measured(problem: Problem, limit: float, homotopy: str = "auto") -> Verdict:
 
 
 if __name__ == "__main__":
-    names, numbers, options = asked(limit=10.0, homotopy="auto")
+    names, numbers, options = asked(24, 2026, limit=10.0, homotopy="auto")
     ways = {options.homotopy: options.homotopy}
     campaign = Campaign(FAMILIES, lambda case, way: measured(case, options.limit, way), ways, "ms")
-    sys.exit(campaign.run(*(numbers + [24, 2026][len(numbers) :]), names))
+    sys.exit(campaign.run(*numbers, names))

@@ -57,8 +57,7 @@ def run(n, processes=0, archive=None):
 
 
 if __name__ == "__main__":
-    files, numbers, _ = asked()
-    n, processes = numbers + [5, 0][len(numbers) :]
+    files, (n, processes), _ = asked(5, 0)
     found = run(n, processes, *files)
     seconds = sum(resource.getrusage(who).ru_utime for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

@@ -21,12 +21,11 @@ from continuation import (
 )
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine
 
-from ..util import benchmark
+from ..util import benchmark, by_preset
 
 bends, run = benchmark("bends.py"), benchmark("units.py")
 
-PRESETS = (FAST, DEFAULT, CONSERVATIVE, SERIES)
-every_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.name)
+every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
 
 
 # -- units and shifts ---------------------------------------------------------------------------------------------
@@ -49,7 +48,7 @@ def test_random_units_change_nothing(name, preset):
 
 
 @pytest.mark.parametrize(("number", "seed"), [(3, 0), (9, 9)])
-@pytest.mark.parametrize("preset", [FAST, DEFAULT], ids=lambda preset: preset.name)
+@by_preset(FAST, DEFAULT)
 def test_a_point_where_two_ranks_are_lost_is_passed_in_any_units(preset, number, seed):
     """The symmetric branch on a square: 2.6 times the factorisations while the place depended on where zero is.
 

@@ -75,7 +75,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     none = np.zeros(problem.n, dtype=np.int64)
     if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
         return Terms(problem.A, x, w, size, none)  # w is finite where the size is
-    doubtful, small = ~np.isfinite(w) | ~(size <= LARGEST_TERMS), size < 1.0 / LARGEST_TERMS
+    doubtful, small = ~(size <= LARGEST_TERMS), size < 1.0 / LARGEST_TERMS
     if small.any():
         doubtful |= small & _filled(problem, x)
     if not doubtful.any():

@@ -121,6 +121,11 @@ class Renaming(Line):
         return {f"k{self.seen}": 1.0}
 
 
+@pytest.mark.parametrize("blocks", [[0], [0, 1, 1], [0, -1], [0.0, 1.0]])
+def test_labels_that_are_none_of_the_unknowns(blocks):
+    refused("blocks", lambda: trace(with_methods(blocks=blocks)))
+
+
 def test_truth_values_are_no_residual():
     refused("residual", lambda: trace(with_methods(residual=lambda self, y, lam: y - lam > 0.0)))
 

@@ -5,7 +5,7 @@ import pytest
 from attrs import evolve
 
 import continuation
-from continuation import Budget, Path, Status, Step, certify, refine, trace
+from continuation import Budget, Path, Status, Step, certify, from_functions, refine, trace
 from continuation.certificate import verify
 from problems import paper
 from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCosine, FreudensteinRoth, Pitchfork
@@ -19,16 +19,10 @@ corrupted = benchmark("corrupted.py")
 EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
 
 
-class Duffing:
-    target = 2.5
-
-    def start(self):
-        return np.array([0.3, 0.0]), 0.1
-
-    def residual(self, y, lam):
-        a, b = y[0], y[1]
-        stiffness = 1.0 - lam**2 + 0.75 * (a**2 + b**2)
-        return np.stack([stiffness * a + 0.1 * lam * b - 0.3, stiffness * b - 0.1 * lam * a])
+def duffing(y, lam):
+    a, b = y[0], y[1]
+    stiffness = 1.0 - lam**2 + 0.75 * (a**2 + b**2)
+    return np.stack([stiffness * a + 0.1 * lam * b - 0.3, stiffness * b - 0.1 * lam * a])
 
 
 @pytest.mark.parametrize("k", range(10))
@@ -53,7 +47,7 @@ ACCEPTED = {
     "cusp": (Cusp(), 200),
     "circle": (Circle(), 200),
     "aircraft": (Aircraft(), 60),
-    "duffing": (Duffing(), 200),
+    "duffing": (from_functions(duffing, start=([0.3, 0.0], 0.1), target=2.5), 200),
     "bratu": (Bratu1D(16), 14),
     **{f"exponential-cosine-{n}": (ExponentialCosine(n), 200) for n in (2, 3, 4)},
 }
@@ -83,28 +77,19 @@ def test_the_true_path_lies_in_the_tube():
     assert not certify(evolve(path, events=sorted([*path.events, *events], key=lambda e: e.arclength)), homotopy).gaps
 
 
-class Scaled:
+def scaled(homotopy, seed):
     """The same homotopy in other units of y, of the parameter and of the equations."""
-
-    def __init__(self, homotopy, seed):
-        rng = np.random.default_rng(seed)
-        self.inner, n = homotopy, len(homotopy.start()[0])
-        self.D, self.E = 2.0 ** rng.integers(-20, 20, n), 2.0 ** rng.integers(-20, 20, n)
-        self.a = 2.0 ** float(rng.integers(-20, 20))
-        self.target = None if homotopy.target is None else homotopy.target * self.a
-
-    def start(self):
-        y, lam = self.inner.start()
-        return y * self.D, lam * self.a
-
-    def residual(self, y, lam):
-        return self.E * self.inner.residual(y / self.D, lam / self.a)
+    (y, lam), rng = homotopy.start(), np.random.default_rng(seed)
+    D, E = 2.0 ** rng.integers(-20, 20, (2, y.size))
+    a = 2.0 ** float(rng.integers(-20, 20))
+    target = None if homotopy.target is None else homotopy.target * a
+    return from_functions(lambda y, lam: E * homotopy.residual(y / D, lam / a), start=(y * D, lam * a), target=target)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_units_do_not_matter(seed):
     for inner in (FreudensteinRoth(), ExponentialCosine(3)):
-        homotopy = Scaled(inner, seed)
+        homotopy = scaled(inner, seed)
         path = trace(homotopy)
         proof = certify(path, homotopy)
         assert proof.complete, str(proof)
@@ -135,34 +120,21 @@ def test_a_branch_point_is_a_gap_with_its_reason():
 
 
 def test_a_kink_is_crossed_by_one_lipschitz_curve():
-    class Kink:
-        target = 1.0
-
-        def start(self):
-            return np.array([1.0]), -1.0
-
-        def residual(self, y, lam):
-            return y - np.abs(lam) * (1.0 + 0.1 * y)
-
+    kink = from_functions(lambda y, lam: y - np.abs(lam) * (1.0 + 0.1 * y), start=([1.0], -1.0), target=1.0)
     steps = []
     for k, lam in enumerate([-1.0, -0.6, -0.3, -0.1, 0.1, 0.4, 1.0]):
         y, slope = abs(lam) / (1.0 - 0.1 * abs(lam)), np.sign(lam) / (1.0 - 0.1 * abs(lam)) ** 2
         steps.append(Step(k, np.array([y, lam]), np.array([slope, 1.0]), arclength=1.0 + lam))
-    assert certify(Path(steps=steps, status=Status.REACHED_TARGET), Kink()).complete
+    assert certify(Path(steps=steps, status=Status.REACHED_TARGET), kink).complete
 
 
 def test_a_comparison_that_boxes_do_not_decide_is_a_gap_there_alone():
-    class Compared:
-        target = 1.0
+    def residual(y, lam):
+        return np.stack([y[0] - np.where(lam > 0.3, np.sin(lam), np.sin(lam)), y[1] - 0.5])
 
-        def start(self):
-            return np.array([0.0, 0.5]), 0.0
-
-        def residual(self, y, lam):
-            return np.stack([y[0] - np.where(lam > 0.3, np.sin(lam), np.sin(lam)), y[1] - 0.5])
-
-    path = trace(Compared())
-    proof = certify(path, Compared())
+    homotopy = from_functions(residual, start=([0.0, 0.5], 0.0), target=1.0)
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
     ((begin, end),) = {(gap.begin, gap.end) for gap in proof.gaps}
     assert "not decided" in proof.gaps[-1].reason
     assert path(begin)[-1] < 0.3 < path(end)[-1]
@@ -257,17 +229,8 @@ def test_bad_input_is_named():
     with pytest.raises(ValueError, match="expected points of"):
         certify(path, ExponentialCosine(5))
 
-    class Sorted:
-        target = 1.0
-
-        def start(self):
-            return np.zeros(2), 0.0
-
-        def residual(self, y, lam):
-            return np.sort(y) - lam
-
     with pytest.raises(TypeError, match=r"numpy\.sort"):
-        certify(path, Sorted())
+        certify(path, from_functions(lambda y, lam: np.sort(y) - lam, start=(np.zeros(2), 0.0), target=1.0))
 
 
 def test_a_picture_and_the_radius():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import Budget, Path, certify, trace
+from continuation import Budget, Path, certify, from_functions, trace
 from continuation.certificate.certifying import recheck
 from continuation.status import Status
 from problems.nonlinear import bratu_under_obstacle
@@ -20,17 +20,6 @@ def bent(y, lam, a, b):
     """Two equations with a = |x - 1/2| and b = |lam - 7/10|, or one of their pieces."""
     x, z = y
     return np.stack([x - np.sin(z) - 0.3 * a - lam + 0.15, z - 0.5 * x * x - 0.4 * b - 0.2 * lam + 0.28])
-
-
-@attrs.frozen
-class OnePiece:
-    signs: tuple
-
-    def start(self):
-        return np.zeros(2), 0.0
-
-    def residual(self, y, lam):
-        return bent(y, lam, self.signs[0] * (y[0] - 0.5), self.signs[1] * (lam - 0.7))
 
 
 @attrs.frozen
@@ -49,7 +38,8 @@ class Bent:
         return np.stack([y[0] - 0.5, lam - 0.7])
 
     def piece(self, signs):
-        return OnePiece(tuple(signs))
+        a, b = signs
+        return from_functions(lambda y, lam: bent(y, lam, a * (y[0] - 0.5), b * (lam - 0.7)), start=(np.zeros(2), 0.0))
 
 
 @pytest.fixture(scope="module")

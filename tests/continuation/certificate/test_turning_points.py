@@ -53,14 +53,7 @@ def test_a_pair_as_near_as_round_off_allows_is_proved_whole_or_not_at_all():
     assert len(proof.turning_points) == 2 if proof.complete else proof.gaps
 
 
-class Parabola:
-    target = None
-
-    def start(self):
-        return np.array([-1.0]), 1.0
-
-    def residual(self, y, lam):
-        return lam + y * y - 2.0
+PARABOLA = from_functions(lambda y, lam: lam + y * y - 2.0, start=([-1.0], 1.0), target=None)
 
 
 @pytest.mark.parametrize("ys", [(-0.1, 0.1), (-0.1, 0.5), (-0.1, -0.025, 0.05), (-0.1, 0.2, 0.5), (-0.5, -0.3, 0.1)])
@@ -68,8 +61,8 @@ def test_a_turning_point_next_to_an_end_has_to_be_listed_too(ys):
     # Where a tube had no sign of the tangent up to an end of the path, the turning point in it did not count.
     steps = [Step(k, np.array([y, 2.0 - y * y]), np.array([1.0, -2.0 * y]), arclength=y) for k, y in enumerate(ys)]
     path = Path(steps=[evolve(s, corrector_iterations=1) for s in steps], status=Status.STOPPED_AT_EVENT)
-    proof = certify(path, Parabola())
+    proof = certify(path, PARABOLA)
     assert "a turning point that the path does not list" in str(proof)
     assert len(proof.turning_points) == 1
     up_to_it = Path(steps=[*path.steps[:1], Step(1, np.array([0.0, 2.0]), np.array([1.0, 0.0]), 0.0)])
-    assert certify(up_to_it, Parabola()).complete
+    assert certify(up_to_it, PARABOLA).complete

@@ -175,3 +175,17 @@ def test_two_curves_a_millionth_apart_do_not_cross(first, second, bent, preset):
     assert path.status is Status.REACHED_TARGET
     assert not path.events
     np.testing.assert_allclose(path.endpoint.y, [upper(2.0)], rtol=1e-9)
+
+
+@every_preset
+def test_every_jacobian_is_counted_in_branch_points_too(preset):
+    calls = []
+
+    def jacobian(y, lam):
+        calls.append(lam)
+        return np.diag(lam - 3.0 * y * y), y
+
+    trunk = from_functions(lambda y, lam: lam * y - y**3, jacobian, start=(np.zeros(1), -1.0), target=1.0)
+    path = trace(trunk, preset=preset)
+    assert len(branch_points(path)) == 1
+    assert path.counts.jacobians == len(calls)

@@ -148,6 +148,13 @@ def test_a_monitor_of_the_callers(function, direction, angles, within):
     assert max(event.residual_norm for event in found) <= 1e-14
 
 
+@pytest.mark.parametrize("radius", [1e-2, 1e2])
+def test_a_monitor_that_is_zero_at_the_start_sees_a_unit_tangent_behind_it(radius):
+    circle = scalar(lambda y, lam: y * y + lam * lam - radius**2, start=(radius, 0.0), target=0.9 * radius)
+    upright = [Monitor(lambda u, v: v[-1] - 1.0, "upright")]
+    assert trace(circle, events=upright, metric=Euclidean(), direction=1).events == []
+
+
 @pytest.mark.parametrize("n", [3, 5])
 def test_long_steps_lose_no_turning_point(n):
     few = trace(ExponentialCosine(n)).turning_points

@@ -55,17 +55,18 @@ def test_a_finish_that_gives_no_point_is_named(end):
         trace(Straight(finish=lambda y, lam: end))
 
 
-def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said():
-    path = trace(Straight(finish=lambda y, lam: np.ones(1) + 1e-12))
-    assert (path.status, len(path)) == (Status.REACHED_TARGET, 3)
+@pytest.mark.parametrize("unit", [1.0, 1e8, 1e-8])
+def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said(unit):
+    path = trace(Straight(residual=lambda y, lam: unit * (y - lam), finish=lambda y, lam: np.ones(1) + 1e-12))
+    assert (path.status, len(path), path.counts.accepted) == (Status.REACHED_TARGET, 3, 2)
     assert path.message.endswith(f"the residual of H there is {path.endpoint.residual_norm:.1e}.")
     assert path.arclength[-1] > path.arclength[-2]
 
 
-@pytest.mark.parametrize("off", [7.0, -1.5, 1e300])
-def test_a_finish_whose_end_does_not_solve_the_equations_is_refused(off):
+@pytest.mark.parametrize(("off", "unit"), [(7.0, 1.0), (-1.5, 1e8), (-1.5, 1e-8), (1e300, 1.0)])
+def test_a_finish_whose_end_does_not_solve_the_equations_is_refused(off, unit):
     with pytest.raises(ValueError, match=r"^finish: expected None or an end of the path, found a point where H is "):
-        trace(Straight(finish=lambda y, lam: y + off))
+        trace(Straight(residual=lambda y, lam: unit * (y - lam), finish=lambda y, lam: y + off))
 
 
 class OneBuffer:

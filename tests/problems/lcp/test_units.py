@@ -74,17 +74,26 @@ def test_a_game_of_unconnected_parts_and_a_diagonal_matrix_take_their_units_from
         assert 0.4 < values.min() <= values.max() < 2.5
 
 
-@given(st.integers(0, 2**32 - 1))
+@pytest.mark.parametrize(("bounds", "rows", "columns"), [(False, 300, 300), (True, 900, 100)])
+@given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None)
-def test_the_verdict_of_a_certificate_knows_no_units(seed):
-    """The relative residual of any x, negative entries and violated rows included, to the last digit."""
+def test_the_verdict_of_a_certificate_knows_no_units(bounds, rows, columns, seed):
+    """The relative residual of any x, negative entries and violated rows and bounds included, to round-off."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(1, 7))
     A, q = rng.integers(-2, 3, (n, n)).astype(float), rng.integers(-2, 3, n).astype(float)
-    x = rng.integers(-1, 3, n) * 10.0 ** rng.uniform(-12, 2, n)
-    D, E = powers(rng, n, 300), powers(rng, n, 300)
-    one, other = lcp.certify(lcp.LCP(A, q), x), lcp.certify(lcp.LCP(D[:, None] * A * E, D * q), x / E)
-    assert (one.relative_residual, one.drowned) == (other.relative_residual, other.drowned)
+    x = rng.choice([-1.0, 1.0, 2.0] if bounds else [-1.0, 0.0, 1.0, 2.0], n) * 10.0 ** rng.uniform(-12, 2, n)
+    D, E, lower = powers(rng, n, rows), powers(rng, n, columns), bounds * rng.integers(-2, 3, n).astype(float)
+    upper = lower + rng.choice([1.0 if bounds else np.inf, np.inf], n)
+    one = lcp.certify(lcp.MixedLCP(A, q, lower, upper), x)
+    other = lcp.certify(lcp.MixedLCP(D[:, None] * A * E, D * q, lower / E, upper / E), x / E)
+    assert one.relative_residual == pytest.approx(other.relative_residual, rel=1e-13)
+    assert bounds or one.drowned == other.drowned
+
+
+@pytest.mark.parametrize("size", [1e300, 1.0, 1e-5])
+def test_what_only_a_subnormal_entry_is_off_by_is_rounding(size):
+    assert lcp.certify(lcp.LCP([[size, 0.0], [0.0, 1.0]], [0.0, 1.0]), np.array([5e-324, 0.0])).solves()
 
 
 @pytest.mark.parametrize(("share", "solves"), [(1.001, True), (0.999, False)])

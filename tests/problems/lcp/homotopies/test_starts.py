@@ -91,3 +91,13 @@ def test_units_follow_a_common_factor_whose_square_is_no_float(make, k):
         x, w = units(problem)
         with np.errstate(all="raise"):
             assert units(other) == (pytest.approx(x, rel=1e-15), 2.0**k * w)
+
+
+@pytest.mark.parametrize("w0", [[0.3, 0.02], [5.0, 40.0]])
+def test_a_start_moves_with_its_bounds_and_is_mirrored_with_them(w0):
+    A, q, low, x0 = np.array([[2.0, 1.0], [-1.0, 3.0]]), np.array([-1.0, 2.0]), np.array([-3.0, 0.5]), [1.0, 2.0]
+    y, _ = lcp.KKTHomotopy(lcp.LCP(A, q + A @ low), x0, w0=w0).start()
+    moved, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, q, low, np.inf), low + x0, w0=w0).start()
+    np.testing.assert_allclose(moved, y + np.append(low, np.zeros(4)), rtol=1e-14)
+    mirrored, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, -q, -np.inf, -low), -low - x0, w0=w0).start()
+    np.testing.assert_allclose(mirrored[[0, 1, 4, 5]], -moved[[0, 1, 4, 5]], rtol=1e-14)

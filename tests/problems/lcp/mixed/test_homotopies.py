@@ -74,8 +74,9 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
             lcp.KKTHomotopy(EVERY_KIND, **{name: value})
 
 
-def test_the_default_multipliers_of_a_box_balance_its_forces():
-    z2 = lcp.KKTHomotopy(EVERY_KIND, w0=[1.0, 2.0, 3.0, 4.0]).origin.z2
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_the_default_multipliers_of_a_box_balance_its_forces(unit):
+    z2 = lcp.KKTHomotopy(EVERY_KIND, w0=unit * np.array([1.0, 2.0, 3.0, 4.0])).origin.z2
     assert z2[2] * 2.0 == pytest.approx((2.0 - z2[2]) * 4.0)
 
 

@@ -138,6 +138,7 @@ def test_an_archive_of_a_problem_with_bounds(tmp_path, path):
     with open_archive(tmp_path / "run.h5") as archive:
         (stored,) = archive
         np.testing.assert_allclose(stored.endpoint.u[:2], solution.x, atol=1e-14)
+        np.testing.assert_array_equal(stored.lam, solution.path.lam)
 
 
 def test_homotopies_without_bounds_are_refused_by_name():
@@ -146,3 +147,10 @@ def test_homotopies_without_bounds_are_refused_by_name():
         lcp.solve(problem, "xu")
     with pytest.raises(ValueError, match=r"x0: expected a number between 0\.0 and 1\.0 at index 1, found 1\.0"):
         lcp.solve(problem, x0=[0.5, 1.0])
+
+
+def test_a_start_is_strictly_inside_the_bounds_but_of_a_fixed_unknown():
+    problem = lcp.MixedLCP(np.eye(2) + 1.0, [-2.0, -2.0], [0.0, 3.0], [1.0, 3.0])
+    assert lcp.solve(problem, x0=[0.5, 7.0]).solved
+    with pytest.raises(ValueError, match=r"x0: expected a number between 0\.0 and 1\.0 at index 0, found 1\.5"):
+        lcp.solve(problem, x0=[1.5, 3.0])

@@ -112,3 +112,9 @@ def test_bad_input_is_refused_by_name(A, q, message):
 def test_what_the_benchmark_says():
     assert "100 certified" in campaign.together(5, 100)
     assert campaign.CAMPAIGN.run(8, 1) == 0
+
+
+def test_no_more_is_claimed_than_the_tolerance_asks():
+    A, q = KINDS["p_matrices"](50, 5, np.random.default_rng(4))
+    found = lcp.solve_many(A, q, tolerance=1e-20)
+    assert (found.relative_residual[found.outcome == Outcome.SOLVED] <= 1e-20).all()

@@ -84,6 +84,7 @@ def test_nonnegative_q_is_solved_by_zero_without_work():
     assert (solution.counts.factorizations, solution.paths) == (0, ())
     # There is a path to draw all the same: one point.
     assert solution.path.y.shape == (1, 3)
+    assert solution.path.steps[0].index == 0
 
 
 def test_without_finish_the_path_is_the_pure_homotopy():

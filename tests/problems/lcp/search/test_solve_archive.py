@@ -38,9 +38,10 @@ def test_an_archive_changes_nothing_of_what_is_done(problem, workers, tmp_path):
     with open_archive(tmp_path / "run.h5") as archive:
         assert len(archive) == max(len(without.paths), 1)
         # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up with NaN.
-        ends = [path.endpoint.u for path in archive]
-    for end, path in zip(ends, without.paths):
-        np.testing.assert_array_equal(end[np.isfinite(end)], path.endpoint.u)
+        ends = [path.u[[0, -1]] for path in archive]
+    for kept, path in zip(ends, without.paths):
+        np.testing.assert_array_equal(kept[:, -1], path.lam[[0, -1]])
+        np.testing.assert_array_equal(kept[np.isfinite(kept)], path.u[[0, -1]].ravel())
 
 
 def test_an_archive_without_a_path_holds_the_solution_as_the_end_of_the_kkt_path(tmp_path):
