@@ -26,9 +26,7 @@ rough = solve_ivp(lambda t, x: van_der_pol(x, 1.0), (0.0, 40.0), [2.0, 0.0], rto
 
 
 def collocation(intervals, degree):
-    return PeriodicOrbit.from_solution(
-        van_der_pol, rough.t, rough.y.T, 1.0, intervals=intervals, degree=degree
-    ).period
+    return PeriodicOrbit.from_solution(van_der_pol, rough.t, rough.y.T, 1.0, intervals=intervals, degree=degree).period
 
 
 def boundary_value_solver(tolerance):

@@ -61,4 +61,3 @@ def _as_text(title: str, scene: Any, unknowns: int, well: bool, answer: Any) -> 
         shown = ", ".join(f"{v:.10g}" for v in values[:10]) + (", ..." if values.size > 10 else "")
         lines.append(f"{name:{wide}}  {shown or 'none'} {scene.units.get(name, '')}".rstrip())
     return lines
-

@@ -170,4 +170,3 @@ def _minimised(
             break
         x = x + one.step(t, dv, slope, float(d @ (saddle.P @ d)) + float(d @ d) / one.weight) * d
     return x, one.values(x) + y / one.sigma
-

@@ -260,4 +260,3 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
     stored = sp.csr_array(A)
     exponents = np.repeat(rows, np.diff(stored.indptr)) + columns[stored.indices]
     return sp.csr_array((_times(stored.data, exponents), stored.indices, stored.indptr), shape=A.shape)
-
