@@ -42,7 +42,7 @@ DIVISIONS, INSIDE_ARC = 8, 1e-6
 
 PASSES, NEARLY_ZERO = 60, 1e-10
 """PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if a pass did
-not halve it: secants leave less than half, even of a zero of high order, until round-off."""
+not halve it where the slope is at least half the chord's, so that the zero is simple; else if two did not."""
 
 SLOPE = 1e-3
 """Step of the difference quotient, in parts: three digits, as the model has."""
@@ -211,7 +211,7 @@ def root(
         elif not slope * chord > 0.0:
             slope = chord
         step = -now[1] / slope if slope else math.inf
-        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled
+        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled > (abs(slope) < HALVING * abs(chord))
         if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
             break
         last, t = now, t + step

@@ -29,12 +29,12 @@ OFF_AXIS = EPS / SIX_DIGITS
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
 
-NEARER = 0.01
+SHIFT_NEARER = 0.01
 """Part of a shift at which a tenth of Arnoldi's steps suffices."""
 
-DIMENSIONS, LOOKS = 40, 6
-"""DIMENSIONS: largest Krylov dimension per wanted eigenvalue and one more. LOOKS: eigenvalues are tested when the
-dimension has grown by a sixth, so that all tests cost little more than the last."""
+DIMENSIONS, TESTS_IN_ALL = 40, 6
+"""DIMENSIONS: largest Krylov dimension per wanted eigenvalue and one more. TESTS_IN_ALL: eigenvalues are tested when
+the dimension has grown by a sixth, so that all tests cost little more than the last."""
 
 
 @frozen(eq=False)
@@ -169,7 +169,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
             if shift <= least:
                 raise
             solves += min(n, DIMENSIONS * (wanted + 1))
-            shift = max(NEARER * shift, least)
+            shift = max(SHIFT_NEARER * shift, least)
             inverse = _solver(matrix, shift)
             continue
         solves += more
@@ -204,7 +204,7 @@ def dominant(
         H[j, j - 1] = float(np.linalg.norm(x))
         exhausted = j == n or H[j, j - 1] <= BACKWARD_ERROR * size
         if exhausted or j == most or j >= look:
-            look = j + max(j // LOOKS, 1)
+            look = j + max(j // TESTS_IN_ALL, 1)
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]
             error = H[j, j - 1] * np.abs(vectors[-1, largest])

@@ -72,7 +72,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
             if NONLINEAR <= share <= 1.0:
                 break
             # For quadratic or cubic terms; outside its domain f is nonlinear enough.
-            r *= min(max(share**-0.5, 0.1), 10.0) if share < np.inf else 0.1
+            r *= 1.0 / min(max(np.sqrt(share), 0.1), 10.0) if share < np.inf else 0.1
         else:
             r = 1.0  # f is linear.
     # Components that do not oscillate at first follow those that do.

@@ -171,7 +171,7 @@ def test_solutions_that_no_float_holds_are_not_claimed():
 @pytest.mark.parametrize("k", [93, 143, 193])
 def test_groups_of_faces_are_excluded_whatever_the_common_factor(k):
     r = np.random.default_rng([77, k])
-    A, q = campaign.z_matrix(int(r.integers(13, 25)), r)
+    A, q = campaign.KINDS["z_matrix"](int(r.integers(13, 25)), r)
     for factor in (1.0, 2.0**-100, 2.0**100):
         assert lcp.solve(lcp.LCP(factor * A, factor * q)).outcome is Outcome.UNSOLVABLE
 
