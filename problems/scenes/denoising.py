@@ -24,9 +24,9 @@ def Denoising(
     Parameters
     ----------
     samples, seed : int
-        A multiple of 4 samples, for four levels.
+        A multiple of 4 samples.
     weight, noise : float
-        Noise is a standard deviation.
+        The noise is a standard deviation.
 
     References
     ----------
@@ -48,7 +48,7 @@ def Denoising(
         return {"signal": data + np.diff(np.pad(z, 1)), "jumps": jumps}
 
     def exact() -> Quantities:
-        """Without noise, each jump moves its two levels together by weight / length."""
+        """Without noise each jump moves its two levels together by weight / length."""
         whole, rest = divmod(samples, 4)
         by = weight / whole
         moved = levels + by * np.array([1.0, -2.0, 2.0, -1.0])
