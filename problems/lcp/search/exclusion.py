@@ -1,7 +1,6 @@
 """Exclusion of faces: each node of a tree fixes some x_i and some w_i at zero, and a proof excludes its faces.
 
-A Farkas vector excludes the root if no point is feasible; floats with error bounds, or exact arithmetic, exclude the
-leaves.
+A Farkas vector may exclude the root; floats with error bounds, or exact arithmetic, exclude the leaves.
 """
 
 from __future__ import annotations
@@ -19,15 +18,15 @@ from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.search import Search
 
 LARGEST_LEAVES = 5
-"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots; at n = 6 both take as long."""
+"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots."""
 
 LARGEST_TREE = 40
-"""Largest order of the tree: feasible Gaussian problems take 5 to 150 nodes up to n = 20, 1,200 at 40, of 0.1 to 0.2 ms
-each; at n = 60 2 to 7 s, where restarts take 0.6 s."""
+"""Largest order of the tree: feasible Gaussian problems take up to 150 nodes at n = 20, 1,200 at 40 (0.1 to 0.2 ms
+each); at n = 60 2 to 7 s, where restarts take 0.6 s."""
 
 LARGEST_PROOF = 30_000_000
-"""Largest order times entries for the linear program that seeks a Farkas vector: two seconds for a dense matrix of
-order 300."""
+"""Largest order times entries of the linear program for a Farkas vector: two seconds for a dense matrix of order 300.
+"""
 
 TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 
