@@ -16,7 +16,7 @@ from problems.lcp.parametric.corner import rays
 from problems.options import finite_vector, real_array
 
 BIACTIVE = 1e-10
-"""Relative to its row's terms, |w_i| up to this is zero and x_i at its bound, as in certificates of `solve`."""
+"""Smaller |w_i|, relative to its row's terms, is zero."""
 
 
 class NotDifferentiableError(ValueError):
@@ -25,15 +25,14 @@ class NotDifferentiableError(ValueError):
 
 @frozen(eq=False)
 class Gradient:
-    """Derivative of a loss with gradient g by x: ``d loss = q . dq + sum(A * dA)``.
+    """Derivative of a loss with gradient g by x: ``d loss = q. dq + sum(A * dA)``.
 
     Attributes
     ----------
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether biactive indices exist. The derivative holds them at their bounds, as an element of the generalised
-        Jacobian.
+        Whether biactive indices exist, which the derivative holds at their bounds.
     """
 
     q: Array
@@ -133,7 +132,6 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
     ----------
     problem : LCP or MixedLCP
     x : ndarray, shape (n,)
-        A solution.
 
     Raises
     ------

@@ -18,9 +18,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
-    """The walk from t = +inf (sign = -1), or -inf.
-
-    Raises `ValueError` if the point nearest to zero is no solution for large t.
+    """The walk from t = +inf (sign = -1), or -inf; `ValueError` if the point nearest to zero is no solution for large
+    t.
     """
     state: State = np.where(
         level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
@@ -28,7 +27,6 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     walk = Walk(problem, d, Stairs.of(problem, level), state, problem.n, 0.0, -sign)
     walk.locate()
     gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
-    # No gap may shrink for ever.
     wrong = ((rates < 0.0) | ((rates == 0.0) & (gaps < 0.0))) & np.isfinite(gaps)
     if wrong.any():
         i = int(np.argmax(wrong)) % problem.n

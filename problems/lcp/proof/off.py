@@ -19,8 +19,8 @@ FAR_BELOW_Q = 1e-10
 """Smaller values count as zero: runs to infinity are far above, Maros-Meszaros solutions below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
-"""Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would take a third of
-the time."""
+"""Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would cost 0.45 of
+1.2 ms."""
 
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
