@@ -27,8 +27,8 @@ COMPLEX_STEP = 1e-200
 
 @frozen(eq=False)
 class Field:
-    """`function` takes x of shape (n,), or (n, k) if `columns`. `own`: given (f_x, f_p). `steps`: of differences, else
-    complex steps.
+    """`function` takes x of shape (n,), or (n, k) if `columns`. `own` gives (f_x, f_p); `steps` are those of
+    differences.
     """
 
     function: Callable[..., Any]
@@ -70,7 +70,7 @@ class Field:
 
 
 TRIED_ASIDE = 0.1
-"""Offset of trial points in component sizes: at an equilibrium nonlinear terms may vanish."""
+"""Offset of trial points: at an equilibrium nonlinear terms may vanish."""
 
 
 def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Array, p: float) -> Field:
@@ -103,7 +103,7 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:
-    """Whether `make` runs without errors and returns about `known`."""
+    """Whether `make` returns about `known`."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", np.exceptions.ComplexWarning)

@@ -7,8 +7,8 @@ import numpy as np
 from problems.lcp.data.problem import MixedLCP, State
 
 PROJECTED_STEPS = 12
-"""Each costs a tenth of a correction at n = 300. Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12
-corrections without steps, 3, 3, 2 after twelve, hardly fewer after twenty."""
+"""Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12 corrections without these steps, 3, 3, 2 after
+twelve."""
 
 
 def projected_state(problem: MixedLCP) -> State:
