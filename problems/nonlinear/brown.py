@@ -50,7 +50,7 @@ class BrownAlmostLinear:
 
 
 def brown(n: int) -> BrownAlmostLinear:
-    """Brown's almost linear function; ``fixed_point(F, a, F.jacobian)`` is the classical test path.
+    """Brown's almost linear function; ``fixed_point(F, a, F.jacobian)`` is the usual path.
 
     Parameters
     ----------

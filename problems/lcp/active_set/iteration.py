@@ -89,7 +89,8 @@ def iterate(
 ) -> Iterated:
     """Correct an active set until it is right or given up.
 
-    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge` recognises a solution; sets in `tried` are skipped.
+    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge`
+    recognises a solution; sets in `tried` are skipped.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x

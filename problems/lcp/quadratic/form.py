@@ -88,7 +88,7 @@ class Affine:
 
 
 SUM_ROUNDING = 8.0 * EPS
-"""Relative error of a sum of up to eight exact terms: seven roundings, and the bound's."""
+"""Relative error of a sum of up to eight exact terms."""
 
 
 @frozen(eq=False, slots=False)

@@ -1,8 +1,8 @@
 """Implicit enumeration of complementary faces: linear programs exclude most of them in groups.
 
 A node fixes some x_i and some w_i at zero. If no x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
-multiplier, which `proof.groups` checks. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is
-fixed either way.
+multiplier for `proof.groups`. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is fixed either
+way.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from problems.lcp.reference.enumeration import Exhaustion
 Active = NDArray[np.bool_]
 
 ROUNDED_TO_ZERO = 1e-9
-"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide, and claims are checked."""
+"""Smaller entries, relative to the largest, cause no pivot."""
 
 PIVOTS_PER_NODE = 50
-"""Most pivots, times the order: none of 600 nodes (n = 20 to 60) needed more than the order."""
+"""Most pivots over the order: none of 600 nodes needed more than the order."""
 
 
 @frozen(eq=False)
@@ -44,8 +44,7 @@ class Node:
 class Branching:
     """The tree of one problem.
 
-    `problem`: dense. `accepts`: whether the caller accepts the face with these w_i = 0.
-    `accepted`: whether it did.
+    `accepts` tells whether the caller accepts the face with these w_i = 0.
     """
 
     problem: LCP
@@ -93,7 +92,7 @@ class Branching:
             return False
         if row >= 0:
             if not self._excluded(node, row):
-                # Floats do not suffice: its children decide.
+                # Floats do not suffice.
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
@@ -125,7 +124,7 @@ class Branching:
         return group is not None
 
     def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
-        """Fix the pair whose children's cost bounds differ most; the cheaper child is next."""
+        """Fix the pair whose children's cost bounds differ most."""
         dictionary, n = node.dictionary, self.problem.n
         places = np.empty(2 * n + 1, dtype=np.intp)
         places[dictionary.basic] = np.arange(n + 1)
@@ -160,9 +159,8 @@ class Branching:
 
 
 def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
-    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, None without an end.
-
-    `dictionary`: dually feasible, cost last; changes.
+    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, else None. The
+    dictionary changes.
     """
     n = dictionary.nonbasic.size
     for _ in range(PIVOTS_PER_NODE * n):
