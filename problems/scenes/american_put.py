@@ -32,8 +32,8 @@ KNOWN = {
     (36.0, 40.0, 0.06, 0.2, 1.0): 4.48668,
     (44.0, 40.0, 0.06, 0.4, 2.0): 5.64674,
 }
-"""Price by (spot, strike, rate, volatility, maturity): trees of 1000 to 8000 steps, extrapolated by two rules (Broadie
-and Detemple; Leisen and Reimer) that agree to 1e-5; the published 6.0905, 4.4867, 5.6470 are not extrapolated."""
+"""Price by (spot, strike, rate, volatility, maturity), from trees extrapolated by two rules (Broadie and Detemple;
+Leisen and Reimer) that agree to 1e-5."""
 
 
 @frozen(eq=False)
@@ -52,10 +52,10 @@ def AmericanPut(
     maturity: Positive = 1.0, n: Annotated[int, at_least(10)] = 400, steps: Annotated[int, at_least(2)] = 100,
     width: Positive = 5.0,
 ) -> Scene:  # fmt: skip
-    """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
+    """What is a put worth that may be exercised at any time, and below which price is it exercised?
 
-    Differences in log(price) are of second order; Crank-Nicolson follows four implicit half steps (Rannacher). Time
-    steps grow from expiry; equal ones have a lower order (Forsyth and Vetzal).
+    Crank-Nicolson follows four implicit half steps (Rannacher). Time steps grow from expiry; equal ones have a lower
+    order (Forsyth and Vetzal).
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def AmericanPut(
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
     def edge(above: Array) -> float:
-        """Extrapolate the boundary: the value leaves the payoff quadratically. The first free point is inaccurate."""
+        """Extrapolate quadratically. The first free point is inaccurate."""
         beyond = above > 1e-12 * strike
         k = int(np.argmax(beyond)) if beyond.any() else 0
         second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)

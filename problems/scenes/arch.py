@@ -17,7 +17,7 @@ def Arch(
     radius: Positive = 1.0, thickness: Positive = 0.15, stones: Annotated[int, at_least(2)] = 20,
     weight: Positive = 2e4,
 ) -> Scene:  # fmt: skip
-    """A half circle of stones with radial joints that take no tension and do not slide: how thin may it be?
+    """How thin may a half circle of stones be whose radial joints take no tension and do not slide?
 
     It stands if a line of thrust lies within every joint (safe theorem). The program maximises the least spare moment.
 

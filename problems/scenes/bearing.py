@@ -25,7 +25,7 @@ def Bearing(
 ) -> Scene:  # fmt: skip
     """Where does the oil film of a long journal bearing break, and which load does it bear?
 
-    Reynolds' equation with p >= 0 (Swift and Stieber), second-order finite volumes.
+    Reynolds' equation with p >= 0 (Swift and Stieber) is solved by finite volumes.
 
     Parameters
     ----------

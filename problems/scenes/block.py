@@ -20,8 +20,6 @@ def Block(
 ) -> Scene:  # fmt: skip
     """Does a block on a plane slide under a push, or does friction hold it?
 
-    One time step without rotation.
-
     Parameters
     ----------
     mass, gravity, step : float

@@ -21,7 +21,7 @@ def Converter(
 ) -> Scene:  # fmt: skip
     """The periodic state of a buck converter with an ideal switch and an ideal diode.
 
-    The trapezoidal rule closes the period. At light load the current pauses and the output exceeds duty * voltage.
+    At light load the current pauses and the output exceeds duty * voltage.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def Cournot(
 ) -> Scene:  # fmt: skip
     """How much does each of several producers with different costs sell?
 
-    The price is intercept - slope * total. Each maximises its profit.
+    The price is intercept - slope * total.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from problems.scenes.scene import NotNegative, Positive, Quantities, Scene, Seed
 def Denoising(
     samples: Annotated[int, at_least(4)] = 200, weight: Positive = 2.0, noise: NotNegative = 0.3, seed: Seed = 0
 ) -> Scene:
-    """A signal of flat pieces under noise: where does it jump?
+    """Where does a signal of flat pieces jump?
 
     Minimise |x - y|^2 / 2 + weight * (sum of absolute jumps).
 

@@ -37,7 +37,7 @@ class RachfordRice:
 def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature: Positive = 95.0) -> Scene:
     """Which part of benzene and toluene in a drum is vapour at each temperature?
 
-    The vapour fraction, in [0, 1], has kinks at the bubble point and the dew point.
+    The vapour fraction has kinks at the bubble point and the dew point.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def Game(
 ) -> Scene:
     """Which mixed strategies of two players are best against each other?
 
-    An exact test of all faces finds all equilibria of small games; paths find some of larger ones.
+    An exact test finds all equilibria of small games, paths some of larger ones.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ def Lasso(
 ) -> Scene:  # fmt: skip
     """Which features explain an observation, as the penalty on their coefficients falls?
 
-    The path of min |X b - y|^2 / 2 + t |b|_1 has kinks where features enter or leave. Data are random.
+    The path of min |X b - y|^2 / 2 + t |b|_1 has kinks where features enter or leave.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def Lasso(
 
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
-        # Splitting signs would double the unknowns and make the problem singular.
+        # Splitting signs would make the problem singular.
         unknowns=(Unknown("coefficients", features, "which features matter, and how much"),),
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),

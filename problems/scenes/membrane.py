@@ -23,8 +23,6 @@ def Membrane(
 ) -> Scene:  # fmt: skip
     """How much of a ball touches a membrane that is held at the rim of a disc?
 
-    Second-order differences along the radius.
-
     Parameters
     ----------
     radius : float

@@ -19,7 +19,7 @@ def Puck(
 ) -> Scene:  # fmt: skip
     """How does friction bend and slow the motion of a puck on a rough plane?
 
-    A pyramid replaces Coulomb's cone: friction against the motion is too small by at most a factor of cos(pi / edges).
+    A pyramid replaces Coulomb's cone: friction is too small by at most a factor of cos(pi / edges).
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def _gauss_seidel(problem: Any) -> Found:
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
     """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program or bounded problem.
 
-    A nonsymmetric problem becomes min x'(A x + q), A x + q >= 0: convex for monotone A.
+    A nonsymmetric problem becomes min x'(A x + q), A x + q >= 0.
     """
     found = conditions(problem)
     if not isinstance(problem, Program):

@@ -156,7 +156,7 @@ def with_parameters(build: Callable[P, Scene]) -> Callable[P, Scene]:
     Parameters
     ----------
     build : callable
-        Checks arguments annotated as ``Annotated[type, Kind(...)]``, such as `Positive`.
+        Its arguments are annotated as ``Annotated[type, Kind(...)]``.
     """
     hints = get_type_hints(build, include_extras=True)
     parts = {}

@@ -73,7 +73,7 @@ def SVM(
         weights = np.asarray(solution.x)[:samples]
         force = K @ (weights * side)
         inside = (weights > 1e-7 * cost) & (weights < (1.0 - 1e-7) * cost)
-        # From points on the margin; without any, several offsets are optimal.
+        # Without points on the margin several offsets are optimal.
         offset = float(np.median((side - force)[inside])) if inside.any() else 0.0
         return {
             "weights": weights, "offset": offset, "support vectors": float((weights > 1e-7 * cost).sum()),

@@ -37,7 +37,7 @@ def Torsion(
     Ting, Trans. AMS 123 (1966); Timoshenko and Goodier, Theory of Elasticity, for .1406.
     """
     h = 0.5 * side / n
-    # 1 <= j <= i <= n; each point's multiplicity in the square.
+    # Each point's multiplicity in the square.
     i, j = (k + 1 for k in np.tril_indices(n))
     size, weight = i.size, 8.0 / (2.0 ** (i == j) * 2.0 ** ((i == n).astype(int) + (j == n)))
     limit = np.asarray(yield_stress * h * j, dtype=float)

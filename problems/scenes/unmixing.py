@@ -30,7 +30,7 @@ def Unmixing(
 ) -> Scene:  # fmt: skip
     """How much of each substance is in a spectrum?
 
-    Each substance has one peak; every third is absent.
+    Each substance has one peak.
 
     Parameters
     ----------

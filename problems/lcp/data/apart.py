@@ -19,7 +19,7 @@ from typing import Any, BinaryIO, NoReturn
 from continuation.archive.hdf5 import Allowance
 
 BYTES_A_SECOND = 1 << 22
-"""Bytes a child may read per CPU second after the first two; scipy is 20 times as fast."""
+"""Bytes a child may read per CPU second after the first two; scipy reads 20 times as many."""
 
 
 def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[str, Any]:

@@ -50,7 +50,7 @@ def _npz(file: str) -> Mapping[str, Any]:
 def _npy(file: str) -> Mapping[str, Any]:
     if zipfile.is_zipfile(file):
         raise ValueError("it holds named arrays, not one")
-    # A map is no larger than the file, whatever its header claims.
+    # A map is no larger than the file.
     return {ALONE: np.array(np.load(file, mmap_mode="r", allow_pickle=False))}
 
 

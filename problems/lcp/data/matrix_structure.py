@@ -1,4 +1,4 @@
-"""An LCP's matrix (dense, sparse or banded), its properties and derived matrices."""
+"""An LCP's matrix, its properties and derived matrices."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ FILL = 8.0
 """Most terms of a sparse A'DA per entry of A and I; beyond, a system of order 2n replaces it."""
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky: its rounding is about n eps of the
-diagonal (Higham, Theorem 10.3).
-"""
+"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky(Higham, Theorem 10.3)."""
 
 
 LARGEST_SYMMETRIC_PART = 1000
@@ -160,7 +158,7 @@ class Structure:
     def z_matrix(self) -> bool:
         """Whether off-diagonal entries are <= 0.
 
-        Then active sets from x = 0 reach the least feasible element within n steps, or fail.
+        Then active sets reach the least feasible element within n steps, or fail.
         """
         return self._off_diagonal[1] <= 0.0
 
@@ -231,7 +229,7 @@ class Structure:
             square = self.transpose @ (sp.diags_array(weights) @ A)
             return sp.csc_array(factor * (self.symmetrized + square) + sp.diags_array(diagonal))
         if (weights >= 0.0).all():
-            # numpy gives a matrix times its transpose to dsyrk: half the work.
+            # numpy's product with a transpose takes half the work.
             half = np.sqrt(weights)[:, None] * A
             square = half.T @ half
         else:

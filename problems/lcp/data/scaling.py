@@ -1,6 +1,6 @@
 """Exact scaling of rows and columns by powers of two.
 
-LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. Least squares of
+For positive diagonal R and C, LCP(q, A) and LCP(R q, R A C) have the same solutions up to units. Least squares of
 logarithms, then Ruiz's iteration, make the largest entries of rows and columns about 1, and give the same problem for
 all given units, up to rounding.
 """
@@ -22,7 +22,7 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
+"""Sweeps: each halves the logarithms of the largest entries."""
 
 GRADIENT_STEPS = 30
 """Conjugate gradient steps: full matrices need one, sparse random ones about ten."""
@@ -115,7 +115,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for rows of [A, q] and columns of A; computed once.
+    """The exponents of two for rows of [A, q] and columns of A.
 
     Matrices that are symmetric up to units become symmetric.
     """
@@ -142,7 +142,7 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # A free factor in each part makes its largest q_i about 1.
+    # A free factor makes a part's largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])

@@ -1,4 +1,4 @@
-"""The spread of entries decides whether scaling is worth its time."""
+"""The spread of entries decides on scaling."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXTREME = 1e90
 """Products of three entries between this and its inverse are floats."""
 
 LEVELLED = 16.0
-"""Problems with bounds stay unscaled if largest entries of rows and columns are within this factor of each other and of
+"""Problems with bounds stay unscaled if rows' and columns' largest entries are within this factor of each other and of
 1: scaling takes 0.25 of 0.45 s (n = 1000)."""
 
 UNIT_SPREAD = 256.0

@@ -1,4 +1,4 @@
-"""Solves the full linear system by a smaller core, with corrections.
+"""Solves the full linear system by a smaller core.
 
 Eliminating one unknown of each pair ``s v + x p = r`` (from x_i y_i = lambda c_i) leaves the core.
 """
@@ -20,7 +20,7 @@ GAINED = 1e-3
 """Largest relative first correction of an accepted core: four such corrections reach round-off."""
 
 FIRM_CORRECTION = 1e-13
-"""Relative correction of the tangent below which solutions need none."""
+"""Largest correction of the tangent for which solutions need none."""
 
 
 _silently = without_warnings(all="ignore")
@@ -69,7 +69,7 @@ def second_eliminated(s: Array, x: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient, so that nothing cancels."""
+    """Eliminate the unknown with the larger coefficient: nothing cancels."""
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
     inverse = 1.0 / pivot
@@ -93,7 +93,7 @@ def parity(count: int | np.intp) -> int:
 
 @frozen(eq=False, slots=False)
 class CoreSystem:
-    """A bordered system solved by a quick or a robust core, and corrected in the full system.
+    """A bordered system solved by a quick or a robust core.
 
     `apply` maps z to H' z; `sizes` are the scales of unknowns, shape (N,).
 

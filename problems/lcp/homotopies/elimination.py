@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
 
 LEAST_GIVE = 1e-9
-"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units: an active row has 0
-at lambda = 0. Corrections remove the error.
+"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units: active rows have 0
+at lambda = 0.
 """
 
 LEAST_GAP = 1e-13
-"""Least distance over multiplier, in natural units: 11 of 2,300 systems (90 paths, n = 6, 12, 30) need the robust core;
-26 with 1e-16, 147 with 0.
+"""Least distance over multiplier, in natural units: 11 of 2,300 systems need the robust core; 26 with 1e-16, 147 with
+0.
 """
 
 
@@ -62,7 +62,7 @@ class Core:
 
 @frozen(eq=False)
 class OfPairs:
-    """Elimination to order n + 1 for homotopies in (x, y): the better pivot of each pair if `larger`, else y."""
+    """Elimination in (x, y) to order n + 1: the better pivot of each pair if `larger`, else y."""
 
     system: System
     larger: bool
@@ -104,7 +104,7 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
 
     Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
     if A is symmetric positive semidefinite and the sum is definite; otherwise LU factors the core of better pivots.
-    Without `refine` solutions of the definite core stay uncorrected. Raises `SingularError`.
+    Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
     structure = homotopy.structure

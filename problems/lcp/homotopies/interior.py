@@ -31,12 +31,11 @@ LARGEST_FALL = 1e-3
 
 @frozen
 class RelativeMetric:
-    """The mean square of relative changes plus the parameter's squared change.
+    """The mean square of relative changes, plus the parameter's.
 
-    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n.
-
-    `lam` is the parameter's weight. The scale of the first n unknowns is the distance from the nearer bound (`lower`,
-    `upper`, default zero), or without bounds their size, at least `unit`.
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n. The scale of the
+    first n unknowns is the distance from the nearer bound (`lower`, `upper`, default zero), or without bounds their
+    size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -127,7 +126,7 @@ def residual(self: Any, y: Array, lam: float) -> Array:
 
 
 def jacobian(self: Any, y: Array, lam: float) -> tuple[Matrix, Array]:
-    """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
+    """(H_y, H_lam) in full, for reference."""
     return in_full(System.at(self, y, lam).apply, y.size, self.problem.sparse)
 
 
@@ -140,7 +139,7 @@ def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
 
 @quiet
 def taylor(self: Any, point: Linearization, order: int) -> Array:
-    """Taylor coefficients of the path in the pseudo-arclength of `point`, one a row.
+    """Taylor coefficients in the pseudo-arclength of `point`, one a row.
 
     Each takes one solve and two products with A (Cochelin's asymptotic numerical method).
     """

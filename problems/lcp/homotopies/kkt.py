@@ -23,7 +23,7 @@ from problems.options import quiet
 GIVE = 0.1
 """Relaxation of equations at lambda = 1, in natural units.
 
-On 48 monotone problems paths take 32 factorisations; 34 with 0.01, 36 with 1, 54 with 10.
+On 48 monotone problems paths take 32 factorisations; 34 with 0.01, 36 with 1.
 """
 
 
@@ -52,7 +52,7 @@ class KKTHomotopy:
     Parameters
     ----------
     problem : MixedLCP
-        Dense, sparse or, as sparse, banded.
+        Dense or sparse.
     x0 : array_like, shape (n,), optional
         Between the bounds; may be infeasible. Default: `default_start`.
     z1, z2 : array_like, optional
@@ -65,7 +65,7 @@ class KKTHomotopy:
     structure : Structure, optional
         Shared between starts.
     refine : bool
-        Whether bordered solves are corrected to round-off; without corrections paths take a third less time.
+        Whether solves are corrected to round-off; without paths take a third less time.
 
     Raises
     ------
@@ -222,7 +222,7 @@ class KKTHomotopy:
             w, origin, gaps = self.problem.w(x), x - start.x0, rows.sides.gaps(x)
             turned = self.structure.transpose @ (x - rows.end - z2)
         else:
-            # `@` takes four times as long for few unknowns.
+            # `@` takes four times as long.
             w, origin, gaps = self.problem.A.dot(x), x, rows.sides.pull(x)
             turned = self.structure.transpose.dot(x - z2)
         goal = w + turned - rows.sides.force(z1)
@@ -239,7 +239,7 @@ class KKTHomotopy:
         return goal, origin, p, q, plain
 
     def rounded(self) -> tuple[str, Array, Array]:
-        """The end of the rows that is exact in floats; the other's term sizes, by x and constant."""
+        """The end of the rows that is exact in floats, and the other's term sizes."""
         A = self.problem.A.toarray() if self.problem.sparse else self.problem.A
         end = np.abs(A.T) @ np.abs(np.broadcast_to(self.rows.end, self.n))
         return "origin", np.abs(A) + np.abs(A.T), np.abs(self.problem.q) + end * (1.0 + self.n / 4.0)

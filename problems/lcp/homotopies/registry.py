@@ -27,8 +27,8 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 class Registered:
     """One homotopy.
 
-    `make` maps (problem, x0 or None, structure=...) to the homotopy. `feasible`: whether its default start is strictly
-    feasible. `example`: a paper example it solves. `bounds`: whether it takes bounds.
+    `feasible`: whether its default start is strictly feasible. `example`: a paper example it solves. `bounds`: whether
+    it takes bounds.
     """
 
     name: str

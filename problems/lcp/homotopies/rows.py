@@ -108,9 +108,8 @@ class RowPairs:
 
     @classmethod
     def of_boxes(cls, rows: Rows, factor: Array, rest: Array, above: Array, t: Array) -> RowPairs:
-        """Eliminate the unknown with the larger coefficient in boxes.
-
-        Rows are ``factor (dw + dt) + rest dz``; `above` is u - l - z in boxes.
+        """Eliminate the unknown with the larger coefficient of rows ``factor (dw + dt) + rest dz`` in boxes; `above` is
+        u - l - z.
         """
         boxed = rows.boxed
         if not boxed.size:

@@ -21,17 +21,14 @@ from problems.options import finite_vector
 START_DISTANCES = (1.0, 2.5)
 """Decimal exponents of random starts' distances, in natural units or `typical_units`.
 
-From 1 to 1.5 or further 17 of 70 paths of hard problems (n = 100) solve, from 0.5 to 1 11, from 0 to 0.5 4.
+Of 70 paths of hard problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1.
 """
 
 LOG_DEVIATION = 0.5
-"""Standard deviation of the components' natural logarithms; with 0 or 1 half as many paths solve."""
+"""Standard deviation of the logarithms; with 0 or 1 half as many paths solve."""
 
 BALANCE = (0.05, 0.1)
-"""Mean and standard deviation of log10 of the products w z2 over x z1.
-
-With ratios of 4 or 1/4 hardly any path solves.
-"""
+"""Mean and standard deviation of log10 of w z2 over x z1: with ratios of 4 or 1/4 hardly any path solves."""
 
 
 @frozen(eq=False)
@@ -95,7 +92,7 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
     """`natural_units` with the root-mean-square row norm.
 
-    KKT paths from here solve 18 of 40 piles of bodies (n = 44 to 520) in 34 s, from natural units 17 in 39 s.
+    KKT paths from here solve 18 of 40 piles of bodies, from natural units 17.
     """
     return _units(problem, np.mean)
 
@@ -156,8 +153,8 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     """A start of random scale, balance and components, with equal products x0 z1, and w0 z2.
 
-    The scale is a power of ten in natural units, without bounds in twice typical units: with these 36 of 100 paths of
-    Gaussian problems (n = 100) solve, 30 in typical, 28 in natural units.
+    The scale is a power of ten in natural units, without bounds in twice typical units: 36 of 100 paths of Gaussian
+    problems (n = 100) then solve, 28 in natural units.
 
     Parameters
     ----------

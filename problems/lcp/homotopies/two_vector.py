@@ -1,4 +1,4 @@
-"""The homotopies in (x, y) of Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno."""
+"""The homotopies in (x, y)."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
-    """Sums of products along the first axis plus constants: rounded sums, errors, magnitude sums."""
+    """Sums of products plus constants along the first axis: rounded sums, errors, magnitude sums."""
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])
     partial = np.add.accumulate(terms, axis=0)
@@ -137,7 +137,7 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
     """`summed` for a dense matrix by exact BLAS products of slices: two of A, three (all) of x.
 
-    The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
+    The rest of A is multiplied as usual.
 
     References
     ----------

@@ -40,7 +40,7 @@ LARGEST_REFINED = 1500
 LARGEST_VERTEX = 300
 """Largest order at which tight equations are solved in rationals."""
 AFFORDABLE_VERTEX = 100
-"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s, against 6 s at order 300."""
+"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s, not 6."""
 
 
 @frozen(eq=False)
@@ -146,7 +146,7 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
     problem : MixedLCP
         Up to order `AFFORDABLE_VERTEX` rationals are tried.
     guess : Array of shape (n,), optional
-        Replaces the linear program's multiplier.
+        Replaces the linear program's.
     """
     scaled = _Scaled.of(problem)
     if (scaled.system.q >= 0.0).all():
@@ -245,7 +245,7 @@ class _Scaled:
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess that passes the integer check."""
+        """The first candidate near a scaled guess that is exact."""
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):

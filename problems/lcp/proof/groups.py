@@ -126,7 +126,7 @@ class Excluding:
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
         """The group, if a dictionary's row makes its basic variable times `sign` negative.
 
-        Adding a little of the other rows exceeds rounding; otherwise integers are used. `row` is an index in `basic`.
+        Adding a little of the other rows exceeds rounding; otherwise integers are used.
         """
         right = np.zeros((basic.size, 2))
         right[:, 1] = ~fixed[basic]

@@ -16,7 +16,7 @@ DROWNED = 1e-6
 """Largest allowed defect relative to max |q_i| in balanced units."""
 
 FAR_BELOW_Q = 1e-10
-"""Smaller values count as zero: runs to infinity are far above, Maros-Meszaros solutions below 1e-12."""
+"""Smaller values count as zero: Maros-Meszaros solutions are below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
 """Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would cost 0.45 of

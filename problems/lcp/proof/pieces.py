@@ -62,7 +62,7 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 
 
 def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
-    """Which pieces, of one problem or one each, may hold a solution, shape (number,)."""
+    """Which pieces, of one problem or one each, may hold a solution."""
     n = states.shape[1]
     sizes, one, ones = np.abs(A), identity(n), np.ones(n)
     unit = (n + 4) * SUM_OF_TERMS_ROUNDING

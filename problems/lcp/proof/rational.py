@@ -1,6 +1,6 @@
 """Exact linear algebra on floats as integer rows, with Dixon's p-adic solution of M z = b.
 
-Floats times powers of two are integers; every result is checked in them.
+Every result is checked in integers.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
-    """Selected columns of rows, shape (number of rows, number of columns)."""
+    """Selected columns of rows."""
     place = np.full(n, -1)
     place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)

@@ -33,7 +33,7 @@ NEARLY = 1e-5
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point is a solution; for small problems exact arithmetic must agree unless defects are rounding."""
+    """Whether the point is a solution; for small problems exact arithmetic must agree."""
     if not certificate.solves(tolerance):
         return False
     if certificate.relative_residual <= ENTRY_ROUNDING or problem.n > LARGEST_DECIDED:

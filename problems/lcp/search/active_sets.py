@@ -1,4 +1,4 @@
-"""Active sets: Newton's method on min(x, A x + q), from a guess of the set where x is positive.
+"""Active sets: Newton's method on min(x, A x + q).
 
 If A is semidefinite or symmetric, rounds with A + shift I follow; for a program, the augmented Lagrangian.
 """
@@ -87,7 +87,7 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state at the point nearest to zero; for a convex function, after projected gradient steps."""
+    """The state at the point nearest to zero, or for a convex function after projected gradient steps."""
     problem = search.problem
     if not problem.standard:
         convex = search.facts.symmetric and not search.facts.negative_diagonal

@@ -72,7 +72,7 @@ def exactly(search: Search, found: Solution) -> Solution:
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
     """The scaling for the search, or None.
 
-    `roughly`: keep the units, but for a common factor, of an LCP with similar largest entries in all rows and columns.
+    `roughly`: keep the units, but for a common factor, if largest entries are similar.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)

@@ -23,10 +23,10 @@ from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
-"""Largest order pivoted together: n = 20 takes a tenth of `solve`'s time, n = 50 half."""
+"""Largest order pivoted together: n = 20 takes a tenth of `solve`'s time."""
 
 LARGEST_ALL_FACES = 8
-"""Largest order with all faces tried together: n = 8 takes 1.6 ms, where `solve` takes 4 ms, as both do at n = 9."""
+"""Largest order with all faces tried together: n = 8 takes 1.6 ms, where `solve` takes 4 ms."""
 
 TABLE_ENTRIES = 1 << 16
 """Table entries of a batch, which fit the cache."""
@@ -56,7 +56,7 @@ class Answers:
 
     @property
     def solved(self) -> NDArray[np.bool_]:
-        """Which problems are solved, perhaps only to working precision; shape (k,)."""
+        """Which problems are solved, shape (k,)."""
         return np.isin(self.outcome, (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION))
 
     def __len__(self) -> int:
@@ -84,7 +84,7 @@ def solve_many(
     budget : continuation.Budget, optional
         For each problem solved singly.
     executor : concurrent.futures.Executor, optional
-        Runs batches; answers stay the same.
+        Runs batches.
 
     Returns
     -------

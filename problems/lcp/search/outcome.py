@@ -96,7 +96,7 @@ class Solution:
     message : str
         What was done, and what the outcome means.
     certificate : Certificate or None
-        Of the point `x`, whatever the outcome.
+        Of the point `x`.
     paths : tuple of Path
         All traced paths; of failed restarts only the ends.
     best : int

@@ -41,7 +41,7 @@ RESTART_STEPS = 60
 """
 
 LARGEST_MADE_DENSE = 500
-"""Largest order at which paths make sparse matrices dense, as they fill: at 5 % entries and n = 200 a path takes a
+"""Largest order at which paths make sparse matrices dense, as they fill: with 5 % entries (n = 200) a path takes a
 tenth of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
@@ -88,7 +88,7 @@ def follow(
 
 @frozen(eq=False)
 class Restart:
-    """The k-th restart, which depends on these fields alone, so that another process can trace it."""
+    """The k-th restart, which another process can trace."""
 
     structure: Structure
     name: str

@@ -1,8 +1,7 @@
 """Douglas and Rachford's iteration between two sets: the points with w = A x + q, and those with complementary pairs.
 
-The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. A step is one product with a
-matrix. Without convexity nothing guarantees convergence, but only solutions are fixed points. Random problems neither
-monotone nor P take 0.02 s (n = 100), 0.3 (300), 3 (600); restarts take 1, 60, over 300
+The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. Nothing guarantees convergence,
+but only solutions are fixed points. Random problems neither monotone nor P take 0.3 s (n = 300); restarts take 60
 (`examples/benchmarks/outside.py`).
 
 References
@@ -31,7 +30,7 @@ RUNS_AT_ONCE = 16
 """The slowest of 24 Gaussian problems, n = 200, takes 2.1 s with two runs, 0.16 with sixteen."""
 
 CHECKED = 25
-"""Iterations between comparisons of faces. A run at a solution keeps its face, so unchanged faces are tried."""
+"""Iterations between comparisons of faces: unchanged faces are tried."""
 
 LARGEST_REFLECTED = 1000
 """Largest order: a round takes a minute there; Gaussian problems need 5 to 17 s."""
@@ -41,7 +40,7 @@ ROUND_WORK = 4e8
 
 
 def run_length(n: int) -> int:
-    """Iterations of a round: Gaussian problems need 100 (n = 30), 300 (100), 1,000 (300), 3,000 (600)."""
+    """Iterations of a round: Gaussian problems need 300 (n = 100), 3,000 (600)."""
     return 1000 + 10 * n
 
 
@@ -49,8 +48,8 @@ def run_length(n: int) -> int:
 class Sets:
     """The two sets, in units that weigh w like x.
 
-    `onto` projects onto differences of points with w = A x + q. `nearest` is the point of that set nearest to w = 0 and
-    the x nearest to zero; `lower` and `upper` count from that x.
+    `onto` projects onto differences of points with w = A x + q. Its point `nearest` is nearest to w = 0 and to the x
+    nearest to zero, from which bounds count.
     """
 
     onto: Single
@@ -77,7 +76,7 @@ class Sets:
         return cls(onto.astype(np.float32), _single(nearest / length), lower, upper, problem.standard)
 
     def rounds(self, random: np.random.Generator) -> Iterator[tuple[int, list[State]]]:
-        """Yield without end the rounds done and the faces kept over `CHECKED` steps."""
+        """Yield without end the rounds done and the faces kept."""
         n, over = self.lower.size, 0
         while True:
             z = random.standard_normal((2 * n, RUNS_AT_ONCE), np.float32)

@@ -82,16 +82,15 @@ def solve(
         A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
         zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem of the same order, from whose data a piecewise linear path is followed.
+        Solution of a nearby problem, from whose data a piecewise linear path is followed.
     finish : bool
         Whether active sets are tried, before and along paths.
     path : bool
         Trace a path even if "auto" needs none; locate its turning and branch points.
     restarts : int, optional
-        Paths from random starts after the first fails. Default: 0 for a named homotopy, 1000 for "auto".
+        Paths from random starts after the first. Default: 0 for a named homotopy, 1000 for "auto".
     seed : int
-        For random starts and reflections; restart k depends on `seed` and k alone. A call repeats its answer on one
-        machine.
+        For random starts and reflections; a call repeats its answer on one machine.
     budget : continuation.Budget, optional
         Default: the factorisations of about a minute, from n alone (`default_budget`); reflections add at most half a
         minute. ``Budget(seconds=60)`` counts CPU seconds.
@@ -99,7 +98,7 @@ def solve(
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
         A new HDF5 file for all traced paths; of restarts over an executor only the ends. Without paths it holds the
-        message and the solution as the KKT path's end (x, w, x).
+        solution as the KKT path's end.
     progress : bool
         One progress bar per path (needs tqdm).
     executor : concurrent.futures.Executor, optional
