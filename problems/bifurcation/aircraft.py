@@ -47,7 +47,7 @@ _NEWTON_TOLERANCE = 1e-14
 
 @frozen
 class Aircraft:
-    """Equilibria of an aircraft: five quadratic equations, continued in the aileron deflection.
+    """Equilibria of an aircraft: five quadratic equations.
 
     y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron; the rudder is 0.
 

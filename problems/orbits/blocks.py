@@ -1,4 +1,4 @@
-"""Condense an orbit's equations A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
+"""Condenses A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
 
 QR factorisations eliminate unknowns between blocks, so growing and decaying solutions lose no digits (Wright, Stable
 parallel algorithms for two-point boundary value problems, SIAM J. Sci. Stat. Comput. 13, 1992).

@@ -25,7 +25,7 @@ from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
 PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
 """The first penalty (as published, times objective over violations), the largest, and its growth with each change of
-multipliers, which then converge faster than linearly."""
+multipliers."""
 
 STEPS_PER_CHANGE = 100
 """Most Newton steps per change."""
@@ -88,9 +88,8 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """The zero of the derivative along a direction, which is piecewise linear and begins at `slope`.
-
-        `t`, `dv`: values plus multipliers over penalties, and their change.
+        """The zero of the piecewise linear derivative along a direction; `t` are values plus multipliers over
+        penalties, `dv` their change.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])

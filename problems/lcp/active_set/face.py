@@ -47,7 +47,7 @@ SHIFTED_CORRECTIONS = 4
 
 @frozen(eq=False)
 class Face:
-    """One face and its factored equations, ``A x + shift x + q = 0`` on the active set.
+    """One face and its factored equations ``A x + shift x + q = 0``.
 
     `inverse` solves the equations, or shifted ones. If `exact`, one solve gives the point. `shift` is zero on the
     problem's own face.
@@ -222,7 +222,7 @@ class Faces:
     def _nearest(self, inside: NDArray[np.intp], near: Array | None) -> Factored | None:
         """An LCP's shortest corrections from a point, if they solve the equations of the singular face.
 
-        Otherwise the solution of the shifted equations grows along a null vector, whose signs tell which x_i leave.
+        Otherwise the shifted solution grows along a null vector, whose signs tell which x_i leave.
         """
         problem = self.problem
         if self.structure.symmetric and self.structure.semidefinite:

@@ -54,7 +54,7 @@ class Finish:
         return found.x if found.ended is Ended.SOLVED else None
 
     def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
-        """The solution by the proximal method, with A + shift I positive definite, or None.
+        """The solution by the proximal method, or None; A + shift I is positive definite.
 
         Each round solves the LCP of A + shift I near the last point and tries its active set on A. If no active set
         settles, the shift doubles.

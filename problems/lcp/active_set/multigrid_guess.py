@@ -1,4 +1,4 @@
-"""A guess of the active set of a large sparse, diffusion-like problem from coarser ones.
+"""A guess of the active set of a diffusion-like problem from coarser ones.
 
 Active sets move the contact boundary about one grid line a step, so guesses come from problems P'AP, P'q of algebraic
 multigrid.

@@ -15,7 +15,7 @@ from problems.lcp.homotopies.starts import natural_units
 
 SPACING = 0.4
 """The finish is tried each time that the parameter has fallen by this factor, if the median product x z1 (or x y) is
-below natural units. On 80 planted problems 0.2, 0.4, 0.6 and 0.8 take 6,099, 5,567, 5,844 and 6,138 factorisations."""
+below natural units. On 80 planted problems 0.2, 0.4 and 0.6 take 6,099, 5,567 and 5,844 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
 """Of 25 stacks (n = 40 to 496) 21 are solved in 3 s if singular faces count as steps, 23 if not."""

@@ -77,7 +77,7 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
 def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, programs: Iterator[int]) -> Point | None:
     """A feasible q of a region without a solution, or None if the cones cover the region.
 
-    A region is a list of normals r with r. q > 0. Raises `StopIteration` at the end of `programs`.
+    A region is a list of normals r with r . q > 0. Raises `StopIteration` at the end of `programs`.
     """
     next(programs)
     n, entries = matrix.n, matrix.entries

@@ -20,7 +20,7 @@ FILL = 8.0
 """Most terms of a sparse A'DA per entry of A and I; beyond, a system of order 2n replaces it."""
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky(Higham, Theorem 10.3)."""
+"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky (Higham, Theorem 10.3)."""
 
 
 LARGEST_SYMMETRIC_PART = 1000

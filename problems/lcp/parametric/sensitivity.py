@@ -25,7 +25,7 @@ class NotDifferentiableError(ValueError):
 
 @frozen(eq=False)
 class Gradient:
-    """Derivative of a loss with gradient g by x: ``d loss = q. dq + sum(A * dA)``.
+    """Derivative of a loss with gradient g by x: ``d loss = q . dq + sum(A * dA)``.
 
     Attributes
     ----------

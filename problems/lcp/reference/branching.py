@@ -1,4 +1,4 @@
-"""Implicit enumeration of complementary faces: linear programs exclude most of them in groups.
+"""Implicit enumeration of complementary faces, which linear programs exclude in groups.
 
 A node fixes some x_i and some w_i at zero. If no x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
 multiplier for `proof.groups`. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is fixed either

@@ -68,7 +68,7 @@ def lemke(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by Lemke's method with the covering vector of ones.
 
     The lexicographically least of tied rows leaves, so it ends at a solution or on a secondary ray. It takes at most 50
-    n + 100 pivots of O(n^2).
+    n + 100 pivots.
 
     Parameters
     ----------
@@ -125,8 +125,7 @@ def modulus(problem: LCP) -> ReferenceResult:
 def min_newton(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) from zero by damped min-Newton, the primal-dual active-set method with a line search.
 
-    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular. If none reduces the merit, the
-    full step is taken.
+    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular.
 
     Parameters
     ----------
