@@ -12,7 +12,7 @@ from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from problems.orbits.orbit import PeriodicOrbit
 
 DRAWN_TIMES = 500
-"""Times per orbit."""
+"""Times per orbit: corners are invisible on 2000 pixels."""
 
 
 def plot_orbits(

@@ -15,7 +15,7 @@ from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
 HOPF_PAIR = 1e-2
-"""Largest real part over modulus of a Hopf pair."""
+"""Largest real part over modulus of a Hopf pair known to few digits."""
 
 LEAST_MOTION = 1e-2
 """Least relative scale: round-off must not measure a component at rest."""

@@ -30,7 +30,7 @@ Mask = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 
 SINGULAR_CONDITION = 1e-14
-"""Reciprocal condition of a singular face."""
+"""Reciprocal condition of a singular face, whose solution has hardly a digit left."""
 
 DOUBTFUL_PIVOTS = 1e-6
 """Ratio of extreme pivots below which the condition is estimated."""
@@ -39,10 +39,10 @@ SINGULAR_SHIFT = 1e-8
 """Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
 
 FACES_KEPT = 8
-"""Faces kept for the next q."""
+"""Faces kept for the next q: a motion to and fro visits few."""
 
 SHIFTED_CORRECTIONS = 4
-"""Corrections with a shifted matrix."""
+"""Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
@@ -243,7 +243,7 @@ class Faces:
     def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
         eye = sp.eye_array(block.shape[0])
         block = sp.csc_array(block + shift * eye if shift else block)
-        # SuperLU prints messages on these.
+        # SuperLU prints messages on structurally singular matrices.
         full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
         factor = self.factoring.factor(block) if full else None
         if factor is not None:

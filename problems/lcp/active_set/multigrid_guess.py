@@ -23,7 +23,7 @@ COARSEST_ORDER = 200
 """Smaller problems are not coarsened but corrected, at most this often; other levels get one correction."""
 
 LEAST_COARSENING = 0.8
-"""Coarsening stops if it keeps a larger share of the unknowns."""
+"""Coarsening stops if it keeps a larger share of the unknowns; a grid keeps half."""
 
 DAMPING = 0.8
 """Damping of Jacobi's method."""

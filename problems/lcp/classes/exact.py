@@ -55,7 +55,7 @@ class ExactMatrix:
         Parameters
         ----------
         A : array_like or scipy sparse, shape (n, n)
-            0.8 is not 4/5.
+            The float 0.8 is not 4/5.
 
         Raises
         ------

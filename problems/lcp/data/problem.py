@@ -175,7 +175,7 @@ class MixedLCP:
         if self.standard:
             return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
-        # Fixed unknowns stay.
+        # Fixed unknowns stay at the bound.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 
@@ -290,7 +290,7 @@ class LCP(MixedLCP):
     Cottle, Pang and Stone, The Linear Complementarity Problem, 1992.
     """
 
-    # Views of one number.
+    # Views of one number: an LCP stores no bounds.
     lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(0.0, self.n), takes_self=True))
     upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.n), takes_self=True))
 

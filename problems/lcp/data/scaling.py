@@ -28,7 +28,7 @@ GRADIENT_STEPS = 30
 """Conjugate gradient steps: full matrices need one, sparse random ones about ten."""
 
 LOGARITHM_TOLERANCE = 1e-6
-"""Tolerance of the logarithms, far below 1/2."""
+"""Tolerance of the logarithms, far below the 1/2 where rounding decides."""
 
 HALVES = 1e-3
 """Fractions this near to 1/2 are noise and round up."""
@@ -37,7 +37,7 @@ NEGLIGIBLE = -27.0
 """Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| are ignored: matrices exp(-d^2) have entries down to 1e-300."""
 
 LEVEL = 0.02
-"""Sweeps end at smaller logarithms."""
+"""Sweeps end at smaller logarithms: rounding changes them more."""
 
 
 @frozen(eq=False)
@@ -128,7 +128,7 @@ def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     logs, counts = _logarithms(problem.A)
     r, c = _equilibrated(logs, *_least_squares(logs, counts))
-    # Negligible entries connect, too.
+    # Negligible entries also connect rows and columns.
     pattern = counts if sp.issparse(logs) else (logs > -np.inf).astype(float)
     part_of_row, part_of_column = _parts(pattern)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1

@@ -65,7 +65,7 @@ class KKTHomotopy:
     structure : Structure, optional
         Shared between starts.
     refine : bool
-        Whether solves are corrected to round-off; without paths take a third less time.
+        Whether solves are corrected to round-off; if not, paths take a third less time.
 
     Raises
     ------

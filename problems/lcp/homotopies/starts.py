@@ -160,7 +160,7 @@ def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
     ----------
     problem : MixedLCP
     generator : numpy.random.Generator
-        Repeats restarts.
+        Its state makes restarts repeatable.
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")

@@ -24,7 +24,7 @@ from problems.lcp.proof.rational import Integers, fractions, full_row_rank, inte
 from problems.options import finite_vector
 
 SAME_CORNER = 1e-6
-"""Largest relative distance of an exact corner from the path's."""
+"""Largest relative distance of an exact corner from the path's; beyond, another path is proved."""
 
 Exactly = tuple[Fraction, ...]
 

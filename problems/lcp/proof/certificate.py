@@ -210,7 +210,7 @@ class ExactCertificate:
 
 
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
-    """Solve exactly on the active set of xand decide whether this solves the problem.
+    """Solve exactly on the active set of x and decide whether this solves the problem.
 
     The active set is {x_i > w_i}, or with bounds the piece of the natural map. If it fails, indices with both nearly
     zero (`BOTH_ZERO`) are left out, then taken in.

@@ -21,7 +21,7 @@ Integers = NDArray[Any]
 """An object array of Python integers."""
 
 PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
-"""Residue products fit an int64; one may divide a determinant."""
+"""Residue products fit an int64; there are several, since one may divide a determinant."""
 
 
 @frozen

@@ -57,7 +57,7 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     Parameters
     ----------
     problem : MixedLCP
-        Made dense.
+        It becomes dense.
     x : ndarray, shape (n,)
     w : ndarray, shape (n,), optional
 

@@ -24,7 +24,7 @@ SHARE = 1e-3
 """Rounding is bounded once, for the misfit plus this part of its maximum."""
 
 TERMS = 6
-"""Terms of the tangent's series."""
+"""Terms of the tangent's series; the rest is bounded in the tube's shape."""
 
 STRETCHES = 32
 """Parts of a slab for the signs of the parameter's derivatives."""

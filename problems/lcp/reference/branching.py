@@ -26,7 +26,7 @@ from problems.lcp.reference.enumeration import Exhaustion
 Active = NDArray[np.bool_]
 
 ROUNDED_TO_ZERO = 1e-9
-"""Smaller entries, relative to the largest, cause no pivot."""
+"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide."""
 
 PIVOTS_PER_NODE = 50
 """Most pivots over the order: none of 600 nodes needed more than the order."""
@@ -159,8 +159,8 @@ class Branching:
 
 
 def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
-    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, else None. The
-    dictionary changes.
+    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them,
+    None if the method does not end. The dictionary changes.
     """
     n = dictionary.nonbasic.size
     for _ in range(PIVOTS_PER_NODE * n):

@@ -16,7 +16,7 @@ SOLVED_BELOW = 1e-8
 """Largest natural residual of a solution, relative to 1 + |q|_inf; relative to |x| diverging iterates could pass."""
 
 MODULUS_ITERATIONS, MIN_NEWTON_ITERATIONS = 10_000, 300
-"""Most iterations: convergent runs take some hundred and some ten."""
+"""Most iterations: convergent runs take some hundred, from zero some ten."""
 
 
 @frozen(eq=False)

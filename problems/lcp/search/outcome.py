@@ -110,7 +110,7 @@ class Solution:
     exhaustion : Exhaustion or None
         Proves UNSOLVABLE if all faces were tried.
     float_farkas : FloatFarkas or None
-        Shows INFEASIBLE_TO_PRECISION.
+        Proves INFEASIBLE_TO_PRECISION up to rounding.
     program : Program or None
         The program behind the problem.
     """

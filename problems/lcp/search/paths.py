@@ -48,7 +48,7 @@ LOOSE = Tolerance(relative=5e-2)
 """Last increment of a restart: the finish is exact."""
 
 AT_ONCE = 64
-"""Restarts handed over together, more than workers."""
+"""Restarts handed over together, more than one machine's workers."""
 
 Patience = Callable[[Step], str]
 """Maps a step to the reason to give up, or ""."""
