@@ -1,8 +1,8 @@
 """The paper's algorithm, Steps 0-5 as printed, for comparison only.
 
-It corrects once per step, accepts ||H|| <= 1 absolutely, and Step 4 may continue from a point that failed every test:
-so example 1 ends at another KKT point. The text leaves a_0 and the norms open; with the choices here the ten examples
-take 18, 21, 15, 24, 17, 24, 18, 3289, 27 and 1955 iterations.
+It corrects once per step, accepts ||H|| <= 1 absolutely, and Step 4 may continue from a point that failed every test.
+The text leaves a_0 and the norms open; with the choices here the ten examples take 18, 21, 15, 24, 17, 24, 18, 3289, 27
+and 1955 iterations.
 """
 
 from __future__ import annotations

@@ -24,8 +24,8 @@ def unit_of(problem: LCP) -> float:
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
     """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
-    `d`, (n,): positive for a start at infinity. `active`, (n,): where x may be positive at t = 1; None if its face is
-    singular or holds no solution.
+    `d`, (n,): positive for a start at infinity. `active`, (n,): where x may be positive at t = 1; None if its face
+    holds no solution.
 
     References
     ----------
