@@ -117,7 +117,6 @@ def run_literally(
 
 @quiet
 def _iterate(homotopy: KKTHomotopy, u: Array, settings: LiteralSettings, first: bool) -> tuple[Array, int]:
-    """Steps 1 to 3: next point and next step (4 or 5)."""
     tangent = _tangent(homotopy, u, first)
     a = 1.0
     while True:
@@ -143,7 +142,6 @@ def _tangent(homotopy: KKTHomotopy, u: Array, first: bool) -> Array:
 
 
 def _moore_penrose(homotopy: KKTHomotopy, u: Array) -> Array:
-    """H'(u)^+ H(u)."""
     correction: Array = np.linalg.lstsq(
         np.column_stack(homotopy.jacobian(u[:-1], float(u[-1]))), homotopy.residual(u[:-1], float(u[-1])), rcond=None
     )[0]

@@ -106,7 +106,6 @@ def _problems(size: Size) -> list[Problem]:
 
 
 def _steps(problems: list[Problem], size: Size) -> Study:
-    """Dense output of predictors for shorter steps."""
     steps = {"smoke": (0.3,), "moderate": (1.0, 0.3, 0.1), "full": (3.0, 1.0, 0.3, 0.1, 0.03)}[size]
     methods = [traced(label, budget=BUDGET, **options) for label, options in PREDICTORS.items()]
     return Study(

@@ -92,7 +92,6 @@ class _Curve:
 
 
 def _loop(curve: _Curve, tolerance: float) -> Answer:
-    """Plain Keller continuation, without turning points."""
     u, counts, h = curve.start, curve.counts, 0.1
     last = np.eye(u.size)[-1]
     v = curve.direction * last

@@ -30,7 +30,7 @@ class BrownAlmostLinear:
 
     @quiet
     def __call__(self, x: Array) -> Array:
-        """F(x), shape (n,)."""
+        """The value."""
         if x.shape != (self.n,):
             raise ValueError(f"x: expected shape {(self.n,)}, found {x.shape}")
         return np.concatenate((np.prod(x, keepdims=True) - 1.0, x[1:] + np.sum(x) - (self.n + 1.0)))

@@ -282,7 +282,7 @@ def solve_complementarity(
 
     References
     ----------
-    Josephy, "Newton's method for generalized equations", Math. Research Center Report 1965, Madison 1979.
+    Josephy, Math. Research Center Report 1965, Madison 1979.
     """
     if not isinstance(problem, MixedComplementarity):
         raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")

@@ -77,7 +77,7 @@ class NormalMap:
 
     References
     ----------
-    Robinson, Normal maps induced by linear transformations, Mathematics of Operations Research 17 (1992) 691-714.
+    Robinson, Math. Oper. Res. 17 (1992) 691-714.
     """
 
     F: Force

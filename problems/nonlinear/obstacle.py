@@ -22,7 +22,7 @@ class BratuForce:
     bratu: Bratu1D
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """The value at interior points."""
+        """The value."""
         return -self.bratu.residual(x, lam)
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:

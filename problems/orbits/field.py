@@ -43,7 +43,7 @@ class Field:
         return (SQUIRE_TRAPP,) if self.steps is None and self.own is None else ()
 
     def __call__(self, x: Array, p: Any) -> Array:
-        """Evaluate f, shape (n, k)."""
+        """The value."""
         if self.columns:
             found: Array = np.asarray(self.function(x, p, *self.beside))
             return found
@@ -103,7 +103,6 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:
-    """Whether `make` returns about `known`."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", np.exceptions.ComplexWarning)

@@ -50,7 +50,7 @@ class Model:
     name: str
 
     def __call__(self, z: Any, p: Any, *second: Any) -> Array:
-        """The field's value."""
+        """The value."""
         field: Array = FIELDS[self.name](z, p, *second)
         return field
 

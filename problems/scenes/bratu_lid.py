@@ -30,7 +30,7 @@ class HalfLayer:
         return BratuForce(Bratu1D(2 * self.n - 1))
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """Value, shape (n,); accepts jets."""
+        """The value."""
         return self._whole(np.concatenate((x, x[-2::-1])), lam)[: self.n]
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:

@@ -29,7 +29,7 @@ class RachfordRice:
         return [10.0 ** (a - b / (temperature + c)) * (101.325 / 760.0 / self.pressure) - 1.0 for a, b, c in ANTOINE]
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """Value, shape (1,)."""
+        """The value."""
         return -sum(z * k / (1.0 + x * k) for z, k in zip(self.feed, self.volatilities(lam)))
 
 

@@ -4,8 +4,7 @@ With penalties the function is convex and piecewise quadratic: Newton's method w
 
 References
 ----------
-Hermans, Themelis and Patrinos, "QPALM: a proximal augmented Lagrangian method for nonconvex quadratic programs", Math.
-Prog. Comp. 14 (2022). Qi and Sun, "A nonsmooth version of Newton's method", Math. Prog. 58 (1993).
+Hermans, Themelis and Patrinos, Math. Prog. Comp. 14 (2022); Qi and Sun, Math. Prog. 58 (1993).
 """
 
 from __future__ import annotations
@@ -93,7 +92,6 @@ class Penalised:
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
-        # Each side that is crossed outwards adds curvature.
         rate = self.sigma * np.concatenate([-dv * np.abs(dv), dv * np.abs(dv)])
         outside = (t < self.low) | (t > self.high)
         after = np.flatnonzero((enters > 0.0) & np.isfinite(enters) & (rate != 0.0))

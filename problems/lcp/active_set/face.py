@@ -203,7 +203,6 @@ class Faces:
         return None if inverse is None else Face(problem, state, active, inverse, exact or centre is not None, shift, q)
 
     def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
-        # This indexing is quickest.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
             block[np.diag_indices(len(block))] += shift

@@ -61,9 +61,8 @@ class Finish:
 
         References
         ----------
-        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Kaplan and
-        Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998); Cottle, Pang and
-        Stone, section 5.6 (regularization).
+        Rockafellar, SIAM J. Control Optim. 14 (1976); Kaplan and Tichatschke, J. Global Optim. 13 (1998); Cottle, Pang
+        and Stone, section 5.6.
         """
         x = self.problem.near_zero
         for _ in range(rounds):

@@ -4,8 +4,7 @@ It is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
-Hintermueller, Ito and Kunisch, "The Primal-Dual Active Set Strategy as a Semismooth Newton Method", SIAM J. Optim. 13
-(2003). Kostreva, "Block Pivot Methods for Solving the Complementarity Problem", Linear Algebra Appl. 21 (1978).
+Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2003); Kostreva, Linear Algebra Appl. 21 (1978).
 """
 
 from __future__ import annotations

@@ -83,7 +83,6 @@ def _smooth(A: Matrix) -> Array:
 
 
 def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
-    """Interpolation from a greedy independent set, and that set."""
     n = A.shape[0]
     coarse = _independent(A)
     column = np.cumsum(coarse) - 1
@@ -104,7 +103,6 @@ def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
 
 
 def _independent(A: Matrix) -> Mask:
-    """A maximal set without neighbours."""
     n = A.shape[0]
     if A.nnz == 3 * n - 2 and (np.abs(A.indices - np.repeat(np.arange(n), np.diff(A.indptr))) <= 1).all():
         return np.asarray(np.arange(n) % 2 == 0)

@@ -19,7 +19,6 @@ Indices = tuple[int, ...]
 
 
 def _fraction(value: Any) -> Fraction:
-    """One entry as a Fraction."""
     plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain, float) and not math.isfinite(plain):
         raise ValueError(f"A: expected finite numbers, found {plain}")
@@ -137,7 +136,7 @@ def principal_minors(rows: Sequence[IntRow]) -> list[int]:
 
     References
     ----------
-    Griffin and Tsatsomeros, Principal minors, part I, Linear Algebra Appl. 419 (2006) 107-124.
+    Griffin and Tsatsomeros, Linear Algebra Appl. 419 (2006) 107-124.
     """
     return _minors([list(row) for row in rows], 1)
 

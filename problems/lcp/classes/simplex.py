@@ -42,7 +42,6 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
     if not constraints or constraints[worst][1] <= 0:
         return (Fraction(0),) * n
     table = [[*row, 1, -right] for row, right in constraints]
-    # The added variable leaves early.
     free, basic = [*range(1, n + 1), 0], list(range(n + 1, n + 1 + len(table)))
     denominator = _exchange(table, basic, free, worst, n, 1)
     while 0 in basic and table[basic.index(0)][-1] > 0:
@@ -75,7 +74,6 @@ def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
 def _exchange(
     table: list[list[int]], basic: list[int], free: list[int], leaving: int, entering: int, denominator: int
 ) -> int:
-    """Pivot in place; return the denominator."""
     top = table[leaving]
     pivot, sign = abs(top[entering]), 1 if top[entering] > 0 else -1
     for i, row in enumerate(table):

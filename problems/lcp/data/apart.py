@@ -59,7 +59,6 @@ def _answer(read: Callable[[str], Mapping[str, Any]], file: str, out: BinaryIO) 
         room, seconds = Allowance(size).limit, 2 + size // BYTES_A_SECOND
         pages = Path("/proc/self/statm")
         if pages.exists():
-            # The file's contents and the arrays made of it.
             here = int(pages.read_text().split()[0]) * resource.getpagesize()
             _lower(resource.RLIMIT_AS, here + 2 * room)
         _lower(resource.RLIMIT_FSIZE, room)

@@ -80,7 +80,6 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
     rows, columns, entries, form, field, symmetry = scipy.io.mminfo(file)
     cells = rows * columns
     if symmetry != "general":
-        # The file holds one triangle, a skew-symmetric one without diagonal.
         cells = (cells + (-rows if symmetry == "skew-symmetric" else rows)) // 2
         if rows != columns:
             raise ValueError(f"it claims to be {symmetry}, and has {rows} rows and {columns} columns")

@@ -143,7 +143,6 @@ def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
-    """The array `name`, or the only unnamed one."""
     if name not in contents and ALONE not in contents:
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")

@@ -35,7 +35,6 @@ def semidefinite(symmetric: Array) -> bool:
     # Shifts follow the diagonal: factorisations ignore its scaling.
     shifted, sizes = symmetric.copy(), diagonal
     if (diagonal == 0.0).any():
-        # A zero entry takes its row's largest entry.
         rows = np.abs(symmetric).max(axis=1)
         sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
     shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * sizes

@@ -138,7 +138,7 @@ def from_qp(
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 1.2.
+    Cottle, Pang and Stone, section 1.2.
     """
     c = finite_vector("c", c)
     n = c.size

@@ -71,8 +71,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 
     References
     ----------
-    Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
-    Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
+    Curtis and Reid, J. Inst. Maths Applics 10, 1972; Ruiz, RAL-TR-2001-034.
     """
     if not problem.standard and level(problem):
         return None
@@ -82,7 +81,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     given = () if problem.standard else (problem.lower, problem.upper)
     bounds = [_times(end, -columns) for end in given]
     if not all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, given)):
-        return None  # the problem would change
+        return None
     scaled = _by(problem, rows, columns, _times(problem.q, rows), *bounds)
     # A balanced problem needs no units.
     scaled.problem.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
@@ -195,7 +194,6 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -228,7 +226,6 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _rounded(values: Array) -> Array:
-    """Round to integers, noisy halves upwards."""
     return np.floor(values + (0.5 + HALVES))
 
 

@@ -67,7 +67,6 @@ class OwnMetric:
     """A homotopy's metric; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
-        """The homotopy's metric."""
         return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 

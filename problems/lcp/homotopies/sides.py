@@ -76,7 +76,6 @@ class Sides:
             steepest = np.full(n, -np.inf)
             np.maximum.at(steepest, self.index, ratio)
             main = (ratio > 1.0) & (ratio == steepest[self.index]) & larger
-            # The lower bound wins ties.
             first = main & (self.sign > 0.0)
             main &= first | ~(self._summed(first * 1.0) > 0.0)[self.index]
             swapped = self._summed(main * 1.0)

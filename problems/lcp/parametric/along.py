@@ -81,8 +81,8 @@ def along(
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.5; for levels Osborne, Presnell and
-    Turlach, "A new approach to variable selection in least squares problems", IMA J. Numer. Anal. 20, 2000.
+    Cottle, Pang and Stone, section 4.5; for levels Osborne, Presnell and
+    Turlach, IMA J. Numer. Anal. 20, 2000.
     """
     began = time.perf_counter()
     require_problem(problem)

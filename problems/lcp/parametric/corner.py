@@ -55,7 +55,6 @@ def rays(S: Array, r: Array) -> list[Ray]:
 
 
 def _edges(signs: Array) -> list[Array]:
-    """The edges of the cone ``signs @ c >= 0``."""
     dimension = signs.shape[1]
     if dimension == 0:
         return []
@@ -68,7 +67,6 @@ def _edges(signs: Array) -> list[Array]:
 
 
 def _a_solution(S: Array, r: Array) -> Array | None:
-    """A complementary v' >= 0 with ``S v' + r >= 0``, or None."""
     path = covering(LCP(S, r), np.ones(r.size))
     if path is None or path.run(PIVOTS_PER_SWITCH * r.size) is not Ended.REACHED:
         return None

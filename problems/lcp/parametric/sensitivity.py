@@ -89,8 +89,7 @@ class Sensitivity:
 
         References
         ----------
-        Cottle, Pang and Stone, section 7.4; Robinson, "Strongly regular generalized equations", Math. Oper. Res. 5,
-        1980.
+        Cottle, Pang and Stone, section 7.4; Robinson, Math. Oper. Res. 5, 1980.
         """
         n, inside, at = self.x.size, self.moving, self.biactive
         moved = np.zeros(n) if dq is None else finite_vector("dq", dq, n)

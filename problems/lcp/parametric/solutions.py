@@ -112,8 +112,7 @@ def solutions(
 
     References
     ----------
-    Cottle, Pang and Stone, section 4.5; for games, Shapley, "A note on the Lemke-Howson algorithm", Math. Programming
-    Study 1, 1974.
+    Cottle, Pang and Stone, section 4.5; for games, Shapley, Math. Programming Study 1, 1974.
     """
     require_problem(problem)
     check_tolerance(tolerance)
@@ -151,8 +150,6 @@ def _on_faces(problem: LCP, tolerance: float) -> Solutions:
 
 @define(eq=False)
 class _Search:
-    """The search for solutions."""
-
     structure: Structure
     tolerance: float
     random: np.random.Generator

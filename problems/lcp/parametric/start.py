@@ -78,7 +78,6 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
 
 
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
-    """The walk along the kernel of [A, d], if A is singular."""
     moving = np.flatnonzero(walk.moves_x)
     block = np.column_stack([walk.problem.A[np.ix_(moving, moving)], walk.shares[moving]])
     q, r, _ = qr(block.T, pivoting=True)

@@ -45,7 +45,6 @@ def turn(walk: Walk, step: float) -> Corner | None:
                 walk.switch(edges[onward[0]].grown > 0.0)
                 aim(walk, found[onward[0]], step)
                 return Corner(switches, found)
-            # Complete if the ray of arrival is found.
             return Corner(switches, found, dead=True) if edges else None
         switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
     walk.switch(switched)

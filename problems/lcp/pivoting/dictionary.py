@@ -21,8 +21,8 @@ ZERO_PIVOT = 1e-10
 """Smaller entries, relative to their column's largest, are rounding: a pivot there loses the path."""
 
 TIE = 1e-11
-"""Basic variables that fall below zero by less, relative to the largest constant, are tied (Harris, "Pivot selection
-methods of the Devex LP code", Math. Programming 5, 1973)."""
+"""Basic variables that fall below zero by less, relative to the largest constant, are tied (Harris, Math. Programming
+5, 1973)."""
 
 DELAYED = 32
 """Pivots of a large table put into it by one product;"""

@@ -58,8 +58,7 @@ class Certificate:
 
     References
     ----------
-    Oettli and Prager, Compatibility of approximate solution of linear equations with given error bounds for
-    coefficients and right-hand sides, Numer. Math. 6, 1964.
+    Oettli and Prager, Numer. Math. 6, 1964.
     """
 
     problem: MixedLCP = field(repr=False)

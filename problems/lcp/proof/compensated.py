@@ -35,7 +35,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
     References
     ----------
-    Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
+    Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
     """
     w, size, terms = _rows(problem, x)
     bound = error_bound(w, size, terms)
@@ -141,8 +141,7 @@ def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
 
     References
     ----------
-    Ozaki, Ogita, Oishi and Rump, "Error-free transformations of matrix multiplication by using fast routines of matrix
-    multiplication and its applications", Numer. Algorithms 59, 2012.
+    Ozaki, Ogita, Oishi and Rump, Numer. Algorithms 59, 2012.
     """
     mantissas, powers = np.frexp(x)
     # n products of integers below 2^(digits - 1) sum to less than 2^53.

@@ -5,7 +5,7 @@ within |R r| / (1 - d) of a point with residual r (maximum norm). A sign that is
 
 References
 ----------
-Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+Rump, Acta Numerica 19, 2010, section 10.
 """
 
 from __future__ import annotations

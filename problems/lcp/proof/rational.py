@@ -86,7 +86,7 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
 
     References
     ----------
-    Dixon, Exact solution of linear equations using p-adic expansions, Numer. Math. 40, 1982.
+    Dixon, Numer. Math. 40, 1982.
     """
     kept, shift = integers(guess)
     for prime in PRIMES:
@@ -124,7 +124,6 @@ def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
 
 
 def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rows, columns and inverse of a largest nonsingular block modulo the prime."""
     m = matrix.shape[0]
     work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
     unused = np.ones(m, dtype=bool)
@@ -147,10 +146,8 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
 
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
-    """Solve block z = right by lifting."""
     residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    # Hadamard's and Cramer's bounds.
     bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
     enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:

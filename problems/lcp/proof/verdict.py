@@ -63,7 +63,7 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
     References
     ----------
-    Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+    Rump, Acta Numerica 19, 2010, section 10.
     """
     point, answer = problem.known.get("exact", (None, False))
     if point is None or not (point is x or np.array_equal(point, x)):
@@ -73,7 +73,6 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether floats prove it; w is in twice the working precision."""
     if not x.any():
         return least(problem.q) >= 0.0
     if least(x) < 0.0:

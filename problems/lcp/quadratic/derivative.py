@@ -12,7 +12,6 @@ from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 
 def _apply(part: Affine, q: Ends) -> Ends:
-    """The part along a cubic, shape (slabs, 4, N)."""
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
     room = part.linear_size(q.radius(middle) + accumulated(count) * size)
@@ -28,7 +27,6 @@ _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k 
 
 
 def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
-    """H along the cubic, shape (slabs, N, 7)."""
     products = alpha[:, :, None] * beta[:, None, :]
     count, n = alpha.shape[0], alpha.shape[2]
     flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))

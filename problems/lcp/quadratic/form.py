@@ -42,7 +42,6 @@ class Affine:
 
     @cached_property
     def _alone(self) -> Index | None:
-        """Columns of the entries, if no row has two."""
         there = self.size != 0.0
         return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
 

@@ -60,7 +60,6 @@ class Branching:
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
         self._excluding = Excluding(problem)
-        # Different costs leave few pivots tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
         rows = np.column_stack([problem.A, problem.q]) / unit_of(problem)
         table = np.vstack([rows, np.append(costs, 0.0)])
@@ -85,14 +84,12 @@ class Branching:
         return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
-        """Exclude a node or queue its children; whether to go on."""
         dictionary, fixed, n = node.dictionary, node.fixed, self.problem.n
         row = infeasible_row(dictionary, fixed)
         if row is None:
             return False
         if row >= 0:
             if not self._excluded(node, row):
-                # Floats do not suffice.
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
@@ -147,7 +144,6 @@ class Branching:
             self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
 
     def _divided(self, node: Node, closed: Active) -> bool:
-        """Fix any open pair, or decide a face in rationals."""
         if not closed.all():
             self._put(node, int(closed.argmin()), x_first=True)
             return True

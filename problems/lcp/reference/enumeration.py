@@ -168,7 +168,6 @@ def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
-    """The point in the problem's units."""
     support = sum(1 << i for i, v in enumerate(point.x) if v)
     outside = sum(1 << i for i, v in enumerate(point.w) if v)
     faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]

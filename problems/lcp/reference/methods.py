@@ -105,7 +105,7 @@ def modulus(problem: LCP) -> ReferenceResult:
 
     References
     ----------
-    van Bokhoven 1980; Schaefer, On the modulus algorithm for the LCP, Oper. Res. Lett. 32, 2004.
+    van Bokhoven 1980; Schaefer, Oper. Res. Lett. 32, 2004.
     """
     z = x = np.zeros(problem.n)
     factors, exchanged, singular = dgetrf(_dense(problem) + np.eye(problem.n))
@@ -133,14 +133,13 @@ def min_newton(problem: LCP) -> ReferenceResult:
 
     References
     ----------
-    Pang, Newton's method for B-differentiable equations, Math. Oper. Res. 15, 1990; Hintermueller, Ito and Kunisch,
+    Pang, Math. Oper. Res. 15, 1990; Hintermueller, Ito and Kunisch,
     SIAM J. Optim. 13, 2003.
     """
     A, x = _dense(problem), np.zeros(problem.n)
     for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _solved_on(A, x > w, -np.minimum(x, w)))
-        # Polish a solution.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return _result(problem, x, iteration, iteration + 1, "")
         x = trial

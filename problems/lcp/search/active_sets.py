@@ -62,7 +62,7 @@ class ActiveSets:
         yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
         facts = search.facts  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
-            return  # singular, as in contact problems: pivots are quicker
+            return
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:

@@ -171,7 +171,6 @@ def _rounded(found: Solution, tolerance: float) -> bool:
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the given problem."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (

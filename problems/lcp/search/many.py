@@ -97,8 +97,7 @@ def solve_many(
 
     References
     ----------
-    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
-    Stone, Algorithm 4.4.5.
+    Lemke, Management Science 11, 1965; Cottle, Pang and Stone, Algorithm 4.4.5.
     """
     matrices, constants = _stacks(A, q)
     solve(LCP(np.eye(1), np.ones(1)), tolerance=tolerance, budget=budget)

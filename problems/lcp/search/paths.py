@@ -216,7 +216,6 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        """Trace restarts in order until one solves; return their number."""
         search, asked = self.search, self.search.asked
         tolerance = None if search.finish is None else search.tolerance
         together = 1 if asked.executor is None else AT_ONCE
@@ -254,7 +253,6 @@ class Paths:
         return (*archive, Progress())
 
     def _left(self) -> Budget:
-        """The budget left, at least one of each."""
         b, counts = self.search.budget, self.search.counts
         return Budget(
             steps=max(b.steps - counts.accepted, 1.0), factorizations=max(b.factorizations - counts.factorizations, 1.0)

@@ -89,7 +89,7 @@ class Pivots:
 
         References
         ----------
-        Codenotti, De Rossi and Pagan, "An experimental analysis of Lemke-Howson algorithm", arXiv 0811.3247, 2008.
+        Codenotti, De Rossi and Pagan, arXiv 0811.3247, 2008.
         """
         n, m = played.problem.n, played.actions
         most = int(work * n)
@@ -143,7 +143,7 @@ def constraints(problem: LCP) -> Mask:
     """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions, where d is zero.
 
     ``A = [[Q, B'], [-B, 0]]``. With t in the rows of Q alone, LCP(q + t d, A) is the program with cost c + t d; for
-    large t and bounded x its only stationary point is x = 0 (Eaves, "On quadratic programming", Management Science 17,
+    large t and bounded x its only stationary point is x = 0 (Eaves, Management Science 17,
     1971).
     """
     rows: Mask = (problem.q >= 0.0) & (problem.A.diagonal() == 0.0)

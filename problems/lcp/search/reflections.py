@@ -6,8 +6,7 @@ but only solutions are fixed points. Random problems neither monotone nor P take
 
 References
 ----------
-Elser, Rankenburg and Thibault, "Searching with iterated maps", PNAS 104, 2007. Aragon Artacho, Campoy and Tam, "The
-Douglas-Rachford algorithm for convex and nonconvex feasibility problems", Math. Methods Oper. Res. 91, 2020.
+Elser, Rankenburg and Thibault, PNAS 104, 2007; Aragon Artacho, Campoy and Tam, Math. Methods Oper. Res. 91, 2020.
 """
 
 from __future__ import annotations
@@ -94,7 +93,6 @@ class Sets:
             over += 1
 
     def _complementary(self, z: Single) -> tuple[NDArray[np.int8], Single]:
-        """The nearest complementary points, and their faces."""
         n = self.lower.size
         x, w = z[:n], z[n:]
         if self.standard:

@@ -120,7 +120,7 @@ def solve(
 
     References
     ----------
-    Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
+    Dutta, Das and Jana (see `KKTHomotopy`).
     """
     if isinstance(problem, Program):
         return of_program(problem, solve(problem.problem, homotopy, **_given(locals()), **options))
@@ -189,7 +189,6 @@ def _title(problem: MixedLCP) -> str:
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
-    """The problem without bounds where they are equal."""
     if not problem.fixed.any():
         return problem
     none = np.where(problem.fixed, np.inf, 0.0)
@@ -199,7 +198,6 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 def _check_arguments(
     tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
-    """Refuse bad arguments at once."""
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
@@ -264,7 +262,6 @@ def _account(search: Search, settled: str) -> str:
 
 
 def _archive_without_path(log: PathLog, found: Solution) -> None:
-    """Archive the message, and the solution as the KKT path's end."""
     homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
