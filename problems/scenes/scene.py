@@ -200,7 +200,16 @@ def conditions(problem: Any) -> Any:
 
 
 def order(problem: Any) -> int:
-    """The number of unknowns of a problem."""
+    """Number of unknowns.
+
+    Parameters
+    ----------
+    problem : LCP, MixedLCP, Program or homotopy
+
+    Returns
+    -------
+    int
+    """
     found = conditions(problem)
     return int(found.n) if isinstance(found, MixedLCP) else len(found.start()[0])
 
