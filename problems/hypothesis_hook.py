@@ -8,7 +8,7 @@ import sys
 def register() -> None:
     """Register strategies if Hypothesis and the classes are both imported.
 
-    Hypothesis calls this through an entry point, `problems.lcp` at import: either may come first.
+    Hypothesis calls this through an entry point, `problems.lcp` at import.
     """
     data = sys.modules.get("problems.lcp.data.problem")
     program = sys.modules.get("problems.lcp.data.program")

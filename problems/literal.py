@@ -1,8 +1,8 @@
 """The paper's algorithm, Steps 0-5 as printed, for comparison only.
 
-It corrects once per step, accepts ||H|| <= 1 absolutely, and Step 4 may continue from a point that failed every test:
-so example 1 ends at another KKT point. The text leaves a_0 and the norms open; with the choices here the ten examples
-take 18, 21, 15, 24, 17, 24, 18, 3289, 27 and 1955 iterations.
+It corrects once per step, accepts ||H|| <= 1 absolutely, and Step 4 may continue from a point that failed every test.
+The text leaves a_0 and the norms open; with the choices here the ten examples take 18, 21, 15, 24, 17, 24, 18, 3289, 27
+and 1955 iterations.
 """
 
 from __future__ import annotations
@@ -117,7 +117,6 @@ def run_literally(
 
 @quiet
 def _iterate(homotopy: KKTHomotopy, u: Array, settings: LiteralSettings, first: bool) -> tuple[Array, int]:
-    """Steps 1 to 3: next point and next step (4 or 5)."""
     tangent = _tangent(homotopy, u, first)
     a = 1.0
     while True:
@@ -143,7 +142,6 @@ def _tangent(homotopy: KKTHomotopy, u: Array, first: bool) -> Array:
 
 
 def _moore_penrose(homotopy: KKTHomotopy, u: Array) -> Array:
-    """H'(u)^+ H(u)."""
     correction: Array = np.linalg.lstsq(
         np.column_stack(homotopy.jacobian(u[:-1], float(u[-1]))), homotopy.residual(u[:-1], float(u[-1])), rcond=None
     )[0]

@@ -51,8 +51,7 @@ def check_budget(value: Any) -> None:
 def real_array(name: str, value: Any) -> Array:
     """Copy `value` to a float array, or keep a read-only one that owns its row-major floats.
 
-    Integers, floats, booleans and fractions convert. Raises `ValueError` for complex numbers, dates, text, masked
-    entries, ragged rows, numbers beyond 1e308.
+    Raises `ValueError` for complex numbers, dates, text, masked entries, ragged rows, numbers beyond 1e308.
     """
     if type(value) is np.ndarray and value.dtype == float:
         own = value.base is None and value.flags.c_contiguous and not value.flags.writeable
@@ -61,7 +60,7 @@ def real_array(name: str, value: Any) -> Array:
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
-        # Row-major for products; MATLAB matrices come by columns.
+        # MATLAB matrices come by columns.
         array = np.array(value, order="C")
         if array.dtype == object:
             if not all(_is_real(entry) for entry in array.flat):
@@ -93,7 +92,7 @@ def sound_sparse(name: str, value: Any) -> Any:
         raise ValueError(f"{name}: expected a matrix, found shape {value.shape}")
     try:
         if value.format in ("csr", "csc", "bsr"):
-            # On a copy: scipy narrows the checked object's indices.
+            # scipy narrows the checked object's indices.
             type(value)((value.data, value.indices, value.indptr), shape=value.shape).check_format(full_check=True)
         elif value.format == "coo":
             for indices, length in zip((value.row, value.col), value.shape):
@@ -101,7 +100,7 @@ def sound_sparse(name: str, value: Any) -> Any:
                     raise ValueError("there are not as many indices as entries")
                 if len(indices) and not 0 <= indices.min() <= indices.max() < length:
                     raise ValueError(f"indices {indices.min()} to {indices.max()} where 0 to {length - 1} are possible")
-        # Floats first: sums of small integers overflow.
+        # Sums of small integers overflow.
         matrix = sp.csr_array(value.astype(float))
         matrix.check_format(full_check=True)
         matrix.sum_duplicates()

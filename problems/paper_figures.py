@@ -57,13 +57,11 @@ def _draw_x(example: Example, path: Path, axes: Any) -> None:
 
 
 def _key(figure: Any, fullest: Any) -> None:
-    """One legend for all panels."""
     handles, labels = fullest.get_legend_handles_labels()
     handles.append(figure.axes[0].plot([], [], **TURN)[0])
     figure.legend(handles, [*labels, "turning point"], loc="outside lower center", ncols=len(handles), frameon=False)
 
 
 def _typeset(matrix_class: str) -> str:
-    """Typeset N-bar with bar, Q0 with index."""
     text = matrix_class.replace("N-bar", r"$\bar{N}$").replace("E0^s", "$E_0^s$")
     return re.sub(r"\b([A-Z])0\b", r"$\1_0$", text)

@@ -26,8 +26,6 @@ def brown_fixed_point(n: int = 5) -> Differentiable:
 
 
 def _plugin(homotopy: Registered) -> Callable[..., LCPHomotopy]:
-    """Make an entry point with options that can be typed."""
-
     def make(example: int = homotopy.example, file: str = "", q: str = "") -> LCPHomotopy:
         problem, x0 = _problem(example, file, q)
         return homotopy.make(problem, x0)
@@ -54,7 +52,6 @@ kmm = _plugin(HOMOTOPIES["kmm"])
 
 
 def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
-    """Read an LCP, or take the paper's with its start."""
     if file:
         try:
             return read_problem(file, q or None), None

@@ -25,7 +25,6 @@ _STATE = np.array(
 _ELEVATOR = np.array([0.0, -28.37, 0.0, -0.168, 0.0])
 _AILERON = np.array([-45.83, 0.0, -0.921, 0.0, -0.0071])
 
-# Quadratic terms: a column per pair x_i x_j.
 _FIRST = np.array([1, 2, 3, 0, 0, 0, 0])
 _SECOND = np.array([2, 3, 4, 2, 4, 1, 3])
 _QUADRATIC = np.array(
@@ -43,15 +42,14 @@ _ATTACK = 3
 
 _NEWTON_STEPS = 30
 _NEWTON_TOLERANCE = 1e-14
-"""Newton for the start takes 4 steps at published elevators."""
+"""Newton's method for the start takes 4 steps."""
 
 
 @frozen
 class Aircraft:
-    """Equilibria of an aircraft: five quadratic equations, continued in the aileron deflection, the elevator fixed.
+    """Equilibria of an aircraft: five quadratic equations.
 
-    y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron (x7 of the source); its x6 =
-    elevator and x8 = rudder = 0 are substituted.
+    y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron; the rudder is 0.
 
     Parameters
     ----------
@@ -72,12 +70,12 @@ class Aircraft:
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:
-        """Newton from level flight, y = 0, at aileron 0.
+        """Newton from y = 0 at aileron 0.
 
         Raises
         ------
         ArithmeticError
-            If Newton fails, which no elevator of the source causes.
+            If Newton fails.
         """
         y = np.zeros(5)
         for _ in range(_NEWTON_STEPS):

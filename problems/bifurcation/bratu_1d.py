@@ -20,8 +20,8 @@ _BOUNDARY = np.zeros(1)
 class Bratu1D:
     """u'' + lam e^u = 0 on (0, 1), u(0) = u(1) = 0, by second-order differences, from u = 0 at lam = 0.
 
-    ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}``, h = 1/(n + 1): H_y is of order 1. The path turns at
-    lam* = 3.5138... and returns towards lam = 0.
+    ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}``, h = 1/(n + 1). The path turns at lam* = 3.5138... and returns
+    towards lam = 0.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Bratu1D:
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (n,); inf or nan on overflow."""
+        """H, shape (n,)."""
         u = np.concatenate((_BOUNDARY, y, _BOUNDARY))
         return u[:-2] - 2.0 * y + u[2:] + self._square * lam * np.exp(y)
 
@@ -61,7 +61,7 @@ class Bratu1D:
         return Banded(bands, 1, 1), slope
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Maximum of u, the usual ordinate."""
+        """Maximum of u."""
         return {"max_u": float(np.max(y))}
 
     @property

@@ -29,8 +29,8 @@ def five_point(m: int) -> Matrix:
 class Bratu2D:
     """Laplacian(u) + lam e^u = 0 on the unit square, u = 0 on its edge, by the five-point formula.
 
-    ``H = h^2 (Laplacian_h u + lam e^u)``, h = 1/(m + 1), points by rows: H_y is of order 1. The path turns at
-    lam* = 6.808... and returns towards lam = 0.
+    ``H = h^2 (Laplacian_h u + lam e^u)``, h = 1/(m + 1), points by rows. The path turns at lam* = 6.808... and returns
+    towards lam = 0.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Bratu2D:
 
     @cached_property
     def _pattern(self) -> tuple[Matrix, Any]:
-        """Laplacian and its stored diagonal, which alone varies in H_y."""
+        """Laplacian and its stored diagonal."""
         laplacian = five_point(self.m)
         columns = np.repeat(np.arange(self.m**2), np.diff(laplacian.indptr))
         return laplacian, np.flatnonzero(laplacian.indices == columns)
@@ -64,8 +64,8 @@ class Bratu2D:
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (m^2,); inf or nan on overflow."""
-        # Shifts, unlike the sparse product, accept complex numbers and jets.
+        """H, shape (m^2,)."""
+        # Shifts accept complex numbers and jets.
         u = np.pad(y.reshape(self.m, self.m), 1)
         around = u[:-2, 1:-1] + u[2:, 1:-1] + u[1:-1, :-2] + u[1:-1, 2:]
         equations: Array = around.ravel() - 4.0 * y + self._square * lam * np.exp(y)
@@ -81,7 +81,7 @@ class Bratu2D:
         return matrix, slope
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Maximum of u, the usual ordinate."""
+        """Maximum of u."""
         return {"max_u": float(np.max(y))}
 
     @property

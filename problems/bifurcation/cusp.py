@@ -14,14 +14,14 @@ from problems.options import finite, finite_or_none, quiet
 
 @frozen
 class Cusp:
-    """F(x, mu) = mu + lambda x - x^3, one unknown, continued in mu (the `lam` of the protocol).
+    """F(x, mu) = mu + lambda x - x^3, continued in mu.
 
     Parameters
     ----------
     splitting : float
         Fixed lambda: two folds if positive, none if negative.
     target : float or None
-        End of the path; by default at the start's mirror image.
+        End of the path; default: the start's mirror image.
 
     References
     ----------
@@ -35,12 +35,11 @@ class Cusp:
 
     @target.default
     def _mirrored_start(self) -> float:
-        # Defaults precede validation.
         finite(self, fields(Cusp).splitting, self.splitting)
         return -self.start()[1]
 
     def start(self) -> tuple[Array, float]:
-        """The point x = -1 - sqrt(abs(lambda)), before both folds."""
+        """The point x = -1 - sqrt(abs(lambda))."""
         x = -1.0 - float(np.sqrt(abs(self.splitting)))
         return np.array([x]), x * (x * x - self.splitting)
 

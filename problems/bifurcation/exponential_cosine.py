@@ -19,7 +19,7 @@ class ExponentialCosine:
     Parameters
     ----------
     n : int
-        Unknowns. n = 2 has no turning point, n = 8 has 24; the largest curvature is 1.6 and 374.
+        Unknowns. n = 2 has no turning point, n = 8 has 24.
     target : float or None
         End of the path.
 

@@ -32,8 +32,7 @@ class FreudensteinRoth:
 
     Notes
     -----
-    Near x2 = -1.74 a long step turns the tangent by over 90 degrees; orientation by angle alone then reports a false
-    fold at lam = 0.3057.
+    Near x2 = -1.74 a long step turns the tangent by over 90 degrees, which may look like a fold.
 
     References
     ----------

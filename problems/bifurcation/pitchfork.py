@@ -19,8 +19,7 @@ class Pitchfork:
     Parameters
     ----------
     imperfection : float
-        eps. For 0 the path x = 0 meets x^2 = lam in a branch point at lam = 0. Otherwise the path keeps the sign of
-        eps; the other two arms join in a fold.
+        eps. For 0 the path x = 0 meets x^2 = lam in a branch point. Otherwise the path keeps the sign of eps.
     target : float or None
         End of the path.
 
@@ -35,7 +34,7 @@ class Pitchfork:
     references: ClassVar[tuple[str, ...]] = (GOLUBITSKY_SCHAEFFER,)
 
     def start(self) -> tuple[Array, float]:
-        """The real root of x^3 + x = eps (hyperbolic Cardano)."""
+        """The real root of x^3 + x = eps."""
         third = np.arcsinh(1.5 * np.sqrt(3.0) * self.imperfection) / 3.0
         return np.array([2.0 / np.sqrt(3.0) * np.sinh(third)]), -1.0
 

@@ -23,8 +23,7 @@ _CHANDRASEKHAR = """@book{Chandrasekhar1960,
 class Chandrasekhar:
     """``y_i (1 - (lam/2n) sum_j mu_i y_j/(mu_i + mu_j)) = 1`` with mu_i = (i - 1/2)/n, from y = 1 at lam = 0.
 
-    The mean m of y satisfies m = 1 + lam m^2/4: the path turns at lam = 1, m = 2, for every n, and returns along
-    m = 2 (1 + sqrt(1 - lam))/lam without end.
+    The mean m of y satisfies m = 1 + lam m^2/4: the path turns at lam = 1, m = 2, for every n.
 
     References
     ----------

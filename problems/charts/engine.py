@@ -76,7 +76,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     found = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
-        # Users choose among presets: time and compare them, also on a sparse system.
+        # Users choose among presets: compare them on a sparse system, too.
         whole = name == "presets"
         square = [bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size])] if whole else []
         shown = [one.name for one in (*square, problems[-1])]
@@ -86,7 +86,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
                 title=f"Tolerance against work: {title}",
                 problems=[*problems, *square],
                 methods=[*methods, *rivals.curve_followers(compare)] if whole else methods,
-                # A series hardly depends on the tolerance and is expensive.
+                # A series hardly depends on the tolerance.
                 ladder=tolerances(*rungs[:: 2 if name == "series" else 1]),
                 errors=(END_POINT,),
                 work=(*COUNTED, "seconds") if whole else COUNTED,
@@ -106,7 +106,6 @@ def _problems(size: Size) -> list[Problem]:
 
 
 def _steps(problems: list[Problem], size: Size) -> Study:
-    """Dense output of predictors for shorter steps."""
     steps = {"smoke": (0.3,), "moderate": (1.0, 0.3, 0.1), "full": (3.0, 1.0, 0.3, 0.1, 0.03)}[size]
     methods = [traced(label, budget=BUDGET, **options) for label, options in PREDICTORS.items()]
     return Study(

@@ -20,7 +20,7 @@ def semidefinite(random: np.random.Generator, n: int) -> Array:
 
 
 def scaled_p(random: np.random.Generator, n: int) -> Array:
-    """D (positive definite plus skew) E, positive diagonals over two decades: a P-matrix, mostly indefinite."""
+    """D (positive definite plus skew) E, positive diagonals over two decades: a P-matrix."""
     factor, skew = random.standard_normal((n, n)), random.standard_normal((n, n))
     core = factor @ factor.T / n + 0.1 * np.eye(n) + (skew - skew.T) / np.sqrt(n)
     left, right = (10.0 ** random.uniform(-1.0, 1.0, n) for _ in range(2))
@@ -28,7 +28,7 @@ def scaled_p(random: np.random.Generator, n: int) -> Array:
 
 
 def n_matrix(random: np.random.Generator, n: int) -> Array:
-    """K - u v', u_i v_i > K_ii, K an M-matrix: all principal minors negative."""
+    """K - u v', u_i v_i > K_ii, K an M-matrix."""
     K = -random.uniform(0.0, 1.0, (n, n)) / n
     np.fill_diagonal(K, 0.0)
     np.fill_diagonal(K, 0.5 - K.sum(axis=1))
@@ -38,13 +38,13 @@ def n_matrix(random: np.random.Generator, n: int) -> Array:
 
 
 def copositive(random: np.random.Generator, n: int) -> Array:
-    """Low-rank positive semidefinite plus nonnegative plus skew: strictly copositive, minors of any sign."""
+    """Low-rank positive semidefinite plus nonnegative plus skew: strictly copositive."""
     factor, skew = random.standard_normal((n, max(1, n // 4))), random.standard_normal((n, n))
     return np.asarray(factor @ factor.T / n + random.uniform(0.0, 1.0, (n, n)) / np.sqrt(n) + (skew - skew.T) / n)
 
 
 def indefinite(random: np.random.Generator, n: int) -> Array:
-    """Independent normal entries: no class, nondegenerate with probability one."""
+    """Independent normal entries: no class."""
     return np.asarray(random.standard_normal((n, n)) / np.sqrt(n))
 
 

@@ -28,7 +28,7 @@ SOLVED_TO = 1e-6
 RESIDUAL = observed("natural_residual", "natural residual max |min(x, Ax + q)|, over 1 + max |q|")
 
 BUDGET = continuation.Budget(steps=200)
-"""Of a path, or of all paths of `lcp.solve`: those that arrive on these problems take half as many."""
+"""Budget of a path, or of `lcp.solve`: paths that arrive take half as many steps."""
 
 
 def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
@@ -58,7 +58,7 @@ def solver(name: str, **options: Any) -> Method:
 
 
 def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], Counts]) -> Method:
-    """A solver without tolerance ladder; `cost(iterations, n)` estimates its counts."""
+    """A solver without tolerance ladder; `cost` estimates its counts."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         try:

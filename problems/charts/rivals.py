@@ -26,7 +26,7 @@ STEPS = 1000
 """Limit per path; a successful plain loop needs some hundred."""
 
 LONGEST = 30.0
-"""Longest step of PITCON and bice: no shorter than the longest of ours on these paths."""
+"""Longest step of PITCON and bice."""
 
 
 @frozen
@@ -53,7 +53,7 @@ class _Curve:
         return math.copysign(1.0, self.aim - self.start[-1])
 
     def arrived(self, before: float, after: float) -> bool:
-        """Whether lam passes the target as at the end of the path: each turning point turns it round."""
+        """Whether lam passes the target in the direction of the path's end."""
         last = self.direction * (-1.0) ** (self.problem.truth.turns or 0)
         return last * (before - self.aim) < 0.0 <= last * (after - self.aim)
 
@@ -92,7 +92,6 @@ class _Curve:
 
 
 def _loop(curve: _Curve, tolerance: float) -> Answer:
-    """Plain Keller continuation, without turning points."""
     u, counts, h = curve.start, curve.counts, 0.1
     last = np.eye(u.size)[-1]
     v = curve.direction * last
@@ -117,7 +116,7 @@ def _loop(curve: _Curve, tolerance: float) -> Answer:
 
 def _pitcon(curve: _Curve, tolerance: float) -> Answer:
     """Dense PITCON 6.1, of pysces."""
-    # Importing pysces prints a page and makes folders: load the compiled routine only.
+    # Importing pysces prints a page and makes folders.
     package: Any = find_spec("pysces")
     (place,) = package.submodule_search_locations
     spec: Any = PathFinder.find_spec("pitcon", [f"{place}/pitcon"])
@@ -197,7 +196,7 @@ def _follow(follow: Follow, problem: Problem, rung: Rung) -> Answer:
 
 
 def notes(modules: Iterable[str], compare: bool) -> list[str]:
-    """One remark on which packages take part, in which version, and which are missing."""
+    """A remark on the versions of packages, and on missing ones."""
     said = [f"{module} {_version(module) if installed(module) else 'is not installed'}" for module in modules]
     return [f"outside solvers: {', '.join(dict.fromkeys(said))}"] if compare else []
 

@@ -85,8 +85,6 @@ def _refined(problem: Problem, factor: float) -> Any:
 
 
 def _method(name: str, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None) -> Method:
-    """A method for scenes, or an outside one for those that `applies` selects."""
-
     def run(problem: Problem, rung: Rung) -> Answer:
         off = error(ask(_refined(problem, rung.value)), problem.options["true"])
         well = math.isfinite(off) and off <= WRONG

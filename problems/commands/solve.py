@@ -120,7 +120,6 @@ def _numbers(vector: Array | None) -> list[float | None] | None:
 
 
 def _number(value: float) -> float | None:
-    """JSON lacks NaN and infinity."""
     return float(value) if math.isfinite(value) else None
 
 

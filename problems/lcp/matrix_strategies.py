@@ -87,8 +87,7 @@ def _k(draw: Draw, n: int) -> Rows:
 def _bordered(draw: Draw, n: int, last: Callable[[Draw, list[int], list[int]], int | None]) -> Rows:
     """Add rows and columns; `last` draws the diagonal entry that the minors allow.
 
-    Per index set `last` gets the old and the bordered minor at entry zero; the new minor is entry * old + bordered. If
-    no entry fits, the new column is zero.
+    Per index set `last` gets the old and the bordered minor at entry zero; the new minor is entry * old + bordered.
     """
     rows: Rows = []
     for k in range(n):
@@ -215,9 +214,9 @@ def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st
     cls : str
         One of `CLASSES`.
     n : int or strategy of int
-        The order, by default 1 to 4; up to 30 in well under a second.
+        The order, by default 1 to 4.
     entries : strategy of numbers, optional
-        Also floats; only for "any" and "Z" (which fixes off-diagonal signs).
+        Only for "any" and "Z"; also floats.
 
     Raises
     ------

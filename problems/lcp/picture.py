@@ -37,7 +37,7 @@ def draw_solution(solution: Solution) -> Any:
 def draw_face(solution: Solution, axes: Axes) -> Axes:
     """Bars for each i: up for the distance of x_i to its bounds, down for w_i, each relative to its largest.
 
-    A solution has one bar at each i. A ring marks two values within the residual.
+    A ring marks two values within the residual.
     """
     axes.set_title(f"{solution.outcome.name}: residual {solution.residual:.0e}", fontsize="small", loc="left")
     if solution.x is None or solution.w is None:

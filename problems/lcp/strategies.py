@@ -1,4 +1,4 @@
-"""Hypothesis strategies for matrices of a class and problems with a property, from integers, so that they shrink."""
+"""Hypothesis strategies for problems with a property, from integers, so that they shrink."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
 def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]:
     """A problem and two solutions x and y, exactly.
 
-    They differ by one in a coordinate j: column j of A makes A (x - y) = w(x) - w(y).
+    They differ by one in one coordinate.
     """
     order = draw(orders_of(n))
     x, w = _complementary_pair(draw, order)
@@ -187,7 +187,7 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
 def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
     """A strictly feasible problem in units from 2^-26 to 2^26, with its start.
 
-    Powers of two scale exactly and map solutions one to one.
+    Powers of two scale exactly.
 
     Parameters
     ----------

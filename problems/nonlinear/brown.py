@@ -30,7 +30,7 @@ class BrownAlmostLinear:
 
     @quiet
     def __call__(self, x: Array) -> Array:
-        """F(x), shape (n,)."""
+        """The value."""
         if x.shape != (self.n,):
             raise ValueError(f"x: expected shape {(self.n,)}, found {x.shape}")
         return np.concatenate((np.prod(x, keepdims=True) - 1.0, x[1:] + np.sum(x) - (self.n + 1.0)))
@@ -50,7 +50,7 @@ class BrownAlmostLinear:
 
 
 def brown(n: int) -> BrownAlmostLinear:
-    """Brown's almost linear function; ``fixed_point(F, a, F.jacobian)`` is the classical test path.
+    """Brown's almost linear function; ``fixed_point(F, a, F.jacobian)`` is the usual path.
 
     Parameters
     ----------

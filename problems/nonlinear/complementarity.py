@@ -30,10 +30,10 @@ from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_s
 from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
-"""Of Josephy's method; near a solution four or five suffice."""
+"""Steps of Josephy's method; near a solution five suffice."""
 
 AFFINE = Budget(steps=200, factorizations=400)
-"""Most affine problems need few active sets; a hard one is not worth more."""
+"""Most affine problems need few active sets."""
 
 
 @frozen(eq=False, slots=False)
@@ -45,7 +45,7 @@ class MixedComplementarity:
     F : callable
         ``F(x) -> (n,)``.
     jacobian : callable or None
-        ``jacobian(x) -> (n, n)``, dense or sparse. None: Taylor arithmetic, for F in plain numpy.
+        ``jacobian(x) -> (n, n)``, dense or sparse; by default Taylor arithmetic.
     lower, upper : array_like, shape (n,)
         May be infinite; at least one is a vector.
 
@@ -68,7 +68,6 @@ class MixedComplementarity:
         sizes = [np.size(bound) for bound in (self.lower, self.upper) if bound is not None and np.ndim(bound) == 1]
         if not sizes:
             raise ValueError("lower: expected a vector of bounds, lower or upper, found none")
-        # MixedLCP checks the bounds.
         like = MixedLCP(sp.eye_array(sizes[0], format="csr"), np.zeros(sizes[0]), self.lower, self.upper)
         object.__setattr__(self, "lower", like.lower)
         object.__setattr__(self, "upper", like.upper)
@@ -99,7 +98,7 @@ class MixedComplementarity:
         return np.asarray(jets.jacobian(self.F, x))
 
     def linearized(self, x: Array) -> MixedLCP:
-        """The affine problem with equal F and F' at x.
+        """The affine problem with the F and F' of x.
 
         Parameters
         ----------
@@ -118,7 +117,7 @@ class MixedComplementarity:
 class InteriorHomotopy:
     """Wang's homotopy: ``(1-l) F(x) - y + l y0 = 0`` and ``y_i`` times its distance from a bound ``= l c_i``.
 
-    y is s - t, s at lower and t at upper bounds; free unknowns add l (x - x0).
+    Here y is s - t, with s at lower and t at upper bounds; free unknowns add l (x - x0).
 
     Parameters
     ----------
@@ -169,7 +168,7 @@ class InteriorHomotopy:
 
     @cached_property
     def own_metric(self) -> RelativeMetric:
-        """Relative changes."""
+        """The metric of relative changes."""
         if self._shape.standard:
             return RelativeMetric()
         return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
@@ -179,14 +178,14 @@ class InteriorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """As those of Wang's homotopy for an LCP; of directions the pairs alone.
+        """The `interior.Parts` of H; for directions the pairs alone.
 
         Parameters
         ----------
         y : ndarray
         lam : float
         one : float
-            1 at a point; 0 for a direction, of which constants are no part.
+            0 for a direction.
         """
         n, sides = self.problem.n, self.sides
         x, forces = y[:n], y[n:]
@@ -198,18 +197,17 @@ class InteriorHomotopy:
     def _linearized(self, y: Array) -> TwoVectorHomotopy:
         problem, blend = self.problem.linearized(y[: self.problem.n]), Blend(sign=1, x=self.sides.free, y=1)
         found = TwoVectorHomotopy("Wang", problem, blend, self.x0, self.y0, self.references, Structure(problem))
-        # Bounds and start give these at all points.
         vars(found).update(sides=self.sides, c=self.c, own_metric=self.own_metric)
         return found
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor, reduced to order n + 1."""
+        """Factor the bordered matrix."""
         return self._linearized(y).bordered(y, lam, border)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) in full; the engine uses `bordered`."""
+        """(H_y, H_lam) in full."""
         return self._linearized(y).jacobian(y, lam)
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
@@ -226,7 +224,7 @@ class ComplementaritySolution:
     Attributes
     ----------
     success : bool
-        Whether the relative residual meets the tolerance.
+        Whether the residual meets the tolerance.
     certificate : Certificate
         For the problem linearised at x.
     path : Path or None
@@ -255,14 +253,14 @@ class ComplementaritySolution:
 
     @property
     def relative_residual(self) -> float:
-        """Natural residual, each row relative to its terms."""
+        """See `Certificate`."""
         return self.certificate.relative_residual
 
 
 def solve_complementarity(
     problem: MixedComplementarity, x0: Any = None, *, tolerance: float = 1e-10, budget: Budget | None = None
 ) -> ComplementaritySolution:
-    """Solve by Newton's method from x0 or, failing that, from the end of Wang's path.
+    """Solve by Newton's method from x0, else from the end of Wang's path.
 
     Parameters
     ----------
@@ -284,7 +282,7 @@ def solve_complementarity(
 
     References
     ----------
-    Josephy, "Newton's method for generalized equations", Math. Research Center Report 1965, Madison 1979.
+    Josephy, Math. Research Center Report 1965, Madison 1979.
     """
     if not isinstance(problem, MixedComplementarity):
         raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")
@@ -307,7 +305,6 @@ def solve_complementarity(
 
 
 def _josephy(problem: MixedComplementarity, x: Array, tolerance: float) -> Certificate:
-    """Best iterate of Josephy's method."""
     with np.errstate(all="ignore"):
         affine = problem.linearized(x)
         best = certify(affine, np.clip(x, problem.lower, problem.upper))
@@ -317,7 +314,7 @@ def _josephy(problem: MixedComplementarity, x: Array, tolerance: float) -> Certi
                 break
             try:
                 affine = problem.linearized(found.x)
-            except ValueError:  # it left the domain of F
+            except ValueError:  # outside the domain of F
                 break
             now = certify(affine, found.x)
             stalled = best.relative_residual <= tolerance and now.relative_residual >= best.relative_residual

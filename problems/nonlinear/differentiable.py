@@ -25,7 +25,7 @@ class WithoutJacobian(Protocol):
         ...
 
     def residual(self, y: Array, lam: float) -> Array:
-        """H."""
+        """The residual H."""
         ...
 
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
@@ -36,8 +36,6 @@ class WithoutJacobian(Protocol):
 @frozen(eq=False)
 class Differentiable:
     """A homotopy with `jacobian`, made of one without and of F'.
-
-    Capabilities are found by their presence, so the two cases are two types.
 
     Parameters
     ----------
@@ -65,15 +63,15 @@ class Differentiable:
 
     @property
     def references(self) -> Sequence[str]:
-        """The homotopy's."""
+        """BibTeX entries."""
         return self.homotopy.references
 
     def start(self) -> tuple[Array, float]:
-        """The homotopy's."""
+        """The start."""
         return self.homotopy.start()
 
     def residual(self, y: Array, lam: float) -> Array:
-        """The homotopy's."""
+        """The residual H."""
         return self.homotopy.residual(y, lam)
 
     @quiet

@@ -57,7 +57,7 @@ class FixedPointHomotopy:
 
     @quiet
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y), at the price of one evaluation of F.
+        """(H_y, H_lam) from slope = F'(y).
 
         Parameters
         ----------
@@ -69,14 +69,14 @@ class FixedPointHomotopy:
 
 
 def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedPointHomotopy | Differentiable:
-    """The fixed-point homotopy of F from `a`, see `FixedPointHomotopy`.
+    """The fixed-point homotopy of F from `a`.
 
     Parameters
     ----------
     F : callable
     a : array_like, shape (n,)
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``: array, scipy sparse, `Banded`, `Symmetric` or LinearOperator.
+        ``jacobian(x) -> (n, n)``: any matrix that `continuation.linear` factors.
     """
     homotopy = FixedPointHomotopy(F, a)
     return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

@@ -11,7 +11,7 @@ from continuation.linear import Banded, Symmetric
 
 
 def blend_with_identity(matrix: Matrix, lam: float) -> Matrix:
-    """(1 - lam) M + lam I as a new matrix of M's type; `TypeError` for unknown types."""
+    """(1 - lam) M + lam I as a new matrix of M's type."""
     if isinstance(matrix, np.ndarray):
         return (1.0 - lam) * matrix + lam * np.eye(len(matrix))
     if isinstance(matrix, Symmetric):

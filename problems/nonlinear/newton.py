@@ -72,7 +72,7 @@ class NewtonHomotopy:
 
 
 def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy | Differentiable:
-    """The Newton homotopy of F from `a`, see `NewtonHomotopy`.
+    """The Newton homotopy of F from `a`.
 
     Parameters
     ----------

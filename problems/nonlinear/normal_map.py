@@ -52,23 +52,22 @@ class AffineForce:
 class NormalMap:
     """Solutions x(lam) in [lower, upper]: F_i(x, lam) >= 0 at a lower bound, <= 0 at an upper one, else 0.
 
-    H(z, lam) = F(x, lam) + z - x, where x projects z onto the bounds; smooth while no z_i is on a bound. Bordered
-    systems reduce to the free unknowns.
+    H(z, lam) = F(x, lam) + z - x, where x projects z onto the bounds, is smooth while no z_i is on a bound.
 
     Parameters
     ----------
     F : callable
         ``F(x, lam) -> (n,)``.
     jacobian : callable or None
-        ``jacobian(x, lam) -> (F_x, F_lam)``, F_x dense, sparse or `Banded`. None: Taylor arithmetic for F in plain
-        numpy, else differences.
+        ``jacobian(x, lam) -> (F_x, F_lam)``, F_x dense, sparse or `Banded`. By default Taylor arithmetic, else
+        differences.
     x0 : array_like, shape (n,)
         Approximate solution at `lam0`.
     lam0 : float
     lower, upper : array_like, shape (n,), or float
         May be infinite; default 0 and inf.
     lower_rate, upper_rate : array_like, shape (n,), or float
-        Bounds are lower + lam * lower_rate and upper + lam * upper_rate, as for friction under a load.
+        Bounds are lower + lam * lower_rate and upper + lam * upper_rate.
     target : float or None, default 0
 
     Raises
@@ -78,7 +77,7 @@ class NormalMap:
 
     References
     ----------
-    Robinson, Normal maps induced by linear transformations, Mathematics of Operations Research 17 (1992) 691-714.
+    Robinson, Math. Oper. Res. 17 (1992) 691-714.
     """
 
     F: Force
@@ -142,18 +141,17 @@ class NormalMap:
         return self.lower + lam * self.lower_rate, self.upper + lam * self.upper_rate
 
     def x(self, z: Array, lam: float = 0.0) -> Array:
-        """Project z onto the bounds.
+        """Project z onto the bounds at lam.
 
         Parameters
         ----------
         z : ndarray, shape (n,)
         lam : float
-            Matters for moving bounds.
         """
         return np.clip(z, *self.bounds(lam))
 
     def start(self) -> tuple[Array, float]:
-        """Start at z = x - F(x, lam)."""
+        """The start z = x - F(x, lam)."""
         x = self.x(self.x0, self.lam0)
         z = x - np.asarray(self.F(x, self.lam0), dtype=float)
         return z, self.lam0
@@ -166,19 +164,19 @@ class NormalMap:
         return value
 
     def switches(self, y: Any, lam: float) -> Any:
-        """Distances from finite lower and upper bounds; negative beyond."""
+        """Distances from finite bounds; negative beyond."""
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         lower = self.lower[below] + lam * self.lower_rate[below]
         upper = self.upper[above] + lam * self.upper_rate[above]
         return np.concatenate([y[below] - lower, upper - y[above]])
 
     def piece(self, signs: Array) -> NormalPiece:
-        """The smooth map with unknowns of negative switch on their bounds.
+        """The smooth map on which unknowns of negative switch are at bounds.
 
         Raises
         ------
         ValueError
-            If one is beyond both.
+            If one is beyond both bounds.
         """
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         m = int(below.sum())
@@ -202,12 +200,12 @@ class NormalPiece:
     moving: Array
 
     def start(self) -> tuple[Array, float]:
-        """The map's start."""
+        """The start."""
         return self.whole.start()
 
     @quiet
     def residual(self, y: Any, lam: Any) -> Any:
-        """F(x, lam) + z - x."""
+        """The residual."""
         on, held = 1.0 * self.free, self.clamped + lam * self.moving
         return self.whole.F(y * on + held, lam) + y * (1.0 - on) - held
 

@@ -1,4 +1,4 @@
-"""Bordered systems of the normal map, reduced to the free unknowns."""
+"""Bordered systems of the normal map, reduced to free unknowns."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class NormalSystem:
         return self.inner.sign if self.inner is not None else int(np.sign(self.corner))
 
     def solve(self, r: Array, rho: float) -> Array:
-        """Solve for free unknowns and parameter, then the others."""
+        """Solve for free unknowns and parameter, then the rest."""
         rest = rho - float(self.on_bounds @ r)
         z = np.zeros(r.size + 1)
         if self.inner is None:
@@ -68,7 +68,7 @@ def _principal(F_x: Matrix, alpha: Any) -> Matrix:
         return F_x[np.ix_(alpha, alpha)]
     if not isinstance(F_x, Banded):
         return sp.csc_array(sp.csr_array(F_x)[alpha][:, alpha])
-    # Deleting rows and columns does not widen the band.
+    # This does not widen the band.
     kept = sp.coo_array(F_x.tosparse().tocsr()[alpha][:, alpha])
     rows, columns = kept.coords
     ab = np.zeros((F_x.lower + F_x.upper + 1, alpha.size))

@@ -17,12 +17,12 @@ from problems.nonlinear.normal_map import NormalMap
 
 @frozen
 class BratuForce:
-    """-(u'' + lam e^u), times h^2; where negative, the obstacle bears it."""
+    """The force -(u'' + lam e^u) times h^2."""
 
     bratu: Bratu1D
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """The value at interior points."""
+        """The value."""
         return -self.bratu.residual(x, lam)
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
@@ -36,7 +36,7 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
 
     For psi > 1.1868421686, the maximum of u at the fold, the path meets the obstacle behind the fold at lam_c = 8
     exp(-psi) arccosh(exp(psi/2))^2 and turns in a corner; u then rests on it between a(lam) and 1 - a(lam), a =
-    sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). Smaller psi give no fold.
+    sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)).
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ DEGREES = integer(2, 12)
 
 @frozen
 class Asked:
-    """Grid size and first radius, checked."""
+    """The checked grid size and first radius."""
 
     intervals: int = field(validator=integer(2))
     degree: int = field(validator=DEGREES)
@@ -31,7 +31,7 @@ class Asked:
 
 
 def as_table(value: Any) -> Array:
-    """Convert states to a finite table."""
+    """A finite table of states."""
     found = real_vector("states", value)
     if found.ndim != 2 or not np.isfinite(found).all():
         raise complain(ValueError, "states", "a table of finite numbers, a row for each node", value)
@@ -39,7 +39,7 @@ def as_table(value: Any) -> Array:
 
 
 def as_mesh(value: Any) -> Array:
-    """Convert a number of intervals or mesh points."""
+    """Mesh points, from a number of intervals or points."""
     found = np.linspace(0.0, 1.0, value + 1) if isinstance(value, int) and value > 1 else real_vector("mesh", value)
     if found.ndim != 1 or found.size < 3 or found[0] != 0.0 or found[-1] != 1.0 or not (np.diff(found) > 0.0).all():
         raise complain(ValueError, "mesh", "a number of intervals, at least 2, or times that rise from 0 to 1", value)
@@ -47,7 +47,7 @@ def as_mesh(value: Any) -> Array:
 
 
 def check_times(times: Array, states: Array) -> None:
-    """Raise ValueError unless the states' times rise."""
+    """Raise ValueError unless times rise."""
     if times.shape != (len(states),) or len(times) < 4 or not (np.diff(times) > 0.0).all():
         raise complain(ValueError, "t", f"{len(states)} times that rise, one a state", times)
 

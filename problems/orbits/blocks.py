@@ -1,8 +1,7 @@
-"""Condense an orbit's equations A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
+"""Condenses A_i x_i + B_i x_{i+1} = 0 to A x_0 + B x_N = 0.
 
-QR factorisations eliminate unknowns between neighbouring blocks. No block is inverted or multiplied by another, so
-growing and decaying solutions lose no digits (Wright, Stable parallel algorithms for two-point boundary value problems,
-SIAM J. Sci. Stat. Comput. 13, 1992).
+QR factorisations eliminate unknowns between blocks, so growing and decaying solutions lose no digits (Wright, Stable
+parallel algorithms for two-point boundary value problems, SIAM J. Sci. Stat. Comput. 13, 1992).
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from continuation.linear import SingularError
 class Condensed:
     """Eliminations, and the remaining block.
 
-    `follows`: maps, shape (K, p, 2 n), from (left, right) to minus p unknowns of K blocks.
+    `follows` maps (left, right) to minus p unknowns of K blocks, shape (K, p, 2 n).
     """
 
     follows: list[Array]

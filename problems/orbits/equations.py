@@ -19,7 +19,7 @@ PHASE_COSINE = 0.1
 """Mean cosine between velocities of orbit and reference at which the phase condition has lost a digit."""
 
 ORBITS_KEPT = 4
-"""Residual, factorisation, events and observations of a step share a cached point."""
+"""Computations of one step share a cached point."""
 
 
 @frozen(eq=False, slots=False)
@@ -37,7 +37,7 @@ class Equations:
         return self.grid.slopes(self.states) / self.scale**2
 
     def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
-        """Split into grid, X of shape (N m, n), and T."""
+        """The grid, X of shape (N m, n), and T."""
         size = self.states.size
         mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
         grid = self.grid if np.array_equal(mesh, self.grid.mesh) else Grid(mesh, self.grid.degree)

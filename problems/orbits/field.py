@@ -27,8 +27,8 @@ COMPLEX_STEP = 1e-200
 
 @frozen(eq=False)
 class Field:
-    """`function` takes x of shape (n,), or (n, k) if `columns`. `own`: given (f_x, f_p). `steps`: of differences, else
-    complex steps.
+    """`function` takes x of shape (n,), or (n, k) if `columns`. `own` gives (f_x, f_p); `steps` are those of
+    differences.
     """
 
     function: Callable[..., Any]
@@ -43,7 +43,7 @@ class Field:
         return (SQUIRE_TRAPP,) if self.steps is None and self.own is None else ()
 
     def __call__(self, x: Array, p: Any) -> Array:
-        """Evaluate f, shape (n, k)."""
+        """The value."""
         if self.columns:
             found: Array = np.asarray(self.function(x, p, *self.beside))
             return found
@@ -70,7 +70,7 @@ class Field:
 
 
 TRIED_ASIDE = 0.1
-"""Offset of trial points in component sizes: at an equilibrium nonlinear terms may vanish."""
+"""Offset of trial points: at an equilibrium nonlinear terms may vanish."""
 
 
 def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Array, p: float) -> Field:
@@ -103,7 +103,6 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:
-    """Whether `make` runs without errors and returns about `known`."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", np.exceptions.ComplexWarning)

@@ -19,8 +19,8 @@ from problems.orbits.multipliers import Multipliers
 class Here:
     """Quantities at a point, each computed once.
 
-    `X`: shape (N m, n). `times`, shape (N - 1,): inner mesh points, unknowns that equations pin to the grid.
-    `reference`, shape (N, m, n): the reference orbit's derivative over `scale` squared.
+    `times` are inner mesh points, which equations pin to the grid; `reference` is the reference orbit's derivative over
+    `scale` squared.
     """
 
     field: Field
@@ -47,7 +47,6 @@ class Here:
 
     @cached_property
     def _derivatives(self) -> tuple[Array, Array]:
-        """(f_x, f_p), shapes (N, m, n, n) and (N, m, n)."""
         by_x, by_p = self.field.derivatives(self._columns, self.p)
         shape = self._values.shape
         return by_x.reshape(*shape, shape[-1]), by_p.reshape(shape)
@@ -60,7 +59,6 @@ class Here:
 
     @cached_property
     def _blocks(self) -> Array:
-        """Scaled derivatives by interval nodes, shape (N, m, n, m + 1, n)."""
         grid, n = self.grid, self.scale.size
         by_x = self.T * grid.widths[:, None, None, None] * self._derivatives[0]
         found = -grid.value[None, :, None, :, None] * by_x[:, :, :, None, :]
@@ -116,13 +114,13 @@ class Here:
 
     @property
     def phase_cosine(self) -> float:
-        """Mean cosine between velocities of orbit and reference."""
+        """See `PHASE_COSINE`."""
         root = np.sqrt(self.grid.quadrature)[:, :, None]
         own, reference = root * self.flow / self.scale, root * self.reference * self.scale
         return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
 
     def observed(self) -> dict[str, float]:
-        """Period, extreme values, unstable multipliers and error estimates."""
+        """Period, extreme values, unstable multipliers, error estimates."""
         (low, high), values = self.grid.extremes(self.X), self.multipliers.values
         found = {"period": self.T}
         for k in range(self.scale.size):

@@ -12,7 +12,7 @@ from continuation.arrays import Array
 
 
 def normal_form(z: Any, p: Any, second: Any = 1.0) -> Array:
-    """R' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, a fold of cycles at p = -second^2 / 4."""
+    """R' = r (p + second r^2 - r^4), theta' = 1; a fold of cycles at p = -second^2 / 4."""
     x, y = z
     r = x * x + y * y
     a = p + second * r - r * r
@@ -45,12 +45,12 @@ def lorenz(z: Any, r: Any) -> Array:
 
 @frozen
 class Model:
-    """A vector field stored in archives by its name."""
+    """A vector field that archives name."""
 
     name: str
 
     def __call__(self, z: Any, p: Any, *second: Any) -> Array:
-        """The field's value."""
+        """The value."""
         field: Array = FIELDS[self.name](z, p, *second)
         return field
 

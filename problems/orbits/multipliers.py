@@ -11,11 +11,10 @@ from scipy.linalg import eig
 from continuation.arrays import Array
 
 FOLD_ANGLE = 1e-4
-"""Pairs with smaller arguments belong to folds of cycles: round-off splits the double multiplier 1 by its square
-root."""
+"""Pairs with smaller arguments belong to folds of cycles: round-off splits a double multiplier by its root."""
 
 OUTSIDE_CIRCLE = 1e-6
-"""Unstable moduli exceed 1 by more: at folds multipliers are known to the square root of round-off."""
+"""Unstable moduli exceed 1 by more: at folds multipliers are known to the root of round-off."""
 
 
 TRIVIAL_FOUND = 0.5
@@ -27,7 +26,7 @@ LEAST_NORMAL = float(np.finfo(float).tiny)
 
 @frozen(eq=False, slots=False)
 class Multipliers:
-    """Eigenvalues of the pencil A + mu B by the QZ method, without inverses."""
+    """Eigenvalues of the pencil A + mu B by the QZ method."""
 
     A: Array
     B: Array
@@ -39,9 +38,9 @@ class Multipliers:
 
     @cached_property
     def values(self) -> Array:
-        """All, shape (n,), complex: the trivial one, then by falling modulus."""
+        """All, shape (n,): the trivial one, then by falling modulus."""
         alpha, beta = self._pencil[0]
-        # One that is beyond all numbers is the largest.
+        # A multiplier beyond all numbers is the largest.
         found = alpha / np.where(np.abs(beta) < LEAST_NORMAL, LEAST_NORMAL, beta)
         first = int(np.argmin(np.abs(found - 1.0)))
         rest = np.delete(found, first)
@@ -60,10 +59,7 @@ class Multipliers:
 
     @property
     def doubling(self) -> float:
-        """Product of (mu + 1) / hypot(1, |mu|) over nontrivial mu: negative after a period doubling.
-
-        Near homoclinic orbits the trivial one is lost in round-off of the largest.
-        """
+        """Product of (mu + 1) / hypot(1, |mu|) over nontrivial mu: negative after a period doubling."""
         if self.lost:
             return 1.0
         rest = self.values[1:]

@@ -12,8 +12,7 @@ from continuation.linear import factor_bordered
 from continuation.metric import norm
 
 ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
-"""First increments may grow; the last is below ORBIT_FOUND in the orbit's metric, or below ORBIT_NEAR if they no longer
-halve (round-off)."""
+"""First increments may grow; the last is below ORBIT_FOUND, or below ORBIT_NEAR if they no longer halve."""
 
 
 def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:

@@ -34,15 +34,13 @@ class PeriodicOrbit:
 
     X is a continuous piecewise polynomial of degree m, collocated at m Gauss points of N intervals. Its error is of
     order m + 1 in their lengths, 2 m at mesh points and in the period (de Boor and Swartz, SIAM J. Numer. Anal. 10,
-    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations pin, so that a stored point
-    determines its orbit. The phase condition is int <X, X_ref'> = 0, X_ref the given orbit.
-
-    Construct by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
+    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations pin. The phase condition is int
+    <X, X_ref'> = 0 with the given orbit X_ref.
 
     Parameters
     ----------
     f : callable
-        ``f(x, p)`` or ``f(x, p, second)``, n numbers. If shape (n, k) is accepted, one call serves all nodes.
+        ``f(x, p)`` or ``f(x, p, second)``, n numbers. It may accept x of shape (n, k).
     states : array_like, shape (N m, n)
         Approximate orbit.
     period : float
@@ -51,16 +49,16 @@ class PeriodicOrbit:
         Number of equal intervals, or points from 0 to 1.
     degree : int
     jacobian : callable, optional
-        ``jacobian(x, p)``: (f_x, f_p), shapes (n, n) and (n,), or (n, n, k) and (n, k). Default: complex steps, else
-        differences.
+        ``jacobian(x, p)`` gives (f_x, f_p), shapes (n, n) and (n,), or (n, n, k) and (n, k). Default: complex steps,
+        else differences.
     second : float, optional
-        Passed after p; curves of folds and period doublings vary it.
+        Passed after p, varied by curves of bifurcations.
     smallest : float
-        Amplitude, in units of `scale`, at which the path ends at a Hopf point.
+        Amplitude over `scale` at which the path ends at a Hopf point.
     scale : array_like, shape (n,), optional
         Default: standard deviations.
     heading : array_like, shape (N m, n), optional
-        Change of X along a new branch; default: growth.
+        Change of X along a new branch.
     """
 
     f: Model | Callable[..., Any]
@@ -101,13 +99,13 @@ class PeriodicOrbit:
     def from_hopf(
         cls, f: Any, point: Any, *, radius: float = 1e-2, intervals: int = 20, degree: int = 4, **beside: Any
     ) -> PeriodicOrbit:
-        """The small orbit near a Hopf point; its path also leads back, so trace from `leaving`.
+        """The small orbit near a Hopf point; trace from `leaving`.
 
         Parameters
         ----------
         f : callable
         point : LocatedEvent or (x, p)
-            As `continuation.Stability` locates it.
+            See `continuation.Stability`.
         radius : float
             Relative to the size at which f is no longer linear.
         intervals, degree : int
@@ -117,7 +115,7 @@ class PeriodicOrbit:
         Raises
         ------
         ValueError, ArithmeticError
-            If this is no Hopf point or Newton's method fails.
+            If there is no Hopf point or Newton's method fails.
         """
         x, p = as_point(point, "point")
         grid = Asked(intervals, degree, radius).grid
@@ -140,7 +138,7 @@ class PeriodicOrbit:
         f : callable
         t : array_like, shape (k,)
         x : array_like, shape (k, n)
-            One row per time: settled, at least two periods.
+            A settled simulation, at least two periods.
         parameter : float
         intervals, degree : int
         **beside
@@ -162,7 +160,7 @@ class PeriodicOrbit:
 
     @classmethod
     def from_point(cls, f: Any, point: Any, components: int, *, degree: int = 4, **beside: Any) -> PeriodicOrbit:
-        """The orbit that a point of a path contains, as one read from a file.
+        """The orbit at a point of a path.
 
         Parameters
         ----------
@@ -190,7 +188,7 @@ class PeriodicOrbit:
         ----------
         orbit : PeriodicOrbit
         at : LocatedEvent, Step or (y, p), optional
-            Point of its path, default its start. Newton's method searches across its tangent, if any.
+            Point of its path, default its start.
         intervals, degree : int, optional
             Default: unchanged.
         """
@@ -200,7 +198,6 @@ class PeriodicOrbit:
     def _remeshed(
         self, at: Any, intervals: int | None = None, degree: int | None = None, v: Array | None = None
     ) -> tuple[PeriodicOrbit, Array | None]:
-        """Interpolate on an adapted mesh."""
         y, lam = self.start() if at is None else as_point(at)
         old, X, T = self.equations.unknowns(y)
         new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
@@ -217,9 +214,9 @@ class PeriodicOrbit:
         Parameters
         ----------
         at : LocatedEvent, Step or (y, p), optional
-            The doubling, default the start.
+            Default: the start.
         radius : float
-            Distance in units of `scale`; at 0, on the doubling itself, a `continuation.Curve` of branch points begins.
+            Distance in units of `scale`; at 0 a `continuation.Curve` of branch points begins.
         """
         y, lam = self.start() if at is None else as_point(at)
         grid, X, T = self.equations.unknowns(y)
@@ -247,7 +244,7 @@ class PeriodicOrbit:
 
     @property
     def period_index(self) -> int:
-        """Index of T: for ``TargetValue(50.0, component=orbit.period_index)``."""
+        """Index of T, for ``TargetValue(50.0, component=orbit.period_index)``."""
         return self.states.size
 
     @quiet
@@ -263,7 +260,7 @@ class PeriodicOrbit:
         return self.equations.here(y, lam).matrices
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
-        """The Floquet multipliers of an orbit.
+        """The Floquet multipliers.
 
         Parameters
         ----------
@@ -283,7 +280,7 @@ class PeriodicOrbit:
         return grid.at(X, np.asarray(t, dtype=float))
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Period, extreme values, unstable multipliers and error estimates."""
+        """Period, extreme values, unstable multipliers, error estimates."""
         return self.equations.here(y, lam).observed()
 
     @property
@@ -297,7 +294,7 @@ class PeriodicOrbit:
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
-        """An orbit on an adapted mesh, its own reference; see `continuation.renewal`."""
+        """An orbit on an adapted mesh; see `continuation.renewal`."""
         given, tangent = self._remeshed((u[:-1], float(u[-1])), v=v)
         assert tangent is not None
         new = given._corrected(tangent)
@@ -314,7 +311,7 @@ class PeriodicOrbit:
 
     @property
     def leaving(self) -> tuple[Array, Array]:
-        """Start and direction for ``trace(orbit, start=orbit.leaving)``: `heading`, else growth."""
+        """Start and direction for ``trace(orbit, start=orbit.leaving)``."""
         y, lam = self.start()
         away = self.states - self.states.mean(axis=0) if self.heading is None else self.heading
         return np.append(y, lam), self._direction(away)

@@ -28,12 +28,12 @@ def plot_orbits(
     Parameters
     ----------
     orbit : PeriodicOrbit
-        The path's, or one with as many intervals and equal degree.
+        With the path's intervals and degree.
     points : iterable of Step, LocatedEvent or (y, p), optional
         As ``path.steps[::5]``; default the start.
     axes : matplotlib Axes, optional
     over : int or "t", default 0
-        Horizontal component, or time in units of f.
+        Horizontal component, or time.
     of : int, default 1
         Vertical component.
 

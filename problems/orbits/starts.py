@@ -18,15 +18,13 @@ HOPF_PAIR = 1e-2
 """Largest real part over modulus of a Hopf pair known to few digits."""
 
 LEAST_MOTION = 1e-2
-"""Least relative scale: a component that does not oscillate at first must not be measured by round-off."""
+"""Least relative scale: round-off must not measure a component at rest."""
 
 NONLINEAR, RADII_TRIED = 0.1, 60
-"""An orbit's size: there terms that are not linear, along the oscillating pair, are at least this part of the linear
-ones, and at most these. Sixty tenths of a length are all there are."""
+"""At an orbit's size nonlinear terms are between this part of the linear ones and all of them; the most radii tried."""
 
 ONE_RETURN = 1e-3
-"""The last return that misses by at most twice the least miss plus this, in standard deviations, ends a period: settled
-simulations return repeatedly."""
+"""The last return that misses by at most twice the least miss plus this, in standard deviations, ends a period."""
 
 NO_RETURN = 0.3
 """Simulations whose best return misses by more have not settled."""
@@ -39,8 +37,8 @@ MESHES = 4
 def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Array, float, Array]:
     """First-order orbits about a Hopf point: x + radius Re (q exp(2 pi i t)), where f is nonlinear at radius 1.
 
-    Returns x without what is left of zeros, Re q exp(2 pi i t) at nodes, shape (N m, n), period and scale. Raises
-    `ValueError` if no pair of eigenvalues is near the imaginary axis.
+    Returns x with exact zeros, Re q exp(2 pi i t) at nodes, period and scale. Raises `ValueError` if no pair of
+    eigenvalues is near the imaginary axis.
     """
     while True:
         matrix = field.derivatives(x[:, None], p)[0][0]
@@ -60,7 +58,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     rate = left[:, k].conj() / (np.vdot(left[:, k], q) * abs(values[k]))
 
     def bent(r: float) -> Array:
-        """What is not linear in f at that radius, in radii, shape (n, N m)."""
+        """The nonlinear part of f at that radius, in radii."""
         way = (q[:, None] * turned).real
         found: Array = (field(x[:, None] + r * way, p) - field(x[:, None], p)) / r - matrix @ way
         return found
@@ -71,11 +69,11 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
             share = float(np.abs(rate @ bent(r)).max())
             if NONLINEAR <= share <= 1.0:
                 break
-            # For quadratic or cubic terms; outside its domain f is nonlinear enough.
+            # Quadratic or cubic terms; outside its domain f is nonlinear enough.
             r *= 1.0 / min(max(np.sqrt(share), 0.1), 10.0) if share < np.inf else 0.1
         else:
             r = 1.0  # f is linear.
-    # Components that do not oscillate at first follow those that do.
+    # Components at rest follow those that oscillate.
     follow = r * np.abs(np.linalg.lstsq(matrix, bent(r), rcond=None)[0]).max(axis=1)
     q, still = r * q, np.where(x != 0.0, LEAST_MOTION * size, follow)
     scale = np.maximum(np.abs(q), np.where(still > 0.0, still, LEAST_MOTION * size))

@@ -1,4 +1,4 @@
-"""Practical problems, each with its smallest model, registered in the entry points `continuation.scenes`."""
+"""Practical problems, each with an entry point in `continuation.scenes`."""
 
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.registry import available, find, make

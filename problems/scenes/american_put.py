@@ -32,9 +32,8 @@ KNOWN = {
     (36.0, 40.0, 0.06, 0.2, 1.0): 4.48668,
     (44.0, 40.0, 0.06, 0.4, 2.0): 5.64674,
 }
-"""Price by (spot, strike, rate, volatility, maturity): trees of 1000 to 8000 steps, extrapolated by two rules (Broadie
-and Detemple; Leisen and Reimer) that agree to 1e-5. The published 6.0905, 4.4867 and 5.6470 are not extrapolated
-(Cox-Ross-Rubinstein, mean of 3000 and 3001 steps)."""
+"""Price by (spot, strike, rate, volatility, maturity), from trees extrapolated by two rules (Broadie and Detemple;
+Leisen and Reimer) that agree to 1e-5."""
 
 
 @frozen(eq=False)
@@ -53,20 +52,20 @@ def AmericanPut(
     maturity: Positive = 1.0, n: Annotated[int, at_least(10)] = 400, steps: Annotated[int, at_least(2)] = 100,
     width: Positive = 5.0,
 ) -> Scene:  # fmt: skip
-    """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
+    """What is a put worth that may be exercised at any time, and below which price is it exercised?
 
-    Second-order differences discretise the Black-Scholes equation in log(price); Crank-Nicolson follows four implicit
-    half steps (Rannacher). Steps grow linearly from expiry; equal ones have a lower order (Forsyth and Vetzal).
+    Crank-Nicolson follows four implicit half steps (Rannacher). Time steps grow from expiry; equal ones have a lower
+    order (Forsyth and Vetzal).
 
     Parameters
     ----------
     spot, strike : float
     rate, volatility, maturity : float
-        With years as time unit.
+        Per year; years.
     n, steps : int
         Grid points; time steps.
     width : float
-        Half width of the grid, in standard deviations at maturity.
+        Half the grid, in standard deviations at maturity.
 
     References
     ----------
@@ -93,7 +92,7 @@ def AmericanPut(
 
     def march(solver: Callable[[LCP], Any]) -> Exercise:
         times = maturity * (np.arange(steps + 1) / steps) ** 2
-        # Implicit half steps: Crank-Nicolson oscillates at the payoff's corner.
+        # Crank-Nicolson alone oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
         values, edges, well = payoff.copy(), [strike], True
         for k, dt in enumerate(np.diff(times)):
@@ -102,18 +101,14 @@ def AmericanPut(
             well = bool(found.success) and found.x is not None
             if not well:
                 break
-            # Round to the strike's digits, which tiny far values lack.
+            # Tiny far values lack the strike's digits.
             values[1:-1] = (strike + payoff[1:-1] + found.x) - strike
-            # The boundary falls with the time left; the first steps are too coarse to show it.
+            # The boundary falls with the time left, which coarse first steps do not show.
             edges.append(min(edge(found.x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
     def edge(above: Array) -> float:
-        """Extrapolate the boundary from the second and fourth free points.
-
-        The value leaves the payoff quadratically. The first point is inaccurate; the boundary is seven times as smooth
-        without.
-        """
+        """Extrapolate quadratically. The first free point is inaccurate."""
         beyond = above > 1e-12 * strike
         k = int(np.argmax(beyond)) if beyond.any() else 0
         second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)
@@ -131,7 +126,7 @@ def AmericanPut(
         return march(step)
 
     def answer(solution: Any) -> Quantities:
-        """Interpolate by a cubic to keep second order."""
+        """A cubic keeps second order."""
         place = log(spot / strike)
         k = min(max(int(np.searchsorted(x, place)), 2), n)
         cubic = np.polynomial.Polynomial.fit(x[k - 2 : k + 2], solution.prices[k - 2 : k + 2], 3)

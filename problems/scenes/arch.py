@@ -17,15 +17,14 @@ def Arch(
     radius: Positive = 1.0, thickness: Positive = 0.15, stones: Annotated[int, at_least(2)] = 20,
     weight: Positive = 2e4,
 ) -> Scene:  # fmt: skip
-    """A half circle of stones with radial joints that take no tension and do not slide: how thin may it be?
+    """How thin may a half circle of stones be whose radial joints take no tension and do not slide?
 
-    It stands if a line of thrust lies within every joint (safe theorem). The program maximises the least spare moment
-    on half the arch. Many stones stand if thickness / radius > .1075.
+    It stands if a line of thrust lies within every joint (safe theorem). The program maximises the least spare moment.
 
     Parameters
     ----------
     radius, thickness : float
-        m; mean radius.
+        m; the radius is the mean one.
     stones : int
         Per half.
     weight : float
@@ -37,7 +36,6 @@ def Arch(
     (2006), for .1075.
     """
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
-    # Scales forces and moments to about 1.
     unit = weight * radius * thickness
     angle = np.linspace(0.0, 0.5 * np.pi, stones + 1)
     above = weight * 0.5 * (outer**2 - inner**2) * angle
@@ -54,7 +52,7 @@ def Arch(
         return {"thrust": thrust, "spare moment": spare, "stands": float(spare >= 0.0)}
 
     def exact() -> Quantities:
-        """Near the limit the number of stones decides: nothing is known."""
+        """Near the limit .1075 the number of stones decides."""
         ratio = thickness / radius
         return {"stands": float(ratio > 0.1075)} if abs(ratio - 0.1075) > 0.002 and stones >= 20 else {}
 

@@ -23,9 +23,9 @@ def Bearing(
     eccentricity: Annotated[float, Kind(FRACTION)] = 0.8, radius: Positive = 0.05, clearance: Positive = 5e-5,
     viscosity: Positive = 0.02, speed: Positive = 100.0, n: Annotated[int, at_least(4)] = 199,
 ) -> Scene:  # fmt: skip
-    """A long journal bearing: where does the oil film break, and which load does it bear?
+    """Where does the oil film of a long journal bearing break, and which load does it bear?
 
-    Reynolds' equation with p >= 0 (Swift and Stieber), second-order finite volumes.
+    Reynolds' equation with p >= 0 (Swift and Stieber) is solved by finite volumes.
 
     Parameters
     ----------

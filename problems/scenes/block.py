@@ -18,9 +18,7 @@ def Block(
     mass: Positive = 1.0, friction: NotNegative = 0.5, speed: Finite = 1.0, push: Finite = 0.0,
     gravity: Positive = 9.81, step: Positive = 0.01,
 ) -> Scene:  # fmt: skip
-    """A block on a plane, pushed or not: does it slide, or does friction hold it?
-
-    One time step without rotation.
+    """Does a block on a plane slide under a push, or does friction hold it?
 
     Parameters
     ----------

@@ -18,9 +18,7 @@ def Box(
     width: Positive = 1.0, height: Positive = 2.0, mass: Positive = 1.0, friction: NotNegative = 0.5,
     push: Finite = 2.0, gravity: Positive = 9.81, step: Positive = 0.01,
 ) -> Scene:  # fmt: skip
-    """A box that stands on a rough floor and is pushed at the height of its top: does it rest, slide, or tip?
-
-    The floor acts on two corners.
+    """Does a box on a rough floor, pushed at its top, rest, slide, or tip?
 
     Parameters
     ----------

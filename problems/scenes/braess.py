@@ -14,9 +14,9 @@ from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_par
 
 @with_parameters
 def Braess(cars: Positive = 6.0, bridge: bool = True) -> Scene:
-    """Drivers choose among two routes, or three with a bridge between them: how long do they take?
+    """How long do drivers take who choose among two routes, or three with a bridge?
 
-    Minutes: 10 per car on narrow roads, 50 plus 1 per car on wide ones, 10 plus 1 on the bridge.
+    A narrow road takes 10 minutes per car, a wide one 50 plus 1 per car, the bridge 10 plus 1.
 
     Parameters
     ----------

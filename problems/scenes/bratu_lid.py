@@ -30,7 +30,7 @@ class HalfLayer:
         return BratuForce(Bratu1D(2 * self.n - 1))
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """Value, shape (n,); accepts jets."""
+        """The value."""
         return self._whole(np.concatenate((x, x[-2::-1])), lam)[: self.n]
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
@@ -44,10 +44,9 @@ class HalfLayer:
 
 @with_parameters
 def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_least(4)] = 50) -> Scene:
-    """A layer that heats itself, u'' + load e^u = 0, with u held below a lid: where does its path turn?
+    """Where does the path of u'' + load e^u = 0, with u held below a lid, turn?
 
-    It turns at a fold, and again at a kink where the middle touches the lid. Second-order differences on half the
-    layer.
+    It turns at a fold, and at a kink where the middle touches the lid.
 
     Parameters
     ----------
@@ -68,7 +67,7 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
         return NormalMap(layer, layer.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=lid, target=max(load, 3.6))
 
     def named(fold: float, kink: float, z: Array) -> Quantities:
-        # The lid's force z - lid balances the load and locates the edge to second order.
+        # The lid's force z - lid locates the edge to second order.
         force = np.maximum(z - lid, 0.0) * weight * 2.0 * n
         edge = 0.5 - float(force.sum()) / (load * exp(lid))
         return {"fold": fold, "turning kink": kink, "contact from": edge}

@@ -19,10 +19,9 @@ def Converter(
     inductance: Positive = 2e-5, capacity: Positive = 1e-4, load: Positive = 20.0,
     n: Annotated[int, at_least(4)] = 100,
 ) -> Scene:  # fmt: skip
-    """A buck converter, with an ideal switch and an ideal diode, over one period of its periodic state.
+    """The periodic state of a buck converter with an ideal switch and an ideal diode.
 
-    The trapezoidal rule closes the period: no transient. The diode keeps the coil's current from reversing. At light
-    load the current pauses and the output exceeds duty * voltage.
+    At light load the current pauses and the output exceeds duty * voltage.
 
     Parameters
     ----------
@@ -41,7 +40,7 @@ def Converter(
     """
     closed = np.clip(duty * n - np.arange(n), 0.0, 1.0)
     one, before, h = np.eye(n), np.roll(np.eye(n), -1, axis=1), period / n
-    # Periodic differences and means; map from coil currents to capacitor voltages.
+    # Periodic differences and means.
     difference, mean = one - before, 0.5 * (one + before)
     voltages = np.linalg.solve(capacity / h * difference + mean / load, mean)
 
@@ -54,7 +53,7 @@ def Converter(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Holds for a constant capacitor voltage (large capacity)."""
+        """Holds for a large capacity."""
         K = 2.0 * inductance / (load * period)
         ratio = duty if 1.0 - duty <= K else 2.0 / (1.0 + (1.0 + 4.0 * K / duty**2) ** 0.5)
         return {"output": ratio * voltage}
@@ -70,7 +69,7 @@ def Converter(
     return Scene(
         units={"output": "V", "largest current": "A", "part without current": "", "mean input current": "A"},
         unknowns=(Unknown("currents of the coil", n, "when the diode blocks"),),
-        # Mean diode voltage: nonnegative, zero while current flows.
+        # Mean diode voltage, zero while current flows.
         problem=lambda: LCP(inductance * n / period * difference + mean @ voltages, -voltage * closed),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
     )  # fmt: skip

@@ -19,9 +19,9 @@ def Cournot(
     costs: Numbers = (10.0, 20.0, 30.0, 80.0), intercept: Positive = 100.0, slope: Positive = 1.0,
     capacity: Annotated[float, Kind(POSITIVE)] = inf,
 ) -> Scene:  # fmt: skip
-    """Producers with different costs sell one good at the price that their total leaves: who sells how much?
+    """How much does each of several producers with different costs sell?
 
-    The price is intercept - slope * total. Each maximises its profit.
+    The price is intercept - slope * total.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def Cournot(
         return {"quantities": sold, "price": price, "profits": (price - cost) * sold}
 
     def exact() -> Quantities:
-        """Cheapest producers enter first; a binding capacity has no closed form."""
+        """The cheapest producers enter first; a binding capacity has no closed form."""
         price = float(min(intercept, ((intercept + np.cumsum(np.sort(cost))) / (np.arange(n) + 2.0)).min()))
         sold = np.maximum(price - cost, 0.0) / slope
         return {} if (sold > capacity).any() else {"quantities": sold, "price": price}

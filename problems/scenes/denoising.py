@@ -17,16 +17,16 @@ from problems.scenes.scene import NotNegative, Positive, Quantities, Scene, Seed
 def Denoising(
     samples: Annotated[int, at_least(4)] = 200, weight: Positive = 2.0, noise: NotNegative = 0.3, seed: Seed = 0
 ) -> Scene:
-    """A signal of flat pieces under noise: where does it jump?
+    """Where does a signal of flat pieces jump?
 
     Minimise |x - y|^2 / 2 + weight * (sum of absolute jumps).
 
     Parameters
     ----------
     samples, seed : int
-        A multiple of 4 samples, for four levels.
+        A multiple of 4 samples.
     weight, noise : float
-        Noise is a standard deviation.
+        The noise is a standard deviation.
 
     References
     ----------
@@ -48,7 +48,7 @@ def Denoising(
         return {"signal": data + np.diff(np.pad(z, 1)), "jumps": jumps}
 
     def exact() -> Quantities:
-        """Without noise, each jump moves its two levels together by weight / length."""
+        """Without noise each jump moves its two levels together by weight / length."""
         whole, rest = divmod(samples, 4)
         by = weight / whole
         moved = levels + by * np.array([1.0, -2.0, 2.0, -1.0])

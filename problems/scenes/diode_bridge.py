@@ -19,9 +19,9 @@ from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, 
 def DiodeBridge(
     voltage: Finite = 5.0, amplitude: Positive = 10.0, load: Positive = 100.0, source_resistance: Positive = 1.0
 ) -> Scene:
-    """A source, four ideal diodes and a load: which diodes conduct, and what does the load get?
+    """Which of four ideal diodes conduct, and what does the load get?
 
-    The path from -amplitude to amplitude has one kink, at zero: all diodes switch.
+    All diodes switch at zero, the one kink of the path from -amplitude to amplitude.
 
     Parameters
     ----------
@@ -38,7 +38,6 @@ def DiodeBridge(
     """
     if abs(voltage) > amplitude:
         raise ValueError(f"voltage: expected at most the amplitude, {amplitude}, found {voltage}")
-    # Matrix, and q per volt.
     R, g = load, 1.0 / source_resistance
     A = np.array([[R, R, -1.0, 0.0], [R, R, 0.0, -1.0], [1.0, 0.0, g, -g], [0.0, 1.0, -g, g]])
     one = np.array([0.0, 0.0, -g, g])
@@ -57,7 +56,7 @@ def DiodeBridge(
         return {**found, "mean load voltage": mean(solution)} if path else found
 
     def mean(solution: Path) -> float:
-        """Integrate the piecewise linear load voltage over a sine exactly."""
+        """Integrate the load voltage over a sine exactly."""
         v, u = solution.lam, load * solution.y[:, :2].sum(axis=1)
         angle = np.arcsin(np.clip(v / amplitude, -1.0, 1.0))
         slope = np.diff(u) / np.diff(v)

@@ -14,7 +14,7 @@ from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import Positive, Quantities, Rival, Scene, Unknown, with_parameters
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
-"""Antoine coefficients of benzene and toluene: log10 p = A - B / (T + C), mm Hg and Celsius (Perry's handbook)."""
+"""Benzene and toluene: log10 p = A - B / (T + C), mm Hg and Celsius (Perry's handbook)."""
 
 
 @frozen
@@ -29,15 +29,15 @@ class RachfordRice:
         return [10.0 ** (a - b / (temperature + c)) * (101.325 / 760.0 / self.pressure) - 1.0 for a, b, c in ANTOINE]
 
     def __call__(self, x: Any, lam: Any) -> Any:
-        """Value, shape (1,)."""
+        """The value."""
         return -sum(z * k / (1.0 + x * k) for z, k in zip(self.feed, self.volatilities(lam)))
 
 
 @with_parameters
 def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature: Positive = 95.0) -> Scene:
-    """Benzene and toluene in a drum: which part is vapour at each temperature?
+    """Which part of benzene and toluene in a drum is vapour at each temperature?
 
-    The vapour fraction, in [0, 1], has kinks at the bubble point and the dew point.
+    The vapour fraction has kinks at the bubble point and the dew point.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from problems.scenes.scene import Kind, Point, Quantities, Rival, Scene, Unknown
 
 
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
-    """Convert a finite matrix to tuples, which can be compared."""
+    """Tuples can be compared."""
     matrix = real_array(name, value)
     if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
         raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
@@ -36,9 +36,9 @@ def bimatrix(C: Array, D: Array) -> LCP:
 def Game(
     rows: Payoffs = ((3.0, 3.0), (2.0, 5.0), (0.0, 6.0)), columns: Payoffs = ((3.0, 2.0), (2.0, 6.0), (3.0, 1.0))
 ) -> Scene:
-    """Two players choose at the same time: which mixed strategies are best against each other?
+    """Which mixed strategies of two players are best against each other?
 
-    Small games: an exact test of all faces finds all equilibria. Larger ones: paths find some.
+    An exact test finds all equilibria of small games, paths some of larger ones.
 
     Parameters
     ----------
@@ -56,7 +56,6 @@ def Game(
     m, n = mine.shape
 
     def answer(solution: Any) -> Quantities:
-        """Sort equilibria lexically."""
         points = np.atleast_2d(solution.points if hasattr(solution, "points") else solution.x)
         mixed = np.hstack([part / part.sum(axis=1, keepdims=True) for part in (points[:, :m], points[:, m:])])
         mixed = mixed[np.lexsort(mixed.round(9).T[::-1])]

@@ -16,7 +16,7 @@ from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, U
 
 @with_parameters
 def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
-    """A noisy response that can only rise with the dose: which rising curve is nearest to it?
+    """Which rising curve is nearest to a noisy response?
 
     Parameters
     ----------

@@ -32,9 +32,9 @@ def Lasso(
     samples: Annotated[int, at_least(1)] = 60, features: Annotated[int, at_least(1)] = 12,
     relevant: Annotated[int, at_least(0)] = 4, noise: NotNegative = 0.5, penalty: NotNegative = 5.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
-    """Which of many features explain an observation, as the penalty on their coefficients falls?
+    """Which features explain an observation, as the penalty on their coefficients falls?
 
-    The path of min |X b - y|^2 / 2 + t |b|_1, with kinks where features enter or leave; random data.
+    The path of min |X b - y|^2 / 2 + t |b|_1 has kinks where features enter or leave.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def Lasso(
 
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
-        # Splitting signs would double the unknowns and make the problem singular.
+        # Splitting signs would make the problem singular.
         unknowns=(Unknown("coefficients", features, "which features matter, and how much"),),
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),

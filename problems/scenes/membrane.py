@@ -21,9 +21,7 @@ def Membrane(
     radius: Annotated[float, Kind(number("a number above 1", lambda R: 1.0 < R < 1e6))] = 2.0,
     tension: Positive = 1.0, n: Annotated[int, at_least(4)] = 100,
 ) -> Scene:  # fmt: skip
-    """A membrane that is held at the rim of a disc and pushed up by a ball: how much of the ball does it touch?
-
-    Second-order differences along the radius.
+    """How much of a ball touches a membrane that is held at the rim of a disc?
 
     Parameters
     ----------
@@ -37,7 +35,7 @@ def Membrane(
     h = radius / n
 
     def problem() -> MixedLCP:
-        """Finite volumes of -(r u')' = 0 above the ball; symmetric."""
+        """Finite volumes of -(r u')' = 0 above the ball."""
         r = h * np.arange(n)
         outer = (r + 0.5 * h) / h
         inner = np.append(0.0, outer[:-1])

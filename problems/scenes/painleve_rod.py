@@ -23,10 +23,10 @@ def PainleveRod(
     mass: Positive = 1.0, half_length: Positive = 1.0, angle: Slope = pi / 3.0, friction: NotNegative = 2.0,
     spin: Finite = 4.0, gravity: Positive = 9.81,
 ) -> Scene:  # fmt: skip
-    """A rod that slides with one end on a rough table: which contact forces are possible?
+    """Which contact forces are possible on a rod that slides with one end on a rough table?
 
-    A force x accelerates the end upward by a x / mass + b; large friction makes a < 0, fast spin b > 0. The path of x
-    over b has a turning kink at b = 0.
+    A force x accelerates the end upward by a x / mass + b; large friction makes a < 0. The path of x over b has a
+    turning kink at b = 0.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def PainleveRod(
     Painleve, C. R. Acad. Sci. Paris 121 (1895); Stewart, SIAM Review 42 (2000), section 3.
     """
     c, s = cos(angle), sin(angle)
-    # a: mass times acceleration per force (-.8480762 by default); b: acceleration without force.
+    # By default a = -.8480762.
     a, b = 1.0 + 3.0 * c * (c - friction * s), half_length * spin**2 * s - gravity
 
     def solved() -> Path:

@@ -12,12 +12,11 @@ from continuation.arrays import Array
 from continuation.plot.drawing import COLOURS
 
 Mark = tuple[str, tuple[Any, ...], Mapping[str, Any]]
-"""Axes method, arguments, options."""
 
 
 @frozen(eq=False)
 class Picture:
-    """Marks in drawing order; a labelled mark adds a legend."""
+    """Marks in drawing order; a labelled one adds a legend."""
 
     marks: Sequence[Mark]
     title: str

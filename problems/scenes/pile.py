@@ -27,13 +27,12 @@ from problems.scenes.scene import (
 )
 
 TIGHT = 1e-14
-"""Relative residual of a step. The default 1e-10 lets boxes overlap by up to 1e-12 m; this one by 2e-16 m in the same
-time."""
+"""Relative residual of a step: with the default 1e-10 boxes overlap by up to 1e-12 m, with this one by 2e-16 m."""
 
 
 @frozen(eq=False)
 class Fall:
-    """`places` and `velocities`: shape (steps + 1, boxes, 3)."""
+    """Places and velocities have the shape (steps + 1, boxes, 3)."""
 
     places: Array
     velocities: Array
@@ -48,9 +47,9 @@ def Pile(
     friction: NotNegative = 0.5, speed: Finite = 1.0, gravity: Positive = 9.81, step: Positive = 0.01,
     steps: Annotated[int, at_least(1)] = 60,
 ) -> Scene:  # fmt: skip
-    """Boxes with gaps between them fall on each other, the lowest one sliding: where do they come to rest?
+    """Where do boxes that fall on each other come to rest?
 
-    Stewart and Trinkle's time steps keep gaps nonnegative and gain no energy. Impacts are inelastic.
+    Stewart and Trinkle's time steps keep gaps nonnegative and gain no energy.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ def Pile(
         contacts: list[Contact] = []
         gaps = []
         for k, (x, y, angle) in enumerate(places):
-            # The floor is as wide as the lowest box.
+            # The floor is as wide as a box.
             under, top, turn = (places[k - 1, 0], places[k - 1, 1] + half, places[k - 1, 2]) if k else (x, 0.0, 0.0)
             for end in np.clip([x - half, x + half], under - half, under + half):
                 height = y - half + (end - x) * np.sin(angle)
@@ -115,7 +114,6 @@ def Pile(
         return Fall(where, fast, energies, np.array(gaps), well)
 
     def answer(solution: Any) -> Quantities:
-        """Energy gain and penetration should be zero."""
         return {
             "energy gained": max(float(np.diff(solution.energies).max()), 0.0),
             "deepest penetration": max(-float(solution.gaps.min()), 0.0),
@@ -123,7 +121,6 @@ def Pile(
         }  # fmt: skip
 
     def in_steps(rival: Rival, method: Callable[[LCP], Found]) -> Rival:
-        """Apply a rival's method in every step."""
         return evolve(rival, run=lambda scene: answer(fall(lambda problem: Point(method(problem)[0]))))
 
     def drawn(solution: Any) -> Picture:
@@ -139,12 +136,10 @@ def Pile(
 
     return Scene(
         units={"energy gained": "J", "deepest penetration": "m", "heights": "m", "slid": "m"},
-        # Two contacts a box.
         unknowns=contact_unknowns(2 * boxes),
         problem=lambda: stepped(*start)[0],
         solve=lambda: fall(lambda problem: solve(problem, tolerance=TIGHT)),
         answer=answer, picture=drawn,
-        # No step gains energy or lets boxes overlap.
         exact=lambda: {"energy gained": 0.0, "deepest penetration": 0.0},
         rivals=(in_steps(LEMKE, by_quantecon), in_steps(TABLES, by_tables)),
     )  # fmt: skip

@@ -19,9 +19,8 @@ Contact = tuple[int, int, float, float, float, float]
 def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: float) -> tuple[Array, Array, Array]:
     """Stewart and Trinkle's LCP matrix with Coulomb friction, J, and inverse masses.
 
-    Unknowns, for all contacts: normal impulses, tangential impulses right and left, slip velocities. Two tangents
-    represent the plane friction cone exactly. The matrix is copositive, so Lemke's method always finds a solution;
-    three unknowns a contact (Pfeiffer and Glocker) lose that. J yields alternating normal and tangential velocities.
+    The unknowns are all normal impulses, tangential impulses right and left, and slip velocities. The matrix is
+    copositive, so Lemke's method always finds a solution. J gives alternating normal and tangential velocities.
 
     References
     ----------

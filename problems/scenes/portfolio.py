@@ -18,9 +18,7 @@ from problems.scenes.scene import Kind, NotNegative, Numbers, Quantities, Scene,
 
 
 def critical_line(mean: Array, covariance: Array) -> Path:
-    """Critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance.
-
-    A point is (weights, budget multiplier).
+    """Critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1; points are (weights, budget multiplier).
 
     References
     ----------
@@ -32,7 +30,6 @@ def critical_line(mean: Array, covariance: Array) -> Path:
     problem = MixedLCP(A, np.append(np.zeros(n), -1.0), np.append(np.zeros(n), -np.inf))
     best = int(np.argmax(mean))
     gap = np.delete(mean[best] - mean, best)
-    # The best asset alone is optimal from this t on.
     first = 1.1 * float((np.delete(covariance[best, best] - covariance[:, best], best) / gap).max(initial=0.0)) + 1e-3
     multiplier = covariance[best, best] - first * mean[best]
     return along(problem, np.append(-mean, 0.0), (first, 0.0), x=np.append(np.eye(n)[best], multiplier))
@@ -45,7 +42,7 @@ def Portfolio(
     tolerance: NotNegative = 0.5,
     cap: Annotated[float, Kind(number("a number above 0, at most 1", lambda c: 0.0 < c <= 1.0))] = 1.0,
 ) -> Scene:  # fmt: skip
-    """Money to be divided among assets, none sold short: how much into each?
+    """How is money divided among assets, none sold short?
 
     Minimise variance / 2 - tolerance * mean.
 
@@ -71,7 +68,6 @@ def Portfolio(
     covariance = np.outer(deviation, deviation) * (correlation + (1.0 - correlation) * np.eye(n))
 
     def problem() -> Program:
-        """A cap below 1 is a bound and needs no multiplier."""
         upper = None if cap == 1.0 else cap
         return from_qp(covariance, -tolerance * m, A_eq=np.ones((1, n)), b_eq=[1.0], lower=0.0, upper=upper)
 
@@ -87,7 +83,6 @@ def Portfolio(
         gain = tolerance * m
         order = np.argsort(-gain)
         nu = (1.0 - np.cumsum(gain[order] / s[order])) / np.cumsum(1.0 / s[order])
-        # The right number of assets gives the least nu.
         return {"weights": np.maximum(gain + float(nu.min()), 0.0) / s}
 
     def drawn(solution: Any) -> Picture:

@@ -17,10 +17,9 @@ def Puck(
     mass: Positive = 1.0, friction: Positive = 0.5, speed: Positive = 1.0, heading: Finite = 20.0,
     edges: Annotated[int, at_least(3)] = 8, gravity: Positive = 9.81, step: Positive = 0.01,
 ) -> Scene:  # fmt: skip
-    """A puck on a rough plane that moves in three dimensions: how does friction bend and slow its motion?
+    """How does friction bend and slow the motion of a puck on a rough plane?
 
-    A pyramid replaces Coulomb's cone: friction against the motion is too small by a factor of cos(pi / edges) at worst,
-    second order in 1 / edges; friction across it is first order.
+    A pyramid replaces Coulomb's cone: friction is too small by at most a factor of cos(pi / edges).
 
     Parameters
     ----------

@@ -20,10 +20,9 @@ def Regulator(
     distance: Finite = 3.0, limit: Positive = 1.0, mass: Positive = 1.0, step: Positive = 0.5,
     weight: Positive = 0.1, horizon: Annotated[int, at_least(1)] = 12,
 ) -> Scene:  # fmt: skip
-    """A cart is brought to rest by a drive of limited force: which force now, for every distance it starts from?
+    """Which limited force best brings a cart to rest from each distance?
 
-    The best forces are piecewise affine in the initial state: their path has a kink where a force reaches or leaves its
-    limit.
+    The path of the best forces has a kink where a force reaches or leaves its limit.
 
     Parameters
     ----------
@@ -40,11 +39,10 @@ def Regulator(
     ----------
     Bemporad, Morari, Dua and Pistikopoulos, Automatica 38 (2002).
     """
-    # x' = F x + G u; Q weighs states; `last`, the value without limits, weighs the final state.
+    # x' = F x + G u; `last` weighs the final state.
     F, G = np.array([[1.0, step], [0.0, 1.0]]), np.array([[0.5 * step**2], [step]]) / mass
     Q = np.diag([1.0, 0.0])
     last = solve_discrete_are(F, G, Q, np.array([[weight]]))
-    # Min u'Hu / 2 + t f'u + t^2 c at distance t.
     state, H = np.array([1.0, 0.0]), weight * np.eye(horizon)
     f, c, reach = np.zeros(horizon), 0.0, np.zeros((2, horizon))
     for k in range(horizon):
@@ -53,7 +51,6 @@ def Regulator(
         reach[:, k] += G[:, 0]
         W = last if k == horizon - 1 else Q
         H, f = H + reach.T @ W @ reach, f + reach.T @ W @ state
-    # Add the last state's weight.
     H, c = 0.5 * (H + H.T), float(c + 0.5 * state @ last @ state)
     bound, none = np.full(horizon, limit), np.zeros(horizon)
 
@@ -71,9 +68,8 @@ def Regulator(
         return {**found, "free up to": float(kinks[0]) if kinks.size else float(solution.lam[-1]), "kinks at": kinks}
 
     def exact() -> Quantities:
-        """Before the first kink: the Riccati solution."""
+        """The Riccati solution holds before the first kink."""
         gain = np.linalg.solve(weight + G.T @ last @ G, G.T @ last @ F)[0]
-        # The closed loop's largest force limits its range.
         state, largest = np.array([1.0, 0.0]), 0.0
         for _ in range(horizon):
             u = -float(gain @ state)

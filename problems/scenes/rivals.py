@@ -17,14 +17,13 @@ from problems.lcp.reference import ReferenceResult, lemke
 from problems.scenes.scene import Point, Rival, conditions
 
 TOLERANCE = 1e-10
-"""For interior-point methods, which reach it on well-scaled problems."""
+"""Interior-point methods reach it on well-scaled problems."""
 
 SWEEPS = 200_000
-"""Limit for projected Gauss-Seidel: some seconds on charts."""
+"""Limit for projected Gauss-Seidel, some seconds on charts."""
 
 
 Found = tuple[Array, int]
-"""(leading unknowns, iterations)"""
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Found]) -> Rival:
@@ -62,7 +61,7 @@ by_tables = by_reference(lemke)
 
 @cache
 def _sweeper() -> Callable[..., Any]:
-    """Compiled: a Python loop would be a hundred times slower."""
+    """A Python loop would be a hundred times slower."""
 
     def sweep(data: Any, columns: Any, rows: Any, q: Any, lower: Any, upper: Any, x: Any, most: int) -> int:
         n = q.size
@@ -98,7 +97,7 @@ def _gauss_seidel(problem: Any) -> Found:
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
     """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program or bounded problem.
 
-    Nonsymmetric problems become min x'(A x + q), A x + q >= 0: convex for monotone A.
+    A nonsymmetric problem becomes min x'(A x + q), A x + q >= 0.
     """
     found = conditions(problem)
     if not isinstance(problem, Program):
@@ -148,7 +147,7 @@ def _highs(problem: Any) -> Found:
 
 
 def by_bfgs(problem: Any) -> Found:
-    """Quasi-Newton, bounds only."""
+    """Quasi-Newton, for bounds only."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
     if b.size or h.size:
         raise ArithmeticError("L-BFGS-B takes bounds alone")

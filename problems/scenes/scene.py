@@ -22,7 +22,6 @@ from problems.options import finite_vector
 from problems.scenes.pictures import Picture
 
 Quantities = Mapping[str, Any]
-"""Numbers or arrays by name."""
 
 Units = Mapping[str, str]
 """Unit of each quantity of the answer."""
@@ -81,7 +80,7 @@ class Point:
 
 @frozen(eq=False)
 class Scene:
-    """A question with chosen parameters; any object with these attributes can be a scene.
+    """A question with parameters; any object with these attributes can be a scene.
 
     Attributes
     ----------
@@ -89,13 +88,13 @@ class Scene:
         Unit of each quantity.
     unknowns : tuple of Unknown
     problem : callable
-        ``problem()``: the smallest problem that answers the question: `LCP`, `MixedLCP`, `Program`, or homotopy.
+        Makes the smallest problem that answers the question: an `LCP`, `MixedLCP`, `Program`, or homotopy.
     answer, picture : callable
         Map the result of `solve` to quantities, and to a `Picture`.
     exact : callable
-        ``exact()``: quantities known in closed form or published.
+        Gives quantities known in closed form or published.
     solve : callable, optional
-        ``solve()``, for time steps, paths, or all equilibria.
+        For time steps, paths, or all equilibria.
     rivals : tuple of Rival
     parameters : object
         Set by `with_parameters`; comparable.
@@ -146,7 +145,7 @@ NotNegative = Annotated[float, Kind(NOT_NEGATIVE)]
 Finite = Annotated[float, Kind(FINITE)]
 Seed = Annotated[int, at_least(0)]
 Numbers = Annotated[Sequence[float], Kind(convert=lambda name, value: tuple(finite_vector(name, value).tolist()))]
-"""Tuples of finite numbers, which can be compared."""
+"""Tuples can be compared."""
 
 P = ParamSpec("P")
 
@@ -157,7 +156,7 @@ def with_parameters(build: Callable[P, Scene]) -> Callable[P, Scene]:
     Parameters
     ----------
     build : callable
-        Checks arguments annotated as ``Annotated[type, Kind(...)]``, such as `Positive`.
+        Its arguments are annotated as ``Annotated[type, Kind(...)]``.
     """
     hints = get_type_hints(build, include_extras=True)
     parts = {}
@@ -216,7 +215,7 @@ def order(problem: Any) -> int:
 
 
 def error(found: Quantities, true: Quantities) -> float:
-    """Largest difference of common quantities, relative to the true one (absolute if that is 0).
+    """Largest relative error of common quantities; absolute where the true one is 0.
 
     Parameters
     ----------

@@ -29,14 +29,14 @@ def SnapThrough(
     stop: Annotated[float, Kind(number("a number between -1 and 0", lambda s: -1.0 < s < 0.0))] = -0.3,
     load: Positive = 1.5,
 ) -> Scene:  # fmt: skip
-    """Two shallow bars snap through under a load, onto a stop below: when, and what does the stop bear?
+    """When do two shallow bars snap through onto a stop, and what does the stop bear?
 
-    The height's path turns at a fold, and again at a kink where the joint touches the stop.
+    The height's path turns at a fold, and at a kink where the joint touches the stop.
 
     Parameters
     ----------
     rise, span : float
-        m: height of the joint above the supports, its horizontal distance to them.
+        m: height of the joint above the supports, and its horizontal distance.
     stiffness : float
         N: Young's modulus times bar section.
     stop : float
@@ -48,7 +48,7 @@ def SnapThrough(
     ----------
     von Mises, Z. angew. Math. Mech. 3 (1923).
     """
-    # Load unit (N); fold load and requested load in this unit.
+    # Load unit (N); the fold load in it.
     unit, top = stiffness * (rise / span) ** 3, 2.0 / (3.0 * sqrt(3.0))
     asked = load * 2.0 / (3.0 * sqrt(3.0))
 
@@ -59,7 +59,7 @@ def SnapThrough(
         return {"snap load": unit * fold, "load at touch": unit * kink, "force on stop": unit * max(force, 0.0)}
 
     def answer(solution: Any) -> Quantities:
-        """The normal map's z is below the stop by the stop's force."""
+        """The stop's force is the depth of z below the stop."""
         (kink,) = solution.kinks
         return named(solution.turning_points[0].lam, kink.lam, stop - float(solution.crossings(asked)[-1][0]))
 

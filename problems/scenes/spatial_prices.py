@@ -29,7 +29,7 @@ def SpatialPrices(
     offers: Numbers = (4.0, 8.0, 12.0), rise: Positive = 1.0, bids: Numbers = (14.0, 30.0, 22.0), fall: Positive = 1.0,
     freight: NotNegative = 2.0,
 ) -> Scene:  # fmt: skip
-    """Producers and markets in several places: who delivers where, and what does it cost there?
+    """Which producers deliver to which markets, and what does the good cost there?
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def SpatialPrices(
     costs = freight * (1.0 + np.abs(i - j))
 
     def answer(solution: Any) -> Quantities:
-        """Prices and trade are unique; flows over equal costs are not."""
+        """Prices and trade are unique, flows are not."""
         flows = np.asarray(solution.x).reshape(m, k)
         return {
             "flows": flows, "offers": sell + rise * flows.sum(axis=1),
@@ -58,7 +58,6 @@ def SpatialPrices(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Closed form for one producer and one market."""
         flow = max((bids[0] - offers[0] - freight) / (rise + fall), 0.0)
         return {"flows": np.array([[flow]]), "trade": flow} if m == k == 1 else {}
 
@@ -82,7 +81,6 @@ def SpatialPrices(
     return Scene(
         units={"flows": "units", "offers": "money a unit", "bids": "money a unit", "trade": ""},
         unknowns=(Unknown("flows", m * k, "who delivers where"),),
-        # Cost minus revenue of each delivery.
         problem=lambda: trade((sell, np.full(m, rise)), (buy, np.full(k, fall)), costs),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES, *QUADRATIC),
     )  # fmt: skip

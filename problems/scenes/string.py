@@ -19,9 +19,9 @@ def String(
     height: Positive = 0.05, load: Positive = 1.0, tension: Positive = 1.0, length: Positive = 1.0,
     n: Annotated[int, at_least(2)] = 50,
 ) -> Scene:  # fmt: skip
-    """A heavy string between two supports above a floor: where does it touch down?
+    """Where does a heavy string between two supports touch the floor?
 
-    Second-order differences of T u'' = load on one half.
+    T u'' = load on one half, by second-order differences.
 
     Parameters
     ----------
@@ -35,7 +35,6 @@ def String(
     h = 0.5 * length / n
 
     def problem() -> LCP:
-        """Balance of forces; the middle point counts half."""
         k, half = tension / h, np.append(np.ones(n - 1), 0.5)
         A = sp.diags_array([np.full(n - 1, -k), 2.0 * k * half, np.full(n - 1, -k)], offsets=[-1, 0, 1], format="csr")
         return LCP(A, load * h * half - k * height * (np.arange(n) == 0))

@@ -45,12 +45,12 @@ def SVM(
     samples: Annotated[int, at_least(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
     width: NotNegative = 0.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
-    """Two clouds of points: which line tells them apart with the widest margin, at a price on errors?
+    """Which line separates two clouds of points with the widest margin, at a price on errors?
 
     Parameters
     ----------
     samples, seed : int
-        An even number of samples, half in each cloud.
+        Half of the even number of samples are in each cloud.
     distance : float
         Between the cloud centres, in standard deviations.
     cost : float
@@ -73,7 +73,7 @@ def SVM(
         weights = np.asarray(solution.x)[:samples]
         force = K @ (weights * side)
         inside = (weights > 1e-7 * cost) & (weights < (1.0 - 1e-7) * cost)
-        # From points on the margin; without any, several offsets are optimal.
+        # Without points on the margin several offsets are optimal.
         offset = float(np.median((side - force)[inside])) if inside.any() else 0.0
         return {
             "weights": weights, "offset": offset, "support vectors": float((weights > 1e-7 * cost).sum()),
@@ -81,7 +81,6 @@ def SVM(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Two points: 2 / distance^2."""
         weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), cost)
         return {} if samples != 2 or width else {"weights": np.full(2, weight)}
 
@@ -107,7 +106,6 @@ def SVM(
 
     return Scene(
         units={"weights": "", "offset": "", "support vectors": "", "objective": ""},
-        # The cost is a bound and needs no multiplier.
         unknowns=(Unknown("weights of points", samples, "which points decide"),
                   Unknown("offset", 1, "where the border is: the multiplier of balance")),
         problem=problem, answer=answer, exact=exact, picture=drawn,

@@ -18,10 +18,10 @@ def Torsion(
     side: Positive = 1.0, modulus: Positive = 1.0, yield_stress: Positive = 1.0, twist: Positive = 2.5,
     n: Annotated[int, at_least(2)] = 24,
 ) -> Scene:  # fmt: skip
-    """A square bar of an elastic, perfectly plastic material under a twist: which torque does it bear?
+    """Which torque does a twisted square bar of an elastic, perfectly plastic material bear?
 
     Prandtl's stress function u satisfies -lap u = 2 G twist where elastic, and u <= yield stress * distance from the
-    surface (Ting; Brezis and Sibony). Second-order differences on an eighth of the section.
+    surface. Second-order differences cover an eighth of the section.
 
     Parameters
     ----------
@@ -37,13 +37,13 @@ def Torsion(
     Ting, Trans. AMS 123 (1966); Timoshenko and Goodier, Theory of Elasticity, for .1406.
     """
     h = 0.5 * side / n
-    # 1 <= j <= i <= n, and each point's multiplicity in the square.
+    # Each point's multiplicity in the square.
     i, j = (k + 1 for k in np.tril_indices(n))
     size, weight = i.size, 8.0 / (2.0 ** (i == j) * 2.0 ** ((i == n).astype(int) + (j == n)))
     limit = np.asarray(yield_stress * h * j, dtype=float)
 
     def problem() -> MixedLCP:
-        """Five-point differences times multiplicity, which keeps symmetry."""
+        """The multiplicity keeps symmetry."""
         # Neighbours reflect at the middle and the diagonal; u = 0 on the surface.
         a, b = (n - np.abs(n - np.add.outer(ways, k)) for ways, k in (((1, -1, 0, 0), i), ((0, 0, 1, -1), j)))
         a, b = np.maximum(a, b), np.minimum(a, b)
@@ -69,7 +69,6 @@ def Torsion(
     def drawn(solution: Any) -> Picture:
         quarter = np.zeros((2, n + 1, n + 1))
         quarter[:, i, j] = quarter[:, j, i] = solution.x, yields(solution.x)
-        # Surface points copy their neighbours.
         quarter[1, 0], quarter[1, :, 0] = quarter[1, 1], quarter[1, :, 1]
         whole, plastic = (np.block([[k, k[:, -2::-1]], [k[-2::-1], k[-2::-1, -2::-1]]]) for k in quarter)
         place = np.linspace(0.0, side, 2 * n + 1)

@@ -16,9 +16,9 @@ from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at
 
 @with_parameters
 def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
-    """A grid of streets whose times grow with their loads: which ways do drivers take from corner to corner?
+    """Which ways do drivers take across a grid of streets whose times grow with their loads?
 
-    Beckmann's program; its multipliers are times to the goal. Random street times exclude symmetry.
+    The multipliers of Beckmann's program are times to the goal.
 
     Parameters
     ----------
@@ -39,21 +39,19 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
     empty, slope = random.uniform(1.0, 5.0, streets), random.uniform(0.1, 1.0, streets)
 
     def problem() -> Program:
-        """Min sum slope load^2 / 2 + empty load; outflow - inflow = source."""
         one, street = np.ones(streets), np.arange(streets)
         whole = sp.coo_array((np.concatenate([one, -one]), (np.concatenate([begin, end]), np.tile(street, 2))))
         starts = np.append(cars, np.zeros(side**2 - 2))
         return from_qp(sp.diags_array(slope, format="csr"), empty, A_eq=whole.tocsr()[:-1], b_eq=starts, lower=0.0)
 
     def answer(solution: Any) -> Quantities:
-        """At equilibrium the mean time is that of the quickest way."""
+        """The mean time is that of the quickest way."""
         loads = np.maximum(np.asarray(solution.x)[:streets], 0.0)
         minutes = empty + slope * loads
         quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]
         return {"time": float(minutes @ loads) / cars, "quickest way": float(quickest), "loads": loads}
 
     def exact() -> Quantities:
-        """Two by two crossings: both ways take equal times."""
         if side > 2:
             return {}
         fixed, each = (part[[0, 2]] + part[[3, 1]] for part in (empty, slope))
@@ -75,7 +73,7 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
 
     return Scene(
         units={"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"},
-        # Streets, not routes: there are far more routes.
+        # There are far more routes than streets.
         unknowns=(
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),

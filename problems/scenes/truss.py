@@ -20,10 +20,9 @@ from problems.scenes.scene import NotNegative, Numbers, Positive, Quantities, Sc
 def Truss(
     limits: Numbers = (0.3, 0.6, 1.2), stiffness: Positive = 1.0, hardening: NotNegative = 0.0, load: Positive = 1.9
 ) -> Scene:
-    """A rigid beam that hangs on parallel bars of different strength: how do they yield as the load grows?
+    """How do parallel bars that hold a rigid beam yield as the load grows?
 
-    Bars are elastic, then plastic with linear hardening. Without hardening the path of plastic strains ends in a ray at
-    the collapse load.
+    Bars are elastic, then plastic. Without hardening the path ends in a ray at the collapse load.
 
     Parameters
     ----------
@@ -65,7 +64,6 @@ def Truss(
             return whole
 
         yields = np.array([forces(stretch).sum() for stretch in stretches])
-        # Beyond the last yield only hardening carries load.
         beyond = max(load - yields[-1], 0.0) / (soft * n) if soft else 0.0
         stretch = beyond + float(np.interp(load, [0.0, *yields], [0.0, *stretches]))
         known = {"yield loads": yields} if hardening else {"forces": forces(stretch), "collapse load": most.sum()}
@@ -85,9 +83,7 @@ def Truss(
 
     return Scene(
         units={"plastic elongations": "length", "forces": "force", "collapse load": "force", "yield loads": "force"},
-        # Bars only pull: one limit each.
         unknowns=(Unknown("plastic elongations", n, "which bars have yielded; forces follow from them"),),
-        # Distance to each limit.
         problem=lambda: LCP(A, most - load / n),
         solve=lambda: along(LCP(A, most), np.full(n, -1.0 / n), (0.0, inf), x=np.zeros(n)),
         answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),

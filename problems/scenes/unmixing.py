@@ -28,9 +28,9 @@ def Unmixing(
     substances: Annotated[int, at_least(1)] = 12, channels: Annotated[int, at_least(2)] = 200, width: Positive = 0.8,
     noise: NotNegative = 0.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
-    """A spectrum of several substances whose own spectra overlap: how much of each is there?
+    """How much of each substance is in a spectrum?
 
-    Nonnegative least squares. Each substance has one peak; every third is absent.
+    Each substance has one peak.
 
     Parameters
     ----------

@@ -1,12 +1,10 @@
-"""Active sets of a quadratic program from its proximal augmented Lagrangian, where the pieces of w = 0 cycle.
+"""Active sets of a quadratic program from its proximal augmented Lagrangian.
 
-With penalties for rows and bounds the function is convex and piecewise quadratic: Newton's method with exact line
-search cannot cycle.
+With penalties the function is convex and piecewise quadratic: Newton's method with exact line search cannot cycle.
 
 References
 ----------
-Hermans, Themelis and Patrinos, "QPALM: a proximal augmented Lagrangian method for nonconvex quadratic programs", Math.
-Prog. Comp. 14 (2022). Qi and Sun, "A nonsmooth version of Newton's method", Math. Prog. 58 (1993).
+Hermans, Themelis and Patrinos, Math. Prog. Comp. 14 (2022); Qi and Sun, Math. Prog. 58 (1993).
 """
 
 from __future__ import annotations
@@ -25,9 +23,8 @@ from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
 PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
-"""The first penalty, as published: times the ratio of the objective to the violations. The penalty, and the inverse of
-the proximal term of a convex function, grow by a factor with each change of the multipliers, which then converge faster
-than linearly. Of 45 programs of Maros and Meszaros as many are solved as by a penalty for each row."""
+"""The first penalty (as published, times objective over violations), the largest, and its growth with each change of
+multipliers."""
 
 STEPS_PER_CHANGE = 100
 """Most Newton steps per change."""
@@ -35,10 +32,7 @@ STEPS_PER_CHANGE = 100
 
 @frozen(eq=False)
 class Saddle:
-    """A program from its optimality conditions: P, c, rows R x + d >= 0, some = 0, x in [lower, upper].
-
-    `free`: Whether a row is an equation, whose multiplier has no bounds.
-    """
+    """A program: P, c, rows R x + d >= 0, x in [lower, upper]; where `free`, R x + d = 0."""
 
     problem: MixedLCP
     P: Matrix
@@ -65,7 +59,7 @@ def _same(one: Matrix, other: Matrix) -> bool:
 
 @frozen(eq=False)
 class Penalised:
-    """The augmented Lagrangian; rows first, then bounds."""
+    """The augmented Lagrangian, of rows, then bounds."""
 
     saddle: Saddle
     low: Array
@@ -74,7 +68,7 @@ class Penalised:
     weight: float
 
     def values(self, x: Array) -> Array:
-        """R x + d, and x."""
+        """R x + d and x."""
         return np.concatenate([self.saddle.R @ x + self.saddle.d, x])
 
     def pulled(self, y: Array) -> Array:
@@ -93,13 +87,11 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """The zero of the derivative along a direction; it is piecewise linear and begins at `slope`.
-
-        `t`, `dv`: values plus multipliers over penalties, and their change. `curvature`: of the unpenalised part.
+        """The zero of the piecewise linear derivative along a direction; `t` are values plus multipliers over
+        penalties, `dv` their change.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
-        # Each side that the step crosses outwards adds curvature.
         rate = self.sigma * np.concatenate([-dv * np.abs(dv), dv * np.abs(dv)])
         outside = (t < self.low) | (t > self.high)
         after = np.flatnonzero((enters > 0.0) & np.isfinite(enters) & (rate != 0.0))
@@ -116,7 +108,7 @@ def guesses(
 ) -> Iterator[tuple[State, Array]]:
     """Yield active sets and points near their solutions, one per change of multipliers.
 
-    `below`: exceeds what makes P positive semidefinite; 0 if P is. `counts`: adds up factorisations.
+    `below` exceeds what makes P positive semidefinite.
     """
     problem, n, m = saddle.problem, x.size, saddle.d.size
     low = np.append(np.zeros(m), problem.lower[:n])
@@ -134,7 +126,7 @@ def guesses(
         nearest = np.clip(t, low, high)
         y = sigma * (t - nearest)
         state = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
-        # A violated row holds; the multiplier of another is zero.
+        # A violated row holds; other multipliers are zero.
         state[:m] = np.where(saddle.free | (state[:m] == LOWER), BETWEEN, LOWER)
         yield np.roll(state, n), problem.clipped(np.append(x, -y[:m]))
         centre, accurate, sigma = x, accurate / PENALTY_GROWTH, min(PENALTY_GROWTH * sigma, MOST_PENALTY)

@@ -30,14 +30,13 @@ Mask = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 
 SINGULAR_CONDITION = 1e-14
-"""Reciprocal condition of a singular face: its solution has hardly a digit left."""
+"""Reciprocal condition of a singular face, whose solution has hardly a digit left."""
 
 DOUBTFUL_PIVOTS = 1e-6
 """Ratio of extreme pivots below which the condition is estimated."""
 
 SINGULAR_SHIFT = 1e-8
-"""Relative diagonal shift of singular faces, the root of the machine precision: smaller ones lose digits, larger ones
-converge more slowly."""
+"""Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
 
 FACES_KEPT = 8
 """Faces kept for the next q: a motion to and fro visits few."""
@@ -48,10 +47,10 @@ SHIFTED_CORRECTIONS = 4
 
 @frozen(eq=False)
 class Face:
-    """One face and its factored equations, ``A x + shift x + q = 0`` on the active set.
+    """One face and its factored equations ``A x + shift x + q = 0``.
 
-    `active`: where w_i = 0. `inverse`: solves the equations, or shifted ones. `exact`: one solve gives the point:
-    either no shift was added, or only signs count (a proximal problem). `shift`: zero on the problem's own face.
+    `inverse` solves the equations, or shifted ones. If `exact`, one solve gives the point. `shift` is zero on the
+    problem's own face.
     """
 
     problem: MixedLCP
@@ -64,7 +63,7 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
-        """(x, w) on the face, about the nearest to `near` of many points; None if not finite."""
+        """(x, w) on the face, near `near` if there are many; None if not finite."""
         standard = self.problem.standard
         x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
@@ -85,7 +84,7 @@ class Face:
 
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
-        """Correct x once, with w in twice the working precision."""
+        """Correct x once, with accurate w."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
@@ -110,10 +109,10 @@ class LeastNorm:
 
     @classmethod
     def of(cls, matrix: Array, near: Array) -> LeastNorm | None:
-        """Factor by pivoted QR, cut at the rank, and QR of the transpose; None if the rank is zero.
+        """Factor by pivoted QR, cut at the rank, and QR of the transpose; None for rank zero.
 
-        `near`: Lengths are relative to it if it is positive, so that a small x_i moves less than a large one (Mehrotra
-        and Ye, Math. Programming 62, 1993); else columns are scaled alike.
+        Lengths are relative to a positive `near`, so that a small x_i moves less than a large one (Mehrotra and Ye,
+        Math. Programming 62, 1993).
         """
         sizes, positive = np.abs(matrix), bool((near > 0.0).all())
         rows = _inverse_powers((sizes * near if positive else sizes).max(axis=1))
@@ -140,7 +139,7 @@ def _inverse_powers(sizes: Array) -> Array:
 
 
 def exchanging(method: str = "auto") -> Factoring:
-    """Factorisations of faces, by SuperLU with row exchanges where nothing else suits."""
+    """Factorisations of faces, at last by SuperLU with row exchanges."""
     return Factoring(method, SuperLUMethod(weak_pivots=False))
 
 
@@ -148,7 +147,7 @@ def exchanging(method: str = "auto") -> Factoring:
 class Faces:
     """The faces of one problem.
 
-    `current`: the problem, if its q is not the structure's. `kept`: holds the last `FACES_KEPT` faces for other q.
+    `current` is the problem if its q is not the structure's.
     """
 
     structure: Structure
@@ -171,7 +170,7 @@ class Faces:
     ) -> Face | None:
         """The factored face of a state, or None.
 
-        `centre`: of a proximal problem, whose q is q - shift centre. `regular`: None also for singular equations.
+        A proximal problem has q - shift centre. If `regular`, singular equations give None.
         """
         if self.kept is None or shift or centre is not None:
             return self._made(state, shift, centre, regular, near)
@@ -204,19 +203,16 @@ class Faces:
         return None if inverse is None else Face(problem, state, active, inverse, exact or centre is not None, shift, q)
 
     def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
-        # This indexing is quickest and gives LAPACK's order.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
             block[np.diag_indices(len(block))] += shift
-        # LU of order 1 rounds only once.
         symmetric = len(block) > 1 and self.structure.symmetric
         if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
-        # The test costs a factorisation of order n.
+        # The test costs a factorisation.
         definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
-        # A zero block has no scale for a shift.
         if regular or not (norm := _norm(block)):
             return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
@@ -225,8 +221,7 @@ class Faces:
     def _nearest(self, inside: NDArray[np.intp], near: Array | None) -> Factored | None:
         """An LCP's shortest corrections from a point, if they solve the equations of the singular face.
 
-        Otherwise the solution of the shifted equations grows along a null vector, whose signs tell which x_i leave. For
-        semidefinite A the shift loses nothing and is quicker.
+        Otherwise the shifted solution grows along a null vector, whose signs tell which x_i leave.
         """
         problem = self.problem
         if self.structure.symmetric and self.structure.semidefinite:
@@ -256,7 +251,7 @@ class Faces:
         return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * norm * eye)) if norm else None, False
 
     def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
-        """Solve in the whole band, with unit rows off the face: no index moves."""
+        """Solve in the whole band, with unit rows off the face."""
         assert self.structure.band is not None
         kept = active.astype(float)
         factor = factor_band(scaled_band(self.structure.band, kept, kept, np.where(active, shift, 1.0)))
@@ -280,7 +275,7 @@ def _norm(block: Matrix) -> float:
 
 
 def _cholesky(block: Array) -> Factored | None:
-    """The factor; None if a pivot may be zero but for rounding."""
+    """The factor; None if a pivot may be zero."""
     factor = factor_cholesky(block)
     if factor is None:
         return None

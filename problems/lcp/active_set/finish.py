@@ -18,8 +18,8 @@ from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, ce
 from problems.lcp.proof.verdict import confirmed
 
 PATIENCE = 5
-"""Corrections in a row without a new low of changed indices, then the sets cycle. On 80 planted problems 2, 3, 5, 10,
-infinity take 5,210, 5,259, 5,338, 5,529, 5,989 factorisations, but on 24 monotone ones 303, 291, 278, 273, 273."""
+"""Corrections in a row without a new low of changed indices, then the sets cycle. On 80 planted problems 2, 5, infinity
+take 5,210, 5,338, 5,989 factorisations, but on 24 monotone ones 303, 278, 273."""
 
 MORE_MULTIPLIERS = 5
 """Changes of multipliers that may fail to halve the residual."""
@@ -29,8 +29,8 @@ MORE_MULTIPLIERS = 5
 class Finish:
     """Tries active sets of one problem, each once, for all its paths.
 
-    `tolerance`: for `Certificate.solves`. `certificate`: of the last solution. `nearest`: of the judged non-solution
-    with least normwise residual. `ended`, `following`: why the last iteration ended, and its next state.
+    `nearest` is the judged point with least normwise residual that is no solution. `ended` and `following` tell why the
+    last iteration ended, and its next state.
     """
 
     faces: Faces
@@ -48,22 +48,21 @@ class Finish:
         return self.faces.problem
 
     def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
-        """The certified solution on an active set or its corrections, or None; `near` as in `iterate`."""
+        """The certified solution on an active set or its corrections, or None."""
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
 
     def proximal(self, state: State, shift: float, rounds: int) -> Array | None:
-        """The solution by the proximal method, with A + shift I positive definite, or None.
+        """The solution by the proximal method, or None; A + shift I is positive definite.
 
-        Each round solves the LCP of A + shift I near the last point and tries its active set on A. For symmetric A the
-        quadratic function falls. If no active set settles, the shift doubles.
+        Each round solves the LCP of A + shift I near the last point and tries its active set on A. If no active set
+        settles, the shift doubles.
 
         References
         ----------
-        Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Kaplan and
-        Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998); Cottle, Pang and
-        Stone, section 5.6 (regularization).
+        Rockafellar, SIAM J. Control Optim. 14 (1976); Kaplan and Tichatschke, J. Global Optim. 13 (1998); Cottle, Pang
+        and Stone, section 5.6.
         """
         x = self.problem.near_zero
         for _ in range(rounds):
@@ -78,7 +77,7 @@ class Finish:
         return None
 
     def augmented(self, below: float, exhausted: Callable[[], object]) -> Array | None:
-        """A KKT point of a program by `guesses` with this `below`, or None, also once `exhausted` says something."""
+        """A KKT point of a program by `guesses`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
@@ -109,18 +108,17 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The face's point, clipped, perhaps corrected once; whether it is a certified solution."""
+        """The face's point, clipped, perhaps corrected; and whether it is a solution."""
         if not self._plausible(face.state, x, w):
             return x, w, False
         best = certified(self.problem, self.problem.clipped(x))
         if best.relative_residual > ROUND_OFF:
-            # The correction gains the digits that the condition leaves (Higham, section 12.1).
+            # The correction gains digits (Higham, section 12.1).
             better = face.refined(x, best.w if np.array_equal(best.x, x) else None)
             if np.isfinite(better).all():
                 x, now = better, certified(self.problem, self.problem.clipped(better))
                 best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
-            # Rounded zeros may dominate the terms of a row.
             if not self.problem.standard:
                 best = with_zeros(self.problem, best, self.tolerance)
             elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
@@ -143,14 +141,14 @@ class Finish:
 
 
 def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:
-    """The best certificate of a point, also with x at the bounds that its signs ask for."""
+    """The best certificate of a point, also at the bounds that its signs ask for."""
     settled = problem.settled(end.x, end.w)
     exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
     return min(end, *exact, key=lambda one: one.relative_residual)
 
 
 def below_zero(A: Matrix) -> float:
-    """A bound on how far eigenvalues of a symmetric A lie below zero; exact if dense."""
+    """A bound on how far eigenvalues of a symmetric A lie below zero."""
     if sp.issparse(A):
         return float((abs(A).sum(axis=1) - A.diagonal()).max())
     return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))

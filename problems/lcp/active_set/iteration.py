@@ -4,8 +4,7 @@ It is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
-Hintermueller, Ito and Kunisch, "The Primal-Dual Active Set Strategy as a Semismooth Newton Method", SIAM J. Optim. 13
-(2003). Kostreva, "Block Pivot Methods for Solving the Complementarity Problem", Linear Algebra Appl. 21 (1978).
+Hintermueller, Ito and Kunisch, SIAM J. Optim. 13 (2003); Kostreva, Linear Algebra Appl. 21 (1978).
 """
 
 from __future__ import annotations
@@ -40,8 +39,8 @@ class Ended(Enum):
 class Policy:
     """How long the iteration goes on.
 
-    `steps`: most corrections. `patience`: corrections in a row without a new low of changed indices. `singular`: this
-    many singular faces are no steps; 0 ends at the first one, None counts all.
+    `steps`: most corrections. `patience`: as `PATIENCE`. `singular`: this many singular faces are no steps; 0 ends at
+    the first one, None counts all.
     """
 
     steps: int
@@ -55,7 +54,7 @@ AT_END = Policy(steps=2)
 
 @define(eq=False)
 class Tried:
-    """The active sets tried on one problem: none is tried twice, a singular one only from another point."""
+    """The active sets tried on one problem; none is tried twice."""
 
     last: State | None = None
     known: set[bytes] = field(factory=set)
@@ -89,8 +88,8 @@ def iterate(
 ) -> Iterated:
     """Correct an active set until it is right or given up.
 
-    `near`: selects the nearest of a face's many points. `shift`: solve LCP(q - shift near, A + shift I) instead.
-    `judge`: ends at the solution. `tried`: skips these sets; grows. `counts`: adds up factorisations.
+    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge`
+    recognises a solution; sets in `tried` are skipped.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x

@@ -1,7 +1,7 @@
-"""A guess of the active set of a large sparse, diffusion-like problem from coarser ones.
+"""A guess of the active set of a diffusion-like problem from coarser ones.
 
-Active sets move the contact boundary about one grid line a step: a poor guess takes as many steps as lines. Coarser
-problems P'AP, P'q come from algebraic multigrid. Unsuitable matrices cost only time.
+Active sets move the contact boundary about one grid line a step, so guesses come from problems P'AP, P'q of algebraic
+multigrid.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 COARSEST_ORDER = 200
-"""Smaller problems are not coarsened, as their faces cost less than interpolation, but corrected, at most this often:
-for an M-matrix each correction enlarges the active set until it is right. Other levels get one."""
+"""Smaller problems are not coarsened but corrected, at most this often; other levels get one correction."""
 
 LEAST_COARSENING = 0.8
 """Coarsening stops if it keeps a larger share of the unknowns; a grid keeps half."""
@@ -30,8 +29,8 @@ DAMPING = 0.8
 """Damping of Jacobi's method."""
 
 SMOOTHINGS = 60
-"""Jacobi sweeps on A d = 0 from ones, if rows sum to less than zero because units differ between neighbours. A torsion
-scaled to equal diagonal, n = 97,020, takes 17 factorisations after 30 sweeps, 31 after 10."""
+"""Jacobi sweeps on A d = 0 from ones, if rows sum to less than zero. A torsion of n = 97,020, scaled, takes 17
+factorisations after 30 sweeps, 31 after 10."""
 
 
 def suitable(structure: Structure) -> bool:
@@ -45,7 +44,6 @@ def suitable(structure: Structure) -> bool:
 def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
     """The state guessed from coarser problems."""
     if not problem.standard:
-        # Shift the problem so that interpolation keeps zeros at bounds.
         low, high = problem.lower, problem.upper
         at = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high, 0.0))
         problem = MixedLCP(problem.A, problem.w(at), low - at, high - at)
@@ -53,7 +51,6 @@ def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
 
 
 def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, int]:
-    """The state from the next coarser problem, and its number of corrections."""
     P, kept = (None, None) if problem.n <= COARSEST_ORDER else _interpolation(problem.A, d)
     if P is None or P.shape[1] > LEAST_COARSENING * problem.n:
         return _states(problem, problem.near_zero), COARSEST_ORDER
@@ -69,13 +66,13 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
 
 
 def _states(problem: MixedLCP, x: Array) -> State:
-    """The state at x; points with w = 0 count as between bounds: they would else join one by one."""
+    """The state at x; points with w = 0 count as between bounds."""
     w = problem.w(x)
     return np.where(w == 0.0, BETWEEN, problem.states(x, w / problem.A.diagonal()))
 
 
 def _smooth(A: Matrix) -> Array:
-    """The vector that interpolation reproduces: d > 0 with A d near zero, ones up to units."""
+    """The vector that interpolation reproduces: d > 0 with A d near zero."""
     d, diagonal = np.ones(A.shape[0]), A.diagonal()
     for _ in range(SMOOTHINGS):
         off = (A @ d) / diagonal
@@ -86,7 +83,6 @@ def _smooth(A: Matrix) -> Array:
 
 
 def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
-    """Interpolation from a greedy independent set, and that set."""
     n = A.shape[0]
     coarse = _independent(A)
     column = np.cumsum(coarse) - 1
@@ -107,7 +103,6 @@ def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
 
 
 def _independent(A: Matrix) -> Mask:
-    """A maximal set without neighbours: every second point of a grid."""
     n = A.shape[0]
     if A.nnz == 3 * n - 2 and (np.abs(A.indices - np.repeat(np.arange(n), np.diff(A.indptr))) <= 1).all():
         return np.asarray(np.arange(n) % 2 == 0)

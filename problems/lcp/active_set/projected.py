@@ -7,8 +7,8 @@ import numpy as np
 from problems.lcp.data.problem import MixedLCP, State
 
 PROJECTED_STEPS = 12
-"""Each costs a tenth of a correction at n = 300. Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12
-corrections without steps, 3, 3, 2 after twelve, hardly fewer after twenty."""
+"""Random box programs (rank n/2, definite, condition 1e6) need 10, 6, 12 corrections without these steps, 3, 3, 2 after
+twelve."""
 
 
 def projected_state(problem: MixedLCP) -> State:
@@ -18,8 +18,7 @@ def projected_state(problem: MixedLCP) -> State:
 
     References
     ----------
-    Barzilai and Borwein, "Two-Point Step Size Gradient Methods", IMA J. Numer. Anal. 8, 1988; More and Toraldo, "On the
-    Solution of Large Quadratic Programming Problems with Bound Constraints", SIAM J. Optim. 1, 1991.
+    Barzilai and Borwein, IMA J. Numer. Anal. 8, 1988; More and Toraldo, SIAM J. Optim. 1, 1991.
     """
     x, diagonal = problem.near_zero, problem.A.diagonal()
     inverse = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)

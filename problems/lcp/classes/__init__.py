@@ -58,8 +58,8 @@ def classify(A: Any) -> Classification:
     Returns
     -------
     dict of str to Membership
-        In a fixed order. Beyond the limits of exponential tests (12 for minors, 10 and 8 for index sets, 7 for sign
-        vectors, 5 for cones) the answer is None, with the reason.
+        Beyond the limits of exponential tests (order 12 for minors, 10 and 8 for index sets, 7 for sign vectors, 5 for
+        cones) the answer is None.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """N-bar and its relatives: limits of matrices whose principal minors have strict signs.
 
-A sign pattern may refute a limit, a perturbation prove it. No finite criterion is known that always decides.
+A sign pattern may refute a limit, a perturbation may prove it.
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def _perturbation(matrix: ExactMatrix, last: int, signature: Signature | None) -
 def _strict_nearby(matrix: ExactMatrix, first: Rows, second: Rows, last: int) -> bool:
     """Decide the signs of the minors of T^2 A + T B + C for all large T from one T.
 
-    They are polynomials in T with integer coefficients up to n! (a+b+c)^n, for largest entries a, b, c, and have no
-    root beyond one plus that bound (Cauchy).
+    Their integer coefficients are at most n! (a+b+c)^n, for largest entries a, b, c; no root exceeds that plus one
+    (Cauchy).
     """
     sizes = (max(abs(v) for row in part for v in row) for part in (matrix.entries, first, second))
     large = 2 + math.factorial(matrix.n) * sum(sizes) ** matrix.n

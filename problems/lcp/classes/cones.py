@@ -1,4 +1,4 @@
-"""Classes defined by signs on vectors: copositive, semimonotone, R0, S and relatives.
+"""Classes defined by signs on vectors.
 
 Each index set needs one exact linear program with x >= 1.
 """
@@ -47,7 +47,7 @@ def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str,
 
 
 def _all_at_most(bound: int) -> Build:
-    """(Ax)_i <= bound where x_i > 0; -1 means negative."""
+    """(Ax)_i <= bound where x_i > 0."""
 
     def build(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
         block = columns(matrix, support)
@@ -122,7 +122,7 @@ def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Me
 
 
 def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
-    """x'Ax, in the units of A."""
+    """The value x'Ax, in the units of A."""
     return sum((v * y for v, y in zip(x, matrix.image(x), strict=True)), Fraction(0))
 
 
@@ -146,7 +146,7 @@ def is_almost_copositive(matrix: ExactMatrix) -> Membership:
 def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
     """E0^s as the paper prints it: x'Ax = 0, Ax >= 0, x >= 0 imply A'x <= 0.
 
-    Jana, Das and Sinha also require E0; the evidence reports it.
+    Jana, Das and Sinha also require E0.
     """
     cited = "Dutta, Das and Jana, section 2; Jana, Das and Sinha, On semimonotone star matrices, 2018, ask for E0 too"
     if matrix.n > LARGEST_STAR:

@@ -19,7 +19,6 @@ Indices = tuple[int, ...]
 
 
 def _fraction(value: Any) -> Fraction:
-    """One entry as a Fraction; converting NumPy scalars first prevents integer overflow."""
     plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain, float) and not math.isfinite(plain):
         raise ValueError(f"A: expected finite numbers, found {plain}")
@@ -50,7 +49,7 @@ class ExactMatrix:
 
     @staticmethod
     def of(A: Any) -> ExactMatrix:
-        """The exact value of a dense, sparse or nested matrix of floats, ints or Fractions.
+        """The exact value of a matrix of floats, ints or Fractions.
 
         Parameters
         ----------
@@ -67,7 +66,7 @@ class ExactMatrix:
         if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
             raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
         if sp.issparse(A):
-            # Only to reject bad input: its floats hold 53 bits.
+            # This only rejects bad input: its floats hold 53 bits.
             sound_sparse("A", A)
             A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
         dense = np.array(A, dtype=object)
@@ -104,7 +103,7 @@ class ExactMatrix:
         Parameters
         ----------
         mask : int
-            Bit i is set if index i belongs to the set.
+            Bit i stands for index i.
         """
         return Fraction(self.minors[mask], self.scale ** mask.bit_count())
 
@@ -132,12 +131,12 @@ def index_sets(n: int) -> Iterator[int]:
 def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     """All 2^n principal minors of an integer matrix, by mask, from shared Schur complements.
 
-    Minors without the first index come from the remaining matrix, the others from the fraction-free Schur complement. A
-    zero pivot is raised by one, which the minors without the index then undo.
+    Minors without the first index come from the remaining matrix, the others from the Schur complement. A zero pivot is
+    raised by one, which the minors without the index then undo.
 
     References
     ----------
-    Griffin and Tsatsomeros, Principal minors, part I, Linear Algebra Appl. 419 (2006) 107-124.
+    Griffin and Tsatsomeros, Linear Algebra Appl. 419 (2006) 107-124.
     """
     return _minors([list(row) for row in rows], 1)
 
@@ -161,8 +160,7 @@ def _minors(block: list[list[int]], determinant_so_far: int) -> list[int]:
 def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[int]], int] | None:
     """Numerators X and a positive denominator d with rows X = d right; None for a singular matrix.
 
-    Fraction-free Gauss-Jordan elimination, faster than `problems.lcp.proof.rational.solve_exactly` at small order (0.9
-    against 2.9 ms at 12), slower beyond about 20.
+    Fraction-free elimination is faster than `proof.rational.solve_exactly` up to order 20.
     """
     work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
     m, previous = len(work), 1

@@ -1,4 +1,4 @@
-"""One complementary piece in exact arithmetic: equations w_i = 0 and inequalities in the x inside their bounds."""
+"""One complementary piece in exact arithmetic."""
 
 from __future__ import annotations
 
@@ -29,9 +29,8 @@ class FacePoint:
 
 
 def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) -> FacePoint | None:
-    """A point x, w >= 0, w = entries x + q, with x zero outside `support` and w zero on it.
-
-    None proves that there is none.
+    """A point x, w >= 0, w = entries x + q, with x zero outside `support` and w zero on it; None proves that there is
+    none.
     """
     state = [-1] * len(q)
     for i in support:
@@ -42,7 +41,7 @@ def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) ->
 def piece_point(
     entries: Sequence[IntRow], q: Sequence[int], bounds: Sequence[Bound], unit: int, state: Sequence[int]
 ) -> FacePoint | None:
-    """A solution with bounds, integers over `unit`; states -1 and 1 put x_i at its lower and upper one."""
+    """A solution with bounds, which are integers over `unit`."""
     inside = [i for i, s in enumerate(state) if s == 0]
     ends = [0 if s == 0 else bounds[i][s > 0] or 0 for i, s in enumerate(state)]
     rows = [[row[j] for j in inside] for row in entries]
@@ -84,7 +83,7 @@ def _times(row: IntRow, x: Sequence[Any]) -> Any:
 
 
 def _free(constraints: Sequence[Constraint], m: int) -> list[Fraction] | None:
-    """A point of m > 0 numbers of any sign: a difference of two that are nonnegative."""
+    """A point of m > 0 numbers of any sign."""
     parts = feasible_point([([*row, *(-v for v in row)], side) for row, side in constraints], 2 * m)
     return None if parts is None else [up - down for up, down in zip(parts, parts[m:])]
 

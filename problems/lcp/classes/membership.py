@@ -25,7 +25,7 @@ class Evidence:
     ----------
     sentence : str
     indices : tuple of int, optional
-        The deciding index set or pair.
+        The deciding index set.
     value : Fraction, optional
         The deciding minor, quadratic form, entry or bound.
     vector : tuple of Fraction, optional
@@ -55,9 +55,9 @@ class Membership:
     holds : bool or None
         None if not decided.
     certificate : Evidence
-        The reason, also for None.
+        The reason.
     cited : str
-        Source of the definition or criterion.
+        Source of the criterion.
     """
 
     name: str
@@ -119,18 +119,18 @@ def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], M
 
 
 def undecided(name: str, n: int, limit: int, cited: str) -> Membership:
-    """The answer beyond the limit of an exponential test."""
+    """The answer beyond the limit of a test."""
     sentence = f"the exact test is exponential in n and stops at n = {limit}, found n = {n}"
     return Membership(name, None, Evidence(sentence), cited)
 
 
 def show_set(indices: Sequence[int]) -> str:
-    """An index set as text, {0, 2}."""
+    """An index set as text."""
     return "{" + ", ".join(map(str, indices)) + "}"
 
 
 def show_vector(vector: Sequence[Fraction]) -> str:
-    """A vector as text, (1, -1/2)."""
+    """A vector as text."""
     return "(" + ", ".join(map(str, vector)) + ")"
 
 

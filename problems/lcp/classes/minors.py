@@ -11,7 +11,7 @@ from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
 LARGEST_MINORS = 12
-"""Largest order of tests that read all 2^n - 1 principal minors (0.01 s)."""
+"""Largest order for all 2^n - 1 principal minors (0.01 s)."""
 
 PAPER = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
 EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618; " + PAPER
@@ -25,7 +25,6 @@ SIGNS: Mapping[str, Callable[[int], bool]] = {
 }
 
 Rule = Callable[[int], str]
-"""Order to required sign of its minors."""
 
 
 def two_signs(low: str, last: int, high: str) -> Rule:
@@ -120,7 +119,6 @@ def is_n0_of_exact_order(matrix: ExactMatrix) -> Membership:
 
 
 Test = Callable[[ExactMatrix, str, int], Membership]
-"""(matrix, name, n - k) to membership."""
 
 
 def _up_to(low: str) -> Test:

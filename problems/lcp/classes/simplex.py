@@ -1,6 +1,6 @@
 """Exact feasibility of small linear systems: the simplex method in integers with Bland's rule.
 
-One added variable makes any system feasible; its minimum is zero if the original system is.
+The least value of an added variable is zero if the system is feasible.
 """
 
 from __future__ import annotations
@@ -42,7 +42,6 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
     if not constraints or constraints[worst][1] <= 0:
         return (Fraction(0),) * n
     table = [[*row, 1, -right] for row, right in constraints]
-    # The added variable is first, so it leaves early.
     free, basic = [*range(1, n + 1), 0], list(range(n + 1, n + 1 + len(table)))
     denominator = _exchange(table, basic, free, worst, n, 1)
     while 0 in basic and table[basic.index(0)][-1] > 0:
@@ -57,7 +56,7 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
 
 
 def positive_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 1 that satisfies every constraint, or None; for homogeneous ones it proves x > 0."""
+    """A point x >= 1 that satisfies every constraint, or None."""
     point = feasible_point([(row, right - sum(row)) for row, right in constraints], n)
     return None if point is None else tuple(v + 1 for v in point)
 
@@ -75,7 +74,6 @@ def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
 def _exchange(
     table: list[list[int]], basic: list[int], free: list[int], leaving: int, entering: int, denominator: int
 ) -> int:
-    """Pivot in place; return the new denominator."""
     top = table[leaving]
     pivot, sign = abs(top[entering]), 1 if top[entering] > 0 else -1
     for i, row in enumerate(table):

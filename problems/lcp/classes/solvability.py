@@ -20,7 +20,7 @@ LARGEST_COVER = 5
 """Largest order for which complementary cones are subtracted."""
 
 MOST_PROGRAMS = 4000
-"""Most linear programs for this before the answer `not decided`."""
+"""Most linear programs before the answer `not decided`."""
 
 Normals = list[list[int]]
 
@@ -29,8 +29,8 @@ Normals = list[list[int]]
 def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
-    Z and row sufficient matrices are Q0. Other A, n up to `LARGEST_COVER`, are Q0 exactly if the full complementary
-    cones cover pos[I, -A]. Exact linear programs subtract them; a remaining q is feasible without solution.
+    Z and row sufficient matrices are Q0. Other A of order up to `LARGEST_COVER` are Q0 exactly if the full
+    complementary cones cover pos[I, -A]. Exact linear programs subtract the cones; a remaining q has no solution.
     """
     cited = CPS + ", sections 3.2, 3.5 and 3.11"
     for name, test in _SUFFICIENT_FOR_Q0.items():
@@ -77,8 +77,7 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
 def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, programs: Iterator[int]) -> Point | None:
     """A feasible q of a region without a solution, or None if the cones cover the region.
 
-    A region is a list of normals r with r . q > 0. Raises `StopIteration` after as many linear programs as `programs`
-    has items.
+    A region is a list of normals r with r . q > 0. Raises `StopIteration` at the end of `programs`.
     """
     next(programs)
     n, entries = matrix.n, matrix.entries
@@ -100,7 +99,7 @@ def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, progra
 def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
     """Move q off lower-dimensional cones within the open set that full cones miss.
 
-    The moment curve meets each hyperplane finitely often, so the search ends.
+    The moment curve meets each hyperplane finitely often.
     """
     candidate, tries = q, 0
     while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(matrix, candidate):
@@ -111,7 +110,7 @@ def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
-    """Inner normals of full-dimensional complementary cones: the rows of the complementary matrix's inverse."""
+    """Inner normals of full-dimensional complementary cones."""
     n = matrix.n
     identity = [[int(i == j) for j in range(n)] for i in range(n)]
     cones = []
@@ -128,14 +127,14 @@ def full_cones(matrix: ExactMatrix) -> list[Normals]:
 
 
 def is_solvable(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether LCP(q, A) has a solution; q is in integer units."""
+    """Whether LCP(q, A) has a solution."""
     scaled, _ = over_common_denominator(q)
     masks = (0, *index_sets(matrix.n))
     return any(face_point(matrix.entries, scaled, indices(mask)) is not None for mask in masks)
 
 
 def is_feasible(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether some x >= 0 has Ax + q >= 0; q is in integer units."""
+    """Whether some x >= 0 has Ax + q >= 0."""
     right, scale = over_common_denominator(q)
     system = [at_least([scale * v for v in row], -b) for row, b in zip(matrix.entries, right)]
     return feasible_point(system, matrix.n) is not None

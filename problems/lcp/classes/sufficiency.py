@@ -92,7 +92,7 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
 
 
 def _reversed_vector(matrix: ExactMatrix) -> tuple[Indices, Point] | None:
-    """An x with x_i (Ax)_i <= 0 for all i, < 0 for some i: one linear program per sign vector."""
+    """An x with x_i (Ax)_i <= 0 for all i, < 0 for some i."""
     for mask in index_sets(matrix.n):
         support = indices(mask)
         block = columns(matrix, support)

@@ -1,7 +1,6 @@
 """Foreign file formats, read by scipy in a child process with limits.
 
-scipy trusts a file's sizes and types: damaged files have crashed it (SIGSEGV, SIGFPE), made it loop, or taken all
-memory.
+scipy trusts a file's sizes and types: damaged files have crashed it, made it loop, or taken all memory.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from typing import Any, BinaryIO, NoReturn
 from continuation.archive.hdf5 import Allowance
 
 BYTES_A_SECOND = 1 << 22
-"""Bytes a child may read per CPU second after the first two; scipy is 20 times as fast."""
+"""Bytes a child may read per CPU second after the first two; scipy reads 20 times as many."""
 
 
 def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[str, Any]:
@@ -46,7 +45,6 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
         if code < 0:
             limited = -code in (signal.SIGXCPU, signal.SIGALRM)
             raise ValueError("it takes too long to read" if limited else f"its reader ended by signal {-code}")
-        # Safe: this program's child wrote it.
         found: Mapping[str, Any] = pickle.load(out)
         return found
 
@@ -54,14 +52,13 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
 def _answer(read: Callable[[str], Mapping[str, Any]], file: str, out: BinaryIO) -> NoReturn:
     status = 1
     try:
-        # Keep the child's crash messages off the terminal.
+        # Keep crash messages off the terminal.
         faulthandler.disable()
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         size = Path(file).stat().st_size
         room, seconds = Allowance(size).limit, 2 + size // BYTES_A_SECOND
         pages = Path("/proc/self/statm")
         if pages.exists():
-            # The file's contents and the arrays made of it.
             here = int(pages.read_text().split()[0]) * resource.getpagesize()
             _lower(resource.RLIMIT_AS, here + 2 * room)
         _lower(resource.RLIMIT_FSIZE, room)

@@ -1,4 +1,4 @@
-"""Checks of bounds, with messages that name the index."""
+"""Checks of bounds."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from problems.options import real_array
 
 
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
-    """Bounds as a vector of floats; the only infinity allowed is `default`.
+    """Bounds as a vector of shape (size,); the only infinity allowed is `default`.
 
-    `value`, of shape (size,): Or one number; None means `default`. Raises `ValueError` if it is sparse (unstored
-    entries are ambiguous), not real, of another length, NaN, or the wrong infinity.
+    `value` may be one number, or None for `default`. Raises `ValueError` if it is sparse, not real, of another length,
+    NaN, or the wrong infinity.
     """
     if value is None:
         return np.full(size, default)

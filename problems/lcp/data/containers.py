@@ -1,4 +1,4 @@
-"""Readers of files that hold arrays: each returns arrays by name."""
+"""Readers of files that hold arrays."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _npz(file: str) -> Mapping[str, Any]:
 def _npy(file: str) -> Mapping[str, Any]:
     if zipfile.is_zipfile(file):
         raise ValueError("it holds named arrays, not one")
-    # A map is no larger than the file, whatever its header claims.
+    # A map is no larger than the file.
     return {ALONE: np.array(np.load(file, mmap_mode="r", allow_pickle=False))}
 
 
@@ -80,16 +80,14 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
     rows, columns, entries, form, field, symmetry = scipy.io.mminfo(file)
     cells = rows * columns
     if symmetry != "general":
-        # The file holds one triangle; a skew-symmetric one has no diagonal.
         cells = (cells + (-rows if symmetry == "skew-symmetric" else rows)) // 2
         if rows != columns:
             raise ValueError(f"it claims to be {symmetry}, and has {rows} rows and {columns} columns")
     width = {"complex": 2, "pattern": 0}.get(field, 1)
     claimed = (cells, width) if form == "array" else (entries, 2 + width)
     with Path(file).open("rb") as lines:
-        # Skip to the line with the sizes.
         next((line for line in lines if line.strip() and not line.lstrip().startswith(b"%")), None)
-        # scipy ignores what it does not understand in a line.
+        # scipy ignores text that it does not understand.
         found = np.loadtxt(lines, comments=None, ndmin=2)
     if min(rows, columns) < 1 or (found.shape != claimed and (found.size or entries)):
         raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found.shape}")

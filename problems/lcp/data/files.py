@@ -26,7 +26,6 @@ ROWS = 1 << 22
 """Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
 
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
-"""Names of container files."""
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
 """Bounds that JSON's null stands for."""
@@ -37,7 +36,7 @@ _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECA
 class InputError(ValueError):
     """A file that cannot be used.
 
-    `argument`: ``path``, or a vector's name. `complaint`: One line.
+    `argument` is ``path``, or a vector's name.
     """
 
     def __init__(self, argument: str, complaint: str) -> None:
@@ -49,10 +48,10 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A, q, and optionally lower, upper (JSON's null is
-    infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as ``.mtx``,
-    ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q`: A file, preferred to a q beside A. Raises `InputError`
-    if a file is missing, of another format, or without real finite data of matching shapes.
+    `path` names a ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` file with A, q, and optionally lower, upper
+    (JSON's null is infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as
+    ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q beside A. Raises
+    `InputError`.
     """
     contents = _contents("path", path)
     A = _named(contents, "A", "path", path)
@@ -79,8 +78,8 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 def read_program(path: str | PathLike[str]) -> Program | None:
     """Read a program; None if the file holds none.
 
-    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``, ``.mps``,
-    ``.lp`` (need highspy). Raises `InputError`.
+    `path` names a ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``,
+    ``.mps``, ``.lp`` (need highspy). Raises `InputError`.
     """
     if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
         try:
@@ -131,7 +130,7 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
         # Claimed sizes may overflow when multiplied.
         with np.errstate(over="ignore"):
             return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
-    except Exception as error:  # Whatever the format's reader raises.
+    except Exception as error:
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
         raise InputError(argument, complaint) from None
@@ -144,7 +143,6 @@ def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
-    """The array `name`, or the only unnamed one."""
     if name not in contents and ALONE not in contents:
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
@@ -170,6 +168,6 @@ def _shown(path: str | PathLike[str] | None) -> str:
 
 
 def _flat(value: Matrix) -> Matrix:
-    """A row or column as a vector, as formats differ."""
+    """A row or column as a vector."""
     array = value.toarray() if sp.issparse(value) else value
     return array.ravel() if array.ndim == 2 and 1 in array.shape else array

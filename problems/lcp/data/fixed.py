@@ -1,4 +1,4 @@
-"""Removes unknowns with equal bounds: a smaller problem of the same kind remains."""
+"""Removes unknowns with equal bounds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from problems.lcp.data.problem import MixedLCP
 class WithoutFixed:
     """A problem without its fixed unknowns.
 
-    `problem`: The rest, with q rounded, perhaps without unknowns. `kept`: Its indices.
+    `problem` is the rest, with q rounded; `kept` are its indices.
     """
 
     whole: MixedLCP

@@ -1,4 +1,4 @@
-"""An LCP's matrix (dense, sparse or banded), its properties and derived matrices."""
+"""An LCP's matrix, its properties and derived matrices."""
 
 from __future__ import annotations
 
@@ -17,20 +17,14 @@ WIDEST_BAND = 16
 """Most diagonals, gaps included, of a banded matrix."""
 
 FILL = 8.0
-"""Most terms of a sparse A'DA per entry of A and I.
-
-Beyond, a system of order 2n, as sparse as A, replaces it.
-"""
+"""Most terms of a sparse A'DA per entry of A and I; beyond, a system of order 2n replaces it."""
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky.
-
-Its rounding is about n eps of the diagonal (Higham, Theorem 10.3), that of data like M M' as much again.
-"""
+"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky (Higham, Theorem 10.3)."""
 
 
 LARGEST_SYMMETRIC_PART = 1000
-"""Most nonempty rows of a sparse A with bounds for a dense factorisation of A + A'."""
+"""Most nonempty rows of a sparse A + A' for a dense factorisation."""
 
 
 def semidefinite(symmetric: Array) -> bool:
@@ -38,14 +32,12 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    # Shifts follow the diagonal, as factorisations ignore its scaling.
+    # Shifts follow the diagonal: factorisations ignore its scaling.
     shifted, sizes = symmetric.copy(), diagonal
     if (diagonal == 0.0).any():
-        # A zero diagonal entry takes its row's largest entry.
         rows = np.abs(symmetric).max(axis=1)
         sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
     shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * sizes
-    # The transpose is in LAPACK's order.
     return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
 
@@ -67,12 +59,11 @@ def _by_rows(band: Banded, values: float | Array) -> Array:
 
 
 def normal_band(band: Banded, factor: float, weights: Array, diagonal: Array) -> Banded:
-    """``factor (A + A' + A' diag(weights) A) + diag(diagonal)`` of a banded A, half bandwidth lower + upper."""
+    """``factor (A + A' + A' diag(weights) A) + diag(diagonal)`` of a banded A."""
     ab, n, width = band.ab, band.shape[0], band.lower + band.upper
     weighted = ab * _by_rows(band, weights)
     whole = np.zeros((2 * width + 1, n))
     for k in range(min(width + 1, n)):
-        # The entries (j + k, j).
         found = (weighted[k:, : n - k] * ab[: width + 1 - k, k:]).sum(axis=0)
         if k <= band.lower:
             found += ab[band.upper + k, : n - k]
@@ -111,7 +102,7 @@ class Structure:
 
     @cached_property
     def band(self) -> Banded | None:
-        """A sparse matrix with few diagonals near the main one as these, else None."""
+        """The matrix's diagonals if it is sparse with few of them, else None."""
         if not self.problem.sparse:
             return None
         entries = self.problem.A.tocoo()
@@ -125,7 +116,7 @@ class Structure:
 
     @cached_property
     def squarable(self) -> bool:
-        """Whether A'DA may be formed (A dense or banded, or little fill)."""
+        """Whether A'DA may be formed."""
         if not self.problem.sparse or self.band is not None:
             return True
         terms = float((np.diff(self.problem.A.indptr).astype(float) ** 2).sum())
@@ -138,23 +129,19 @@ class Structure:
             return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
-        # One row and column show most asymmetries cheaply.
+        # One row and column show most asymmetries.
         A = self.problem.A
         return not np.count_nonzero(A[0] != A[:, 0]) and not np.count_nonzero(A != A.T)
 
     @cached_property
     def semidefinite(self) -> bool:
-        """Whether A + A' is proved positive semidefinite, to working precision.
-
-        Dense: by Cholesky. Sparse: by diagonal dominance (Gershgorin). Wrong answers cost only time.
-        """
+        """Whether A + A' is positive semidefinite to working precision: by Cholesky, or by dominance if sparse."""
         diagonal = self.symmetrized.diagonal()
         if (diagonal < 0.0).any():
             return False
         if self.problem.sparse:
             S = self.symmetrized
             S.eliminate_zeros()
-            # A program has entries in the rows of P alone.
             rows = np.flatnonzero(np.diff(S.indptr) > 0)
             if rows.size <= LARGEST_SYMMETRIC_PART and not self.problem.standard:
                 return not rows.size or semidefinite(S[rows][:, rows].toarray())
@@ -163,20 +150,20 @@ class Structure:
 
     @cached_property
     def negative_diagonal(self) -> bool:
-        """Whether some a_ii < 0: not copositive, Wang's path mostly diverges."""
+        """Whether some a_ii < 0: then A is not copositive."""
         return bool(self.problem.A.diagonal().min() < 0.0)
 
     @property
     def z_matrix(self) -> bool:
         """Whether off-diagonal entries are <= 0.
 
-        Then active sets from x = 0 reach the least feasible element within n steps, or fail.
+        Then active sets reach the least feasible element within n steps, or fail.
         """
         return self._off_diagonal[1] <= 0.0
 
     @property
     def nonnegative(self) -> bool:
-        """Whether all entries are >= 0: copositive, as for bimatrix games."""
+        """Whether all entries are >= 0, as for bimatrix games."""
         return self._off_diagonal[0] >= 0.0 and not self.negative_diagonal
 
     @cached_property
@@ -186,13 +173,12 @@ class Structure:
             entries = A.tocoo()
             values = entries.data[entries.row != entries.col]
         else:
-            # Drops the diagonal.
             values = A.ravel()[1:].reshape(n - 1, n + 1)[:, :-1] if n > 1 else np.zeros(0)
         return float(values.min(initial=0.0)), float(values.max(initial=0.0))
 
     @property
     def said(self) -> str:
-        """What was found of A, in words."""
+        """The properties found, in words."""
         parts = ["symmetric" if self.symmetric else "not symmetric"]
         if "semidefinite" in vars(self):
             parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
@@ -242,7 +228,7 @@ class Structure:
             square = self.transpose @ (sp.diags_array(weights) @ A)
             return sp.csc_array(factor * (self.symmetrized + square) + sp.diags_array(diagonal))
         if (weights >= 0.0).all():
-            # numpy gives a matrix times its transpose to dsyrk: half the work.
+            # numpy's product with a transpose takes half the work.
             half = np.sqrt(weights)[:, None] * A
             square = half.T @ half
         else:
@@ -255,8 +241,7 @@ class Structure:
     def augmented(
         self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array, turn: Array | None
     ) -> Matrix:
-        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]``, the first n columns scaled.
-
+        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]``, the first n columns scaled;
         ``diagonal`` is added to the first block.
 
         Parameters

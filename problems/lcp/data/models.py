@@ -19,7 +19,7 @@ MODEL_FORMATS = (".qps", ".mps", ".lp")
 def read_model(file: str) -> Program:
     """Read a program; maximisation changes signs.
 
-    Raises `ImportError` without highspy, `ValueError` if unreadable or with integer variables.
+    Raises `ImportError` without highspy, `ValueError` if the file is unreadable or has integer variables.
     """
     try:
         import highspy

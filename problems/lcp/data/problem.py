@@ -1,4 +1,4 @@
-"""Linear complementarity problems: validated data, and residuals."""
+"""Linear complementarity problems."""
 
 from __future__ import annotations
 
@@ -41,23 +41,22 @@ def square_matrix(value: Any) -> Matrix:
 class MixedLCP:
     """Find x in [lower, upper] with w = A x + q >= 0 where x = lower, w <= 0 where x = upper, and w = 0 between.
 
-    An unknown with lower_i = upper_i has any w_i. This is the affine variational inequality over a box.
+    This is the affine variational inequality over a box; where lower_i = upper_i, w_i is free.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Converted to float64; sparse input stays sparse (CSR).
+        Sparse input stays sparse (CSR).
     q : array_like, shape (n,)
     lower, upper : array_like, shape (n,), or one number for all, optional
         Default -inf and inf.
     primal : int, optional
-        The first unknowns are so many variables of a quadratic program, the others multipliers and row values; default
-        0: unknown. See `from_qp`.
+        Number of variables of a quadratic program among the unknowns, which come first; default 0: unknown.
 
     Raises
     ------
     ValueError
-        If an argument is not numeric, finite, or of the right shape, or lower > upper.
+        For arguments that are not numeric, finite, or of the right shape, or lower > upper.
 
     References
     ----------
@@ -71,7 +70,7 @@ class MixedLCP:
     upper: Array = field(default=None)
     primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
-    """Cached results by name, as of `data.scaling.units`."""
+    """Cached results by name."""
 
     @q.validator
     def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
@@ -106,7 +105,7 @@ class MixedLCP:
 
     @cached_property
     def pieces(self) -> int:
-        """The number of complementary pieces: 3^boxes 2^(single bounds)."""
+        """The number of complementary pieces."""
         ends = np.isfinite(self.lower).astype(int) + np.isfinite(self.upper) - 2 * self.fixed
         return math.prod((ends + 1).tolist())
 
@@ -165,14 +164,13 @@ class MixedLCP:
         return _stated(moved <= self.lower, moved >= self.upper)
 
     def corrected(self, state: State, x: Array, w: Array) -> State:
-        """The piece that signs ask for: Newton's method for the natural map.
+        """The piece that signs ask for in Newton's method.
 
         Parameters
         ----------
         state : State
-            The current piece.
         x, w : ndarray, shape (n,)
-            A point on it.
+            A point on this piece.
         """
         if self.standard:
             return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
@@ -182,7 +180,7 @@ class MixedLCP:
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 
     def at(self, state: State) -> Array:
-        """The bounds that a state imposes on x, zero between; shape (n,).
+        """The bounds that a state imposes on x, zero between.
 
         Parameters
         ----------
@@ -205,7 +203,7 @@ class MixedLCP:
         return np.where(state == BETWEEN, x, self.at(state))
 
     def natural_residual(self, x: Array) -> float:
-        """max_i |x - mid(lower, x - w, upper)|_i, absolute.
+        """max_i |x - mid(lower, x - w, upper)|_i.
 
         Parameters
         ----------
@@ -231,7 +229,7 @@ class MixedLCP:
         return 1.0 + self.size_of_terms(x)
 
     def size_of_terms(self, x: Array) -> float:
-        """The bound max(|q|_inf, |A|_inf |x|_inf) of the rows' terms.
+        """The bound max(|q|_inf, |A|_inf |x|_inf) of terms.
 
         Parameters
         ----------
@@ -278,14 +276,14 @@ class LCP(MixedLCP):
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
-        Converted to float64; sparse input stays sparse (CSR).
+        Sparse input stays sparse (CSR).
     q : array_like, shape (n,)
         n may be 0.
 
     Raises
     ------
     ValueError
-        If an argument is not numeric, finite, or of the right shape.
+        For arguments that are not numeric, finite, or of the right shape.
 
     References
     ----------
@@ -301,8 +299,6 @@ class LCP(MixedLCP):
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q, with the cached units of A.
-
-        Fresh units may differ by a factor per connected part of A.
 
         Parameters
         ----------

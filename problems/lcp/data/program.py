@@ -22,8 +22,8 @@ from problems.options import check_finite, finite_vector, real_array, sound_spar
 class Program:
     """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
 
-    Made by `from_qp` or `from_lp`. An equation is a row with equal sides; a row with two sides is two rows. The
-    unknowns of `problem` are x, and one multiplier a side::
+    `from_qp` and `from_lp` make it. An equation is a row with equal sides. The unknowns of `problem` are x and one
+    multiplier a side::
 
         P x + c = A_eq' equations + G' rows + bounds
 
@@ -37,7 +37,7 @@ class Program:
     shape : tuple of int
         The numbers of rows of A_eq and of G.
     row : ndarray of int
-        The row of [A_eq; G] of each multiplier: equations, upper sides, lower sides.
+        The row of [A_eq; G] of each multiplier.
     sign : ndarray
         -1 for upper sides, else 1.
     """
@@ -110,7 +110,7 @@ def from_qp(
 ) -> Program:
     """Min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
-    If P is not positive semidefinite, `solve` finds a KKT point, possibly no minimum, and says so.
+    If P is not positive semidefinite, `solve` finds a KKT point, perhaps no minimum, and says so.
 
     Parameters
     ----------
@@ -123,9 +123,9 @@ def from_qp(
     A_eq : array_like or scipy sparse, shape (k, n), optional
     b_eq : array_like, shape (k,), optional
     lower, upper : array_like, shape (n,), or one number, optional
-        Default -inf and inf; x is fixed where they are equal.
+        Default -inf and inf.
     rows_lower : array_like, shape (m,), or one number, optional
-        Lower sides of rows; equations where it equals h.
+        Lower sides of rows.
 
     Returns
     -------
@@ -138,7 +138,7 @@ def from_qp(
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 1.2.
+    Cottle, Pang and Stone, section 1.2.
     """
     c = finite_vector("c", c)
     n = c.size
@@ -147,7 +147,7 @@ def from_qp(
         raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
     _check_symmetric(P)
     if not sp.issparse(P):
-        P.flags.writeable = False  # so that the problem does not copy it
+        P.flags.writeable = False
     if (G is None) != (h is None and rows_lower is None):
         raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
     if (A_eq is None) != (b_eq is None):

@@ -1,8 +1,8 @@
 """Exact scaling of rows and columns by powers of two.
 
-LCP(q, A) and LCP(R q, R A C) have the same solutions up to units, for positive diagonal R and C. The largest entries of
-scaled rows and columns are about 1. Least squares of logarithms, then Ruiz's iteration, give the same problem for all
-given units, up to rounding.
+For positive diagonal R and C, LCP(q, A) and LCP(R q, R A C) have the same solutions up to units. Least squares of
+logarithms, then Ruiz's iteration, make the largest entries of rows and columns about 1, and give the same problem for
+all given units, up to rounding.
 """
 
 from __future__ import annotations
@@ -22,21 +22,19 @@ from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 Exponents = NDArray[np.int64]
 
 RUIZ = 8
-"""Sweeps of Ruiz's iteration: each halves the logarithms of the largest entries."""
+"""Sweeps: each halves the logarithms of the largest entries."""
 
 GRADIENT_STEPS = 30
-"""Conjugate gradient steps: full matrices need one, sparse random ones about ten; on long chains the remaining smooth
-error changes no scaled entry."""
+"""Conjugate gradient steps: full matrices need one, sparse random ones about ten."""
 
 LOGARITHM_TOLERANCE = 1e-6
-"""Tolerance of the logarithms: far below the 1/2 where rounding decides."""
+"""Tolerance of the logarithms, far below the 1/2 where rounding decides."""
 
 HALVES = 1e-3
-"""Fractions this near to 1/2 round up: above the noise, below differences that matter."""
+"""Fractions this near to 1/2 are noise and round up."""
 
 NEGLIGIBLE = -27.0
-"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| (any units) are ignored: kernel matrices exp(-d^2) have entries down to
-1e-300."""
+"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| are ignored: matrices exp(-d^2) have entries down to 1e-300."""
 
 LEVEL = 0.02
 """Sweeps end at smaller logarithms: rounding changes them more."""
@@ -46,8 +44,7 @@ LEVEL = 0.02
 class Scaled:
     """LCP(R q, R A C), R = diag(2^rows), C = diag(2^columns); its solution u gives x = C u.
 
-    `rows`, `columns`, of shape (n,). `exact`: Whether scaling back gives the same entries (others 1e290 times as large
-    round them).
+    `exact`: whether scaling back gives the same entries.
     """
 
     problem: MixedLCP
@@ -56,7 +53,7 @@ class Scaled:
     exact: bool
 
     def x(self, u: Array) -> Array:
-        """The original x, perhaps beyond the float range."""
+        """The point in given units, perhaps beyond the float range."""
         return _times(u, self.columns)
 
     def u(self, x: Array) -> Array:
@@ -74,8 +71,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 
     References
     ----------
-    Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
-    Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
+    Curtis and Reid, J. Inst. Maths Applics 10, 1972; Ruiz, RAL-TR-2001-034.
     """
     if not problem.standard and level(problem):
         return None
@@ -85,9 +81,9 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     given = () if problem.standard else (problem.lower, problem.upper)
     bounds = [_times(end, -columns) for end in given]
     if not all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, given)):
-        return None  # it would change the problem
+        return None
     scaled = _by(problem, rows, columns, _times(problem.q, rows), *bounds)
-    # A balanced problem needs no other units.
+    # A balanced problem needs no units.
     scaled.problem.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return scaled
 
@@ -104,7 +100,7 @@ def _by(problem: MixedLCP, rows: Exponents, columns: Exponents, q: Array, *bound
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     """LCP(s q, s A), s a power of two for extreme entries (None for s = 1), and whether active sets can use it.
 
-    They can if entries are `alike` and s rounds nothing. The problem has no bounds.
+    They can if entries are `alike` and s rounds nothing.
     """
     if not alike(problem):
         return None, False
@@ -118,9 +114,9 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for rows of [A, q] and columns of A; computed once.
+    """The exponents of two for rows of [A, q] and columns of A.
 
-    Powers of two in the given units come out exactly; matrices symmetric up to units become symmetric.
+    Matrices that are symmetric up to units become symmetric.
     """
     if "units" not in problem.known:
         problem.known["units"] = _units(problem)
@@ -145,7 +141,7 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
-    # A free factor in each part makes its largest q_i about 1.
+    # A free factor makes a part's largest q_i about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
@@ -164,14 +160,13 @@ def _logarithms(A: Matrix) -> tuple[Any, Any]:
         logs = np.log2(np.abs(A))
         diagonal = logs.diagonal()
         counts = logs > -np.inf
-        # inf or NaN: the entry counts.
         excess = logs + logs.T
         excess -= diagonal[:, None] + diagonal
     return logs, (counts & ~((excess < NEGLIGIBLE) & (excess > -np.inf))).astype(float)
 
 
 def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
-    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2: conjugate gradients for c, r eliminated."""
+    """The r and c that minimise sum (log |a_ij| + r_i + c_j)^2, by conjugate gradients for c."""
     if sp.issparse(logs):
         row_sums, column_sums = np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
     else:
@@ -199,7 +194,6 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
 
 
 def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
-    """Ruiz's iteration."""
     row = None
     if sp.issparse(logs):
         row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
@@ -232,15 +226,14 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def _rounded(values: Array) -> Array:
-    """Round to integers, noisy halves (common in integer matrices) upwards."""
     return np.floor(values + (0.5 + HALVES))
 
 
 def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
-    """The mean fraction of each part, about which equal values round equally."""
+    """The mean fraction of each part: equal values round equally about it."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
-    # Where fractions cancel, their mean is noise: use the first.
+    # Where fractions cancel, their mean is noise.
     present, first = np.unique(parts, return_index=True)
     cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
     sums[present[cancelled]] = turns[first[cancelled]]

@@ -1,4 +1,4 @@
-"""LCP homotopies, plug-ins of `continuation`: they eliminate complementary pairs and factor matrices of order n + 1."""
+"""LCP homotopies, which factor matrices of order n + 1."""
 
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.homotopies.kkt import KKTHomotopy

@@ -1,4 +1,4 @@
-"""The full linear system solved by a smaller core, with corrections.
+"""Solves the full linear system by a smaller core.
 
 Eliminating one unknown of each pair ``s v + x p = r`` (from x_i y_i = lambda c_i) leaves the core.
 """
@@ -20,7 +20,7 @@ GAINED = 1e-3
 """Largest relative first correction of an accepted core: four such corrections reach round-off."""
 
 FIRM_CORRECTION = 1e-13
-"""Relative correction of the tangent (round-off) up to which solutions need none."""
+"""Largest correction of the tangent for which solutions need none."""
 
 
 _silently = without_warnings(all="ignore")
@@ -47,7 +47,7 @@ class Pairs:
     """Sign of the eliminated determinant."""
 
     def known(self, r: Array) -> tuple[Array, Array, Array]:
-        """Contributions of r to v, to p in other rows, and to p."""
+        """What r adds to v, to p in other rows, and to p."""
         p = self.f * r
         return self.e * r, p, p
 
@@ -69,7 +69,7 @@ def second_eliminated(s: Array, x: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient, so that nothing cancels."""
+    """Eliminate the unknown with the larger coefficient: nothing cancels."""
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
     inverse = 1.0 / pivot
@@ -93,12 +93,12 @@ def parity(count: int | np.intp) -> int:
 
 @frozen(eq=False, slots=False)
 class CoreSystem:
-    """A bordered system solved by a quick or a robust core, and corrected in the full system.
+    """A bordered system solved by a quick or a robust core.
 
-    `apply`: z to H' z. `sizes`, of shape (N,): Scales of unknowns. `coefficients`: Other coefficients of pairs.
+    `apply` maps z to H' z; `sizes` are the scales of unknowns, shape (N,).
 
     The quick core, smaller and symmetric, loses digits near zero pairs. The tangent's corrections decide which core
-    serves and whether it needs corrections.
+    serves.
     """
 
     apply: Callable[[Array], Array]
@@ -110,7 +110,7 @@ class CoreSystem:
 
     @cached_property
     def units(self) -> Array:
-        """Scales, 1 for a zero and for the parameter."""
+        """Scales; 1 for zeros and the parameter."""
         return np.append(np.where(self.sizes == 0.0, 1.0, self.sizes), 1.0)
 
     @cached_property
@@ -124,7 +124,7 @@ class CoreSystem:
         return self._probe[0].sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,)."""
+        """The solution, shape (N + 1,)."""
         core, tangent, firm = self._probe
         if rho == 1.0 and not r.any():
             return tangent.copy()
@@ -134,12 +134,11 @@ class CoreSystem:
         return self._robustly(r, rho)[0] if solution is None else solution[0]
 
     def approximate(self, r: Array, rho: float) -> Array:
-        """The uncorrected solution, for iterations that measure residuals."""
+        """The uncorrected solution."""
         return self._probe[0].solve(r, rho)
 
     @cached_property
     def _probe(self) -> tuple[BorderedSystem, Array, bool]:
-        """The core, its tangent, and whether solutions need no correction."""
         nothing = np.zeros(self.sizes.size)
         solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
         core = self.robust if self.quick is None or solution is None else self.quick
@@ -161,7 +160,7 @@ class CoreSystem:
 
     @_silently
     def _refined(self, core: BorderedSystem, r: Array, rho: float) -> tuple[Array, float] | None:
-        """The solution to round-off and the first correction's size; None if that is large."""
+        """The solution to round-off and its first correction; None if that is large."""
         try:
             z, changes = core.solve(r, rho), [np.inf]
             # Four corrections, or one below 1e-9, reach round-off.
@@ -179,7 +178,7 @@ class CoreSystem:
         return z, changes[1]
 
     def _moved(self, correction: Array, z: Array) -> tuple[float, float]:
-        """The relative correction, by component and overall; tiny components count as 1e-6 of the largest."""
+        """The relative corrections, by component and overall; tiny components count as 1e-6 of the largest."""
         units = self.units
         size = float(np.abs(z / units).max())
         if size == 0.0:

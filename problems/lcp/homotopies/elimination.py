@@ -1,4 +1,4 @@
-"""Elimination of linearised pairs from H', to a core of order n + 1 or 2 n + 1, and back."""
+"""Elimination of linearised pairs from H' to a core of order n + 1 or 2 n + 1."""
 
 from __future__ import annotations
 
@@ -18,14 +18,13 @@ if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
 
 LEAST_GIVE = 1e-9
-"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units.
-
-An active row has 0 at lambda = 0. Corrections remove the error and the rounding (1e-7).
+"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units: active rows have 0
+at lambda = 0.
 """
 
 LEAST_GAP = 1e-13
-"""Least distance from a bound over its multiplier, in natural units. 11 of 2,300 systems (90 paths, n = 6, 12, 30) need
-the robust core; 26 with 1e-16, 147 with 0.
+"""Least distance over multiplier, in natural units: 11 of 2,300 systems need the robust core; 26 with 1e-16, 147 with
+0.
 """
 
 
@@ -39,7 +38,7 @@ class Core:
 
     @classmethod
     def of(cls, way: OfPairs | OfRows, border: Array, definite: bool = False) -> Core:
-        """Factor the core, or raise `SingularError`."""
+        """Factor the core; raises `SingularError`."""
         with np.errstate(all="ignore"):
             column, known = way.forward(way.system.column)
             row = np.append(way.row(border[:-1]), border[-1] - float(border[:-1].dot(known)))
@@ -48,7 +47,7 @@ class Core:
 
     @property
     def sign(self) -> int:
-        """Sign of the full bordered determinant."""
+        """Sign of the bordered determinant."""
         return self.way.sign * self.core.sign
 
     def solve(self, r: Array, rho: float) -> Array:
@@ -63,10 +62,7 @@ class Core:
 
 @frozen(eq=False)
 class OfPairs:
-    """Elimination to order n + 1 for homotopies in (x, y): the better pivot of each pair if `larger`, else y.
-
-    With all y eliminated the matrix is symmetric with A.
-    """
+    """Elimination in (x, y) to order n + 1: the better pivot of each pair if `larger`, else y."""
 
     system: System
     larger: bool
@@ -74,12 +70,12 @@ class OfPairs:
 
     @property
     def sign(self) -> int:
-        """Sign of the eliminated determinant, with `blend.sign` of the first n rows."""
+        """Sign of the eliminated determinant."""
         odd = self.system.of.blend.sign < 0 and self.system.of.n % 2 == 1
         return -self.first.sign if odd else self.first.sign
 
     def forward(self, r: Array) -> tuple[Array, Array]:
-        """The core's right-hand side; the unknowns for k = 0."""
+        """The core's right-hand side, and the unknowns for k = 0."""
         homotopy, n = self.system.of, self.system.of.n
         alpha, beta, gamma = homotopy.blend.slopes(self.system.lam)
         v, force, dy = self.first.known(r[n:])
@@ -104,11 +100,11 @@ class OfPairs:
 
 
 def factor_pairs(system: System, border: Array) -> BorderedSystem:
-    """The bordered system of a homotopy in (x, y), by a core of order n + 1.
+    """The bordered system of a homotopy in (x, y).
 
     Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
-    if A is symmetric positive semidefinite and the sum is definite, otherwise LU the core of better pivots. Without
-    `refine` the definite core's solutions stay uncorrected. Raises `SingularError`.
+    if A is symmetric positive semidefinite and the sum is definite; otherwise LU factors the core of better pivots.
+    Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
     structure = homotopy.structure
@@ -127,8 +123,7 @@ class OfRows:
     """Elimination for the KKT homotopy: to order n + 1, or without `second` to 2n + 1, keeping z2.
 
     The first core is symmetric, ``(1-lam) [A + A' + diag(z1/gap) + A' diag(D) A] + lam I``. D is z2/w for one bound,
-    1/(s/z2 + t/(u-l-z2)) in a box, the inverse relaxation without bounds. The second eliminates better pivots and does
-    not square A.
+    1/(s/z2 + t/(u-l-z2)) in a box, the inverse relaxation without bounds. The second does not square A.
     """
 
     system: System
@@ -142,7 +137,7 @@ class OfRows:
         return self.first.sign * self.pairs.sign * (1 if self.second is None else self.second.sign)
 
     def forward(self, r: Array) -> tuple[Array, Array]:
-        """The core's right-hand side; the unknowns for k = 0."""
+        """See `OfPairs`."""
         structure, mu = self.system.of.structure, 1.0 - self.system.lam
         r1, r2, r3, r4 = self.pairs.rows.split(r)
         v, force, d1 = self.first.known(r2)
@@ -184,10 +179,7 @@ class OfRows:
 
 
 def factor_rows(system: System, border: Array) -> BorderedSystem:
-    """The bordered system of the KKT homotopy, by a core of order n + 1, or 2n + 1 where that loses digits.
-
-    `refine` and `SingularError` as in `factor_pairs`.
-    """
+    """The bordered system of the KKT homotopy; see `factor_pairs`."""
     homotopy, (_, _, p, q, _) = system.of, system.parts
     rows, structure, n, m = homotopy.rows, homotopy.structure, homotopy.n, homotopy.rows.sides.index.size
     z1, gap, factor, rest = p[:m], q[:m], p[m : m + n], q[m : m + n]
@@ -221,7 +213,6 @@ def _or_none(make: Callable[[], Core]) -> Core | None:
 def _refining(
     system: System, border: Array, quick: Core | None, robust: Callable[[], Core], coefficients: Array
 ) -> BorderedSystem:
-    """Both cores with corrections, or without `refine` the quick core."""
     if quick is not None and not system.of.refine:
         return quick
     found = CoreSystem(system.apply, border, system.sizes, coefficients, quick, robust)

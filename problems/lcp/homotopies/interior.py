@@ -1,8 +1,8 @@
 """The common form of the homotopies: rows blend two ends, products of pairs fade with lambda.
 
-    ((1 - lam) goal + lam origin,  p q + plain - lam c)
+    ((1 - lam) goal + lam origin, p q + plain - lam c)
 
-`parts` defines goal, origin, p, q, plain, affine in u = (y, lam). Inside, p and q keep their signs.
+`parts` defines goal, origin, p, q and plain, affine in u = (y, lam).
 """
 
 from __future__ import annotations
@@ -23,21 +23,19 @@ from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
 Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
-"""(goal, origin, p, q, plain) at a point; without constants, of a direction."""
+"""(goal, origin, p, q, plain) at a point; without constants for a direction."""
 
 LARGEST_FALL = 1e-3
-"""Largest fall of a scale per step, so that ends at zero have a metric."""
+"""Largest fall of a scale per step: ends at zero need a metric."""
 
 
 @frozen
 class RelativeMetric:
-    """The mean square of relative changes plus the parameter's squared change.
+    """The mean square of relative changes, plus the parameter's.
 
-    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n; a sum takes a
-    tenth more steps.
-
-    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,), default zero: Bounds of the first n unknowns. Their
-    scale is the distance from the nearer bound, or without bounds their size, at least `unit`.
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n. The scale of the
+    first n unknowns is the distance from the nearer bound (`lower`, `upper`, default zero), or without bounds their
+    size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -69,7 +67,6 @@ class OwnMetric:
     """A homotopy's metric; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
-        """`own_metric`; on the class, an LCP's."""
         return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 
@@ -84,11 +81,11 @@ class System:
 
     @classmethod
     def at(cls, homotopy: Any, y: Array, lam: float) -> System:
-        """That of a homotopy; nothing in it follows a caller that goes on to change its y in place."""
+        """H' of a homotopy at a point; y is copied."""
         return cls(homotopy, y.copy(), lam, homotopy.parts(y.copy(), lam))
 
     def apply(self, v: Array) -> Array:
-        """H' v, one shorter than v."""
+        """H' v."""
         (goal, origin, p, q, _), l = self.parts, v[-1]
         to_goal, to_origin, dp, dq, plain = self.of.parts(v[:-1], l, 0.0)
         rows = (1.0 - self.lam) * to_goal + self.lam * to_origin + (origin - goal) * l
@@ -108,12 +105,12 @@ class System:
 
 @define(eq=False)
 class Recent:
-    """The system at the last point, for many products there."""
+    """The system at the last point."""
 
     found: tuple[bytes, float, System] | None = None
 
     def at(self, homotopy: Any, y: Array, lam: float) -> System:
-        """The system at a point."""
+        """H' at a point."""
         found, entries = self.found, y.tobytes()
         if found is None or found[:2] != (entries, lam):
             self.found = found = entries, lam, System.at(homotopy, y, lam)
@@ -122,28 +119,28 @@ class Recent:
 
 @quiet
 def residual(self: Any, y: Array, lam: float) -> Array:
-    """H, of the shape of y."""
+    """The residual H(y, lam)."""
     goal, origin, p, q, plain = self.parts(y, lam)
     return np.concatenate([(1.0 - lam) * goal + lam * origin, p * q + plain - lam * self.c])
 
 
 def jacobian(self: Any, y: Array, lam: float) -> tuple[Matrix, Array]:
-    """(H_y, H_lam) in full, sparse as A is: for reference, the engine uses `bordered`."""
+    """(H_y, H_lam) in full, for reference."""
     return in_full(System.at(self, y, lam).apply, y.size, self.problem.sparse)
 
 
 @quiet
 def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
-    """H' v, one shorter than v."""
+    """H' v."""
     system: System = self._recent.at(self, y, lam)
     return system.apply(v)
 
 
 @quiet
 def taylor(self: Any, point: Linearization, order: int) -> Array:
-    """Coefficients of the path in the pseudo-arclength of `point`, one a row.
+    """Taylor coefficients in the pseudo-arclength of `point`, one a row.
 
-    H is quadratic: each takes one solve and two products with A (Cochelin's asymptotic numerical method).
+    Each takes one solve and two products with A (Cochelin's asymptotic numerical method).
     """
     n, size = self.n, point.u.size - 1
     c = np.zeros((order + 1, size + 1))
@@ -158,12 +155,12 @@ def taylor(self: Any, point: Linearization, order: int) -> Array:
 
 
 def proof_engine(self: Any) -> ByProducts:
-    """H as affine parts and one product of them, for proofs of paths."""
+    """The form of H for proofs of paths."""
     return ByProducts(form(self))
 
 
 def certify_end(self: Any, y: Array) -> str:
-    """A sentence on the exact solution at x, where there is one.
+    """A sentence on the exact solution near x, or "".
 
     Parameters
     ----------
@@ -174,7 +171,7 @@ def certify_end(self: Any, y: Array) -> str:
 
 
 def max_step(self: Any, u: Array, v: Array) -> float:
-    """How far along v, or inf, until a factor of the pairs vanishes; lambda itself is free."""
+    """How far along v a factor of the pairs vanishes, or inf."""
     factors, changes = np.array([self.parts(u[:-1], u[-1])[2:4], self.parts(v[:-1], v[-1], 0.0)[2:4]]) * self.signs
     falling = changes < 0.0
     if not falling.any():
@@ -184,7 +181,7 @@ def max_step(self: Any, u: Array, v: Array) -> float:
 
 
 def observe(self: Any, y: Array, lam: float) -> dict[str, float]:
-    """The natural residual and the gap x'w at x; with bounds x the distance to that to which w_i points."""
+    """The natural residual and the gap x'w at x; with bounds, distances replace x."""
     problem, x = self.problem, y[: self.n]
     w = problem.w(x)
     distance = np.where(w > 0.0, x - problem.lower, x - problem.upper)

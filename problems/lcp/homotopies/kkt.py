@@ -21,9 +21,9 @@ from problems.lcp.homotopies.starts import Start, kkt_start, natural_units, requ
 from problems.options import quiet
 
 GIVE = 0.1
-"""Relaxation of an equation by its multiplier at lambda = 1, in natural units.
+"""Relaxation of equations at lambda = 1, in natural units.
 
-On 48 monotone problems (n = 10, 50) paths take 32 factorisations; 34 with 0.01, 36 with 1, 54 with 10.
+On 48 monotone problems paths take 32 factorisations; 34 with 0.01, 36 with 1.
 """
 
 
@@ -52,20 +52,20 @@ class KKTHomotopy:
     Parameters
     ----------
     problem : MixedLCP
-        Dense, sparse or, as sparse, banded.
+        Dense or sparse.
     x0 : array_like, shape (n,), optional
         Between the bounds; may be infeasible. Default: `default_start`.
     z1, z2 : array_like, optional
-        Multipliers. z1: positive, one per finite bound, lower ones first. z2, of shape (n,): positive; for an upper
-        bound alone negative; in a box between 0 and up - low. Default for an LCP: ones for a given, strictly feasible
-        x0 (the paper's start), else equal products x0 z1 and w0 z2.
+        Multipliers. z1 is positive, one per finite bound, lower ones first. z2, of shape (n,), is positive; for an
+        upper bound alone negative; in a box below up - low. Default for an LCP: ones for a given, strictly feasible x0
+        (the paper's start), else equal products x0 z1 and w0 z2.
     w0 : array_like, optional
         Positive, one per finite bound: |w|, in a box s and t. Default for an LCP: A x0 + q if positive (the paper's
         start), else max(A x0 + q, 0) + max |q|.
     structure : Structure, optional
         Shared between starts.
     refine : bool
-        Whether bordered solves are corrected to round-off. False takes a third less time and suits loose tolerances.
+        Whether solves are corrected to round-off; if not, paths take a third less time.
 
     Raises
     ------
@@ -116,7 +116,7 @@ class KKTHomotopy:
 
     @cached_property
     def n(self) -> int:
-        """The order of A; y has 3n components for an LCP."""
+        """The order of A."""
         return self.problem.n
 
     @cached_property
@@ -151,7 +151,7 @@ class KKTHomotopy:
 
     @cached_property
     def c(self) -> Array:
-        """The starting products of all pairs, zero without a bound."""
+        """The starting products of pairs, zero without a bound."""
         _, _, p, q, _ = self.parts(*self.start())
         return np.where(self.signs == 0.0, 0.0, p * q)
 
@@ -173,7 +173,7 @@ class KKTHomotopy:
         return self.rows.sides.force(self.origin.w0) - self.problem.w(self.origin.x0)
 
     def start(self) -> tuple[Array, float]:
-        """(x0, z1, z2, t0) and 1; t0 is w0 at boxes' upper bounds."""
+        """(x0, z1, z2, t0) and 1."""
         sides = self.rows.sides
         t0 = self.origin.w0[sides.low.size :][np.isin(sides.high, self.rows.boxed)]
         return np.concatenate([self.origin.x0, self.origin.z1, self.origin.z2, t0]), 1.0
@@ -206,14 +206,14 @@ class KKTHomotopy:
         return self.rows.split(y)
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Stationarity and x - x0; factors z1, z2, up - low - z2, and distances, w, t.
+        """The `interior.Parts` of H.
 
         Parameters
         ----------
         y : ndarray
         lam : float
         one : float
-            1 at a point; 0 for a direction, of which constants are no part.
+            0 leaves out constants, for a direction.
         """
         rows, start = self.rows, self.origin
         n, m, k = rows.ends
@@ -222,7 +222,7 @@ class KKTHomotopy:
             w, origin, gaps = self.problem.w(x), x - start.x0, rows.sides.gaps(x)
             turned = self.structure.transpose @ (x - rows.end - z2)
         else:
-            # `@` takes four times as long for few unknowns.
+            # `@` takes four times as long.
             w, origin, gaps = self.problem.A.dot(x), x, rows.sides.pull(x)
             turned = self.structure.transpose.dot(x - z2)
         goal = w + turned - rows.sides.force(z1)
@@ -239,14 +239,13 @@ class KKTHomotopy:
         return goal, origin, p, q, plain
 
     def rounded(self) -> tuple[str, Array, Array]:
-        """The end of the rows that is exact in floats; the other's term sizes, by x and constant."""
+        """The end of the rows that is exact in floats, and the other's term sizes."""
         A = self.problem.A.toarray() if self.problem.sparse else self.problem.A
-        # Sums count as eight terms; A'end has n.
         end = np.abs(A.T) @ np.abs(np.broadcast_to(self.rows.end, self.n))
         return "origin", np.abs(A) + np.abs(A.T), np.abs(self.problem.q) + end * (1.0 + self.n / 4.0)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix; see `elimination`."""
+        """Factor the bordered matrix."""
         # Callers may change their border.
         return factor_rows(System.at(self, y, lam), border.copy())

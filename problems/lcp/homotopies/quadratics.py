@@ -12,14 +12,14 @@ from problems.lcp.proof.certificate import certify, certify_exactly
 from problems.lcp.quadratic.form import Affine, Quadratic
 
 END_DISTANCE = 1e-6
-"""Largest distance, relative to x, of a path's end from its exact solution."""
+"""Largest distance of a path's end from its exact solution, relative to x."""
 
 NO_SOLUTION = 1e-2
-"""Relative residual above which no solution is so near: the rational test is skipped."""
+"""Relative residual above which the rational test is skipped."""
 
 
 def exact_end(problem: MixedLCP, x: Array) -> str:
-    """The sentence proved of a path's end x in rational arithmetic, or ""."""
+    """The sentence on the exact solution near x, or ""."""
     # A row may consist of vanishing components.
     if min(certify(problem, x, zero).relative_residual for zero in (0.0, END_DISTANCE)) > NO_SOLUTION:
         return ""
@@ -35,7 +35,7 @@ def exact_end(problem: MixedLCP, x: Array) -> str:
 
 
 def form(homotopy: Any) -> Quadratic:
-    """Of the rows one end exactly, and times lambda, or lambda - 1, the difference of the two; and the pairs."""
+    """The affine parts and the product of H."""
     c, n = homotopy.c, homotopy.n
     size = n + c.size
     parts = [homotopy.parts(unit[:-1], unit[-1], 0.0) for unit in np.eye(size + 1)]

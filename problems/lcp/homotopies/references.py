@@ -7,7 +7,6 @@ DUTTA_DAS_JANA = """@misc{DuttaDasJana,
   title = {Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems},
 }"""
 
-# The source gives only name and matrix class of these four.
 YU = """@misc{Yu2006,
   author = {Yu and others},
   year = {2006},

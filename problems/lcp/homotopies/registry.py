@@ -27,9 +27,8 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 class Registered:
     """One homotopy.
 
-    `title`: For tables. `sentence`: For help. `make`: (problem, x0 or None, structure=...) to the homotopy. `feasible`:
-    Whether its default start is strictly feasible. `example`: A paper example it solves. `bounds`: Whether it takes
-    bounds.
+    `feasible`: whether its default start is strictly feasible. `example`: a paper example it solves. `bounds`: whether
+    it takes bounds.
     """
 
     name: str
@@ -78,4 +77,4 @@ HOMOTOPIES: Mapping[str, Registered] = {
         ),
     )
 }  # fmt: skip
-"""By name. Each needs an entry point in pyproject.toml; a test compares both."""
+"""A test compares these with the entry points."""

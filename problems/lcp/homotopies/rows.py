@@ -62,14 +62,14 @@ class Rows:
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """Multiplier ranges: [0, inf), for an upper bound alone (-inf, 0], in a box [0, u - l]."""
+        """Multiplier ranges."""
         lower = np.where((self.signs < 0.0) | self.free, -np.inf, 0.0)
         upper = np.where(self.signs < 0.0, 0.0, np.inf)
         upper[self.boxed] = self.width
         return lower, upper
 
     def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """The blocks x, z1, z2 and t of y, or of increments of it, as views."""
+        """The blocks x, z1, z2 and t of y, as views."""
         n, m, k = self.ends
         return y[:n], y[n:m], y[m:k], y[k:]
 
@@ -81,7 +81,7 @@ class Rows:
 
     @property
     def size(self) -> int:
-        """How many unknowns there are: 3 an index with one bound, 5 one with two, 2 one with none."""
+        """The number of unknowns: 3 for an index with one bound, 5 with two, 2 without."""
         return self.ends[2] + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
@@ -108,9 +108,8 @@ class RowPairs:
 
     @classmethod
     def of_boxes(cls, rows: Rows, factor: Array, rest: Array, above: Array, t: Array) -> RowPairs:
-        """Eliminate the unknown with the larger coefficient in boxes.
-
-        Rows are ``factor (dw + dt) + rest dz``; `above` is u - l - z in boxes.
+        """Eliminate the unknown with the larger coefficient of rows ``factor (dw + dt) + rest dz`` in boxes; `above` is
+        u - l - z.
         """
         boxed = rows.boxed
         if not boxed.size:
@@ -121,7 +120,7 @@ class RowPairs:
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant eliminated in boxes."""
+        """See `Pairs.sign`."""
         return 1 if self.inner is None else self.inner.sign
 
     @cached_property

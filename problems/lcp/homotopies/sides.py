@@ -1,7 +1,6 @@
-"""The pairs of a problem with bounds: each finite bound, lower ones first, has a force y and a distance, of product
-lambda c.
+"""The pairs of a problem with bounds.
 
-Both forces of a box act on one row, w = s - t.
+Each finite bound, lower ones first, has a force y and a distance, whose product is lambda c. In a box w = s - t.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ class Sides:
 
     @cached_property
     def free(self) -> int | Array:
-        """1 without bounds, else 0: shape (n,), or 0 if all have one."""
+        """1 without bounds, else 0; shape (n,), or 0 if all have one."""
         free = np.bincount(self.index, minlength=self.problem.n) == 0
         return 1.0 * free if free.any() else 0
 
@@ -60,11 +59,11 @@ class Sides:
         return v if self.problem.standard else self.sign * v[..., self.index]
 
     def force(self, y: Array) -> Array:
-        """The forces on the rows, s - t, shape (n,)."""
+        """The forces s - t on rows, shape (n,)."""
         return y if self.problem.standard else self._summed(self.sign * y)
 
     def _summed(self, values: Array) -> Array:
-        # bincount of nothing gives integers; interval arrays must pass.
+        # bincount of nothing gives integers.
         return np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
 
     def eliminated(self, y: Array, gap: Array, larger: bool) -> Pairs | BoundPairs:
@@ -77,7 +76,6 @@ class Sides:
             steepest = np.full(n, -np.inf)
             np.maximum.at(steepest, self.index, ratio)
             main = (ratio > 1.0) & (ratio == steepest[self.index]) & larger
-            # The lower bound wins ties.
             first = main & (self.sign > 0.0)
             main &= first | ~(self._summed(first * 1.0) > 0.0)[self.index]
             swapped = self._summed(main * 1.0)
@@ -108,7 +106,7 @@ class BoundPairs:
     total: Array
 
     def known(self, t: Array) -> tuple[Array, Array, Array]:
-        """Contributions of t to dx, to forces on rows, and to dy."""
+        """See `Pairs.known`."""
         sides = self.sides
         v = sides._summed(self.into_v * t)
         dy = self.inverse * t - self.slope * sides.pull(v)

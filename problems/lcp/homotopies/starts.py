@@ -21,19 +21,14 @@ from problems.options import finite_vector
 START_DISTANCES = (1.0, 2.5)
 """Decimal exponents of random starts' distances, in natural units or `typical_units`.
 
-Near starts solve several times fewer nonmonotone problems, unless A >= 0 (docs/lcp_benchmark.md). From 1 to 1.5 or
-further 17 of 70 paths of hard problems (n = 100) solve, from 0.5 to 1 11, from 0 to 0.5 4.
+Of 70 paths of hard problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1.
 """
 
 LOG_DEVIATION = 0.5
-"""Standard deviation of the components' natural logarithms; with 0 or 1 half as many paths solve."""
+"""Standard deviation of the logarithms; with 0 or 1 half as many paths solve."""
 
 BALANCE = (0.05, 0.1)
-"""Mean and standard deviation of log10 of the products w z2 over x z1.
-
-If both are equal, a central point (x_i w_i equal, z1 = w, z2 = x) lies on the path. With ratios of 4 or 1/4 hardly any
-path solves.
-"""
+"""Mean and standard deviation of log10 of w z2 over x z1: with ratios of 4 or 1/4 hardly any path solves."""
 
 
 @frozen(eq=False)
@@ -55,7 +50,7 @@ class Start:
 
 
 def positive_vector(name: str, value: Any, n: int) -> Array:
-    """`value` as n positive finite floats; a `ValueError` names it otherwise."""
+    """`value` as n positive finite floats, or `ValueError`."""
     array = finite_vector(name, value)
     if array.size != n:
         raise ValueError(f"{name}: expected {n} positive numbers, found shape {array.shape}")
@@ -67,7 +62,7 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
 
 
 def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array, Array] | None = None) -> Array:
-    """`value` as n finite floats strictly between `bounds`, by default the problem's."""
+    """`value` as n finite floats strictly between `bounds`, or `ValueError`."""
     if problem.standard:
         return positive_vector(name, value, problem.n)
     array = finite_vector(name, value, problem.n)
@@ -81,7 +76,7 @@ def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array,
 
 
 def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
-    """The point nearest to zero at a distance from all bounds, or midway between closer ones."""
+    """The point nearest to zero at a distance from all bounds, or midway between close ones."""
     if problem.standard:
         return np.full(problem.n, distance)
     # Halves avoid overflow.
@@ -90,21 +85,20 @@ def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
 
 
 def natural_units(problem: MixedLCP) -> tuple[float, float]:
-    """Sizes of x and w that balance Ax and q: |q|_inf over A's largest row norm, and |q|_inf; zeros count as one."""
+    """Sizes of x and w: |q|_inf over A's largest row norm, and |q|_inf; zeros count as one."""
     return _units(problem, np.max)
 
 
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
-    """`natural_units` with the root-mean-square row norm, which outliers hardly change.
+    """`natural_units` with the root-mean-square row norm.
 
-    KKT paths from here solve 18 of 40 piles of bodies (n = 44 to 520) in 34 s, from natural units 17 in 39 s; 22
-    monotone problems take 294 and 276 factorisations.
+    KKT paths from here solve 18 of 40 piles of bodies, from natural units 17.
     """
     return _units(problem, np.mean)
 
 
 def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, float]:
-    # Squares may overflow; a power of two is exact.
+    # Squares may overflow.
     unit = 2.0 ** (math.frexp(largest_entries(problem)[1])[1] - 1)
     A = problem.A / unit
     row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
@@ -113,10 +107,7 @@ def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, f
 
 
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
-    """The start with equal products x0 z1 and w0 z2, the geometric mean of the x0_i w0_j.
-
-    With bounds x0 stands for the distances.
-    """
+    """The start with equal products x0 z1 and w0 z2; with bounds x0 stands for the distances."""
     gaps = Sides(problem).gaps(x0)
     product = _product(gaps, w0)
     return Start(x0, product / gaps, _row_multipliers(problem, x0, product, w0), w0)
@@ -127,7 +118,6 @@ def _product(gaps: Array, w0: Array) -> float:
 
 
 def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) -> Array:
-    """Multipliers whose products with w0 equal `product`, or each other in a box."""
     if problem.standard:
         return product / w0
     sides, z = Sides(problem), x0.copy()
@@ -135,7 +125,6 @@ def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) ->
     s[sides.low], t[sides.high] = w0[: sides.low.size], w0[sides.low.size :]
     alone, above, both = (s > 0.0) & (t == 0.0), (s == 0.0) & (t > 0.0), (s > 0.0) & (t > 0.0)
     z[alone], z[above] = product / s[alone], -product / t[above]
-    # Halves avoid overflow.
     z[both] = (0.5 * problem.upper[both] - 0.5 * problem.lower[both]) * (t[both] / (0.5 * s[both] + 0.5 * t[both]))
     return z
 
@@ -152,10 +141,7 @@ def default_start(problem: MixedLCP) -> Start:
 
 
 def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
-    """The centred start at x0, feasible if possible; in boxes z2 = x0 - l.
-
-    With s - t = w there 24 monotone problems take a tenth more factorisations.
-    """
+    """The centred start at x0, feasible if possible; in boxes z2 = x0 - l."""
     sides = Sides(problem)
     w0, gaps = sides.pull(problem.w(x0)), sides.gaps(x0)
     if not (w0 > 0.0).all():
@@ -165,10 +151,10 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
 
 
 def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
-    """A start of random scale, balance and components; all products x0 z1 are equal, and all w0 z2.
+    """A start of random scale, balance and components, with equal products x0 z1, and w0 z2.
 
-    The scale is a power of ten in natural units, without bounds in twice typical units: with these 36 of 100 paths of
-    Gaussian problems (n = 100) solve, 30 in typical, 28 in natural units.
+    The scale is a power of ten in natural units, without bounds in twice typical units: 36 of 100 paths of Gaussian
+    problems (n = 100) then solve, 28 in natural units.
 
     Parameters
     ----------
@@ -192,7 +178,6 @@ def random_start(problem: MixedLCP, generator: np.random.Generator) -> Start:
 
 
 def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, w: float) -> Start:
-    """A random start with bounds."""
     normal = generator.standard_normal((2, problem.n))
     x0 = inside_start(problem, x) + np.where(np.isinf(problem.lower) & np.isinf(problem.upper), x * normal[0], 0.0)
     rows, forces = problem.w(x0), []
@@ -203,7 +188,7 @@ def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, 
 
 
 def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
-    """The given vectors, checked, with defaults of `KKTHomotopy`."""
+    """The given vectors, checked, with defaults."""
     rows = Rows(problem)
     bounds = rows.sides.index.size
     given = {
@@ -244,13 +229,13 @@ def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
 
 
 def made_of_x0(y0: Array) -> Array:
-    """y0, computed from x0; ValueError if not finite."""
+    """y0, or ValueError if it is not finite."""
     if not np.isfinite(y0).all():
         raise ValueError(f"x0: expected numbers from which a finite y0 comes (or give y0 > 0), found {y0.max()} in it")
     return y0
 
 
 def given_inside(problem: MixedLCP, x0: Any) -> Array:
-    """x0, checked to lie between the bounds; by default one from them."""
+    """x0, checked to lie between the bounds, or a default."""
     require_interior(problem)
     return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)

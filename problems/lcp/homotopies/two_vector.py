@@ -1,4 +1,4 @@
-"""The homotopies in (x, y) of Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno."""
+"""The homotopies in (x, y)."""
 
 from __future__ import annotations
 
@@ -22,10 +22,7 @@ from problems.options import quiet
 
 @frozen(kw_only=True)
 class Blend:
-    """``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]`` with these x_, y_, A_.
-
-    With bounds y is s - t.
-    """
+    """H1 = ``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]``"""
 
     sign: int
     x: int | Array = 0
@@ -33,7 +30,7 @@ class Blend:
     A: int = 0
 
     def slopes(self, lam: float) -> tuple[float, float | Array, float]:
-        """Alpha, beta, gamma: [...] has derivatives alpha A + beta I by x, -gamma I by y."""
+        """Alpha, beta, gamma: H1 has derivatives alpha A + beta I by x, -gamma I by y."""
         return 1.0 - lam + lam * self.A, lam * self.x, 1.0 - lam + lam * self.y
 
 
@@ -44,15 +41,14 @@ class TwoVectorHomotopy:
     With bounds y is s - t, ``s(x-l) = lambda s0(x0-l)`` for finite l, ``t(u-x) = lambda t0(u-x0)`` for finite u; the
     unknowns are (x, s, t).
 
-    `YuHomotopy` and the other four functions make it. A path that reaches lambda = 0 ends at a solution; others
-    diverge.
+    A path that reaches lambda = 0 ends at a solution; others diverge.
 
     Attributes
     ----------
     name : str
     problem : MixedLCP
     blend : Blend
-        The coefficients in which the five differ.
+        Its coefficients.
     x0, y0 : Array
         The start: x0 between the bounds, y0 positive, one per finite bound.
     references : tuple of str
@@ -104,7 +100,7 @@ class TwoVectorHomotopy:
 
     @cached_property
     def c(self) -> Array:
-        """Distances times y at the start; shape (n,) for an LCP."""
+        """Distances times y at the start."""
         return self.sides.gaps(self.x0) * self.y0
 
     def start(self) -> tuple[Array, float]:
@@ -112,7 +108,7 @@ class TwoVectorHomotopy:
         return np.concatenate([self.x0, self.y0]), 1.0
 
     def at_solution(self, x: Array) -> Array:
-        """The zero (x, y) of H at lambda = 0 for a solution.
+        """The zero of H at lambda = 0 for a solution.
 
         Parameters
         ----------
@@ -122,14 +118,14 @@ class TwoVectorHomotopy:
         return np.concatenate([x, forces])
 
     def parts(self, y: Array, lam: float, one: float = 1.0) -> Parts:
-        """Ax + q - y and its blend at lambda = 1; factors y and distances.
+        """The `interior.Parts` of H.
 
         Parameters
         ----------
         y : ndarray
         lam : float
         one : float
-            1 at a point; 0 for a direction, of which constants are no part.
+            0 leaves out constants, for a direction.
         """
         n, blend, sides = self.n, self.blend, self.sides
         x, y = y[:n], y[n:]
@@ -143,16 +139,15 @@ class TwoVectorHomotopy:
         return blend.sign * (w - sides.force(y)), blend.sign * origin, y, gaps, 0.0
 
     def rounded(self) -> tuple[str, Array, Array]:
-        """The end of the rows that is exact in floats; the other's term sizes, by x and constant."""
+        """See `KKTHomotopy.rounded`."""
         A, blend = self.problem.A.toarray() if self.problem.sparse else self.problem.A, self.blend
         by_x = np.abs(blend.x) * np.eye(self.n) + abs(blend.A) * np.abs(A)
-        # Sums count as eight terms; A x0 and forces have more.
         constants = by_x @ np.abs(self.x0) + abs(blend.y) * np.bincount(self.sides.index, self.y0, self.n)
         return "goal", by_x, constants * (1.0 + (self.n + self.y0.size) / 4.0)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix; see `factor_pairs`."""
+        """Factor the bordered matrix."""
         # Callers may change their border.
         return factor_pairs(System.at(self, y, lam), border.copy())
 
@@ -166,8 +161,7 @@ def YuHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; default ones, and 1/x0 (the published xy = le). With bounds x0 lies between them, y0 has one number
-        each.
+        Positive; default ones, and 1/x0. With bounds x0 lies between them, y0 has one number each.
     structure : Structure, optional
         Shared between starts.
 
@@ -186,8 +180,6 @@ def ZhaoHomotopy(
     problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
     """Zhao et al. 2010, for N-matrices: ``(1-l)(y-Ax-q) + l(x-x0)``, ``xy - l x0 y0``.
-
-    The reduced matrix (1-l)(A + diag(y/x)) - lI is indefinite even for positive definite A.
 
     Parameters
     ----------
@@ -211,7 +203,7 @@ def XuHomotopy(
 ) -> TwoVectorHomotopy:
     """Xu et al., for P-matrices: ``(1-l)(y-Ax-q) - l(x-x0)``, ``xy - l x0 y0``.
 
-    Yu's path for equal y0, with one sign changed and another default y0.
+    Yu's path for equal y0.
 
     Parameters
     ----------
@@ -235,8 +227,6 @@ def WangHomotopy(
 ) -> TwoVectorHomotopy:
     """Wang et al. 2010, for P*-matrices: ``(1-l)(Ax+q) - y + l y0``, ``xy - l x0 y0``.
 
-    `KojimaMegiddoMizunoHomotopy` differs by l A(x-x0).
-
     Parameters
     ----------
     problem : LCP
@@ -252,7 +242,7 @@ def WangHomotopy(
     """
     x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
-    # x - x0 keeps unbounded rows regular at lambda = 1.
+    # x - x0 keeps unbounded rows regular.
     return _made("Wang", problem, Blend(sign=1, x=sides.free, y=1), x0, y0, references.WANG, structure)
 
 
@@ -262,8 +252,7 @@ def KojimaMegiddoMizunoHomotopy(
     """Kojima, Megiddo and Mizuno 1993: ``Ax+q-y + l(y0 - A x0 - q)``, ``xy - l x0 y0``.
 
     The central path of infeasible interior-point methods. With (xy, y-Ax-q) = l(a, b) and b > 0 they prove convergence
-    for classes up to L*- and copositive-plus matrices. If y0 = A x0 + q > 0, the path is feasible. Han extended it to
-    tensors.
+    for classes up to L*- and copositive-plus matrices.
 
     Parameters
     ----------

@@ -44,27 +44,25 @@ def along(
     budget: Budget | None = None,
     archive: str | PathLike[str] | None = None,
 ) -> Path:
-    """Follow the solutions of a problem as q + t d moves with t: exact between kinks, and at kinks to round-off.
+    """Follow the solutions of a problem as q + t d moves with t.
 
-    t may turn back, or stand still while x moves. If up to ten switches vanish at once, all rays are found; pivots
-    choose the one to follow.
+    t may turn back, or stand still while x moves. If up to ten switches vanish at once, all rays are found.
 
     Parameters
     ----------
     problem : LCP or MixedLCP
-        A sparse matrix is made dense.
+        Sparse matrices become dense.
     d : array_like, shape (n,)
     t : (float, float)
         Start and end. From t = inf the path comes along a ray, if the point nearest to zero solves the problem for
-        large t, as with d > 0 (Lemke's method is ``t=(inf, 0)``). Towards inf or -inf it continues until a ray leads
-        away.
+        large t, as with d > 0 (Lemke's method). Towards inf or -inf it continues until a ray leads away.
     x : array_like, shape (n,), optional
         A solution for t[0]; default that of `solve`.
     ray : array_like, shape (n + 1,), optional
-        Direction of (x, t) that selects the nearest ray at the start; by default t goes towards its end.
+        Selects the nearest ray at the start, a direction of (x, t); by default t goes towards its end.
     level : array_like, shape (n,), or one number
         If positive, unknowns without bounds pay t level_i |x_i|, t >= 0, as in penalised regression: w_i = -t level_i
-        for x_i > 0, t level_i for x_i < 0, between them for x_i = 0.
+        for x_i > 0, t level_i for x_i < 0.
     budget : continuation.Budget, optional
         Default 100,000 kinks.
     archive : path, optional
@@ -74,17 +72,17 @@ def along(
     -------
     continuation.Path
         Its points are kinks and ends, its parameter t. ``path.kinks`` lists kinks with pairs that switch and rays;
-        ``path(t=0.5)`` is the first point with that t, ``path.crossings(t=0)`` are all.
+        ``path(t=0.5)`` is the first point with that t, ``path.crossings(t=0)`` gives all.
 
     Raises
     ------
     TypeError, ValueError
-        For bad input; if x does not solve the problem, or no ray comes from t = inf.
+        For bad input, or if x is no solution, or no ray comes from t = inf.
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.5; for levels Osborne, Presnell and
-    Turlach, "A new approach to variable selection in least squares problems", IMA J. Numer. Anal. 20, 2000.
+    Cottle, Pang and Stone, section 4.5; for levels Osborne, Presnell and
+    Turlach, IMA J. Numer. Anal. 20, 2000.
     """
     began = time.perf_counter()
     require_problem(problem)

@@ -12,8 +12,8 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from continuation.arrays import Array
 
 EXTENDED = 4096
-"""Largest block with residuals in extended precision, at 20 us. Kinks are then exact to round-off for any condition:
-10,000 integer problems (n <= 6) to 1e-14.
+"""Largest block with residuals in extended precision: kinks of 10,000 integer problems (n <= 6) are then exact to
+1e-14.
 """
 
 
@@ -25,7 +25,7 @@ class SingularBasisError(ValueError):
 class Basis:
     """A square block of [A, d] and its factors.
 
-    `rows`, `columns`, of shape (k,): Column n is that of t. `block`, of shape (n, k): All rows of the columns.
+    Column n is that of t; `block` holds all rows of the columns, shape (n, k).
     """
 
     rows: NDArray[np.intp]
@@ -35,7 +35,7 @@ class Basis:
 
     @classmethod
     def of(cls, rows: NDArray[np.intp], columns: NDArray[np.intp], block: Array) -> Self:
-        """Factor the block; raises `SingularBasisError` if singular."""
+        """Factor the block; raises `SingularBasisError`."""
         if not rows.size:
             return cls(rows, columns, block, (None, None))
         lu, pivots, singular = dgetrf(block[rows])
@@ -44,7 +44,7 @@ class Basis:
         return cls(rows, columns, block, (lu, pivots))
 
     def solve(self, right: Array) -> tuple[Array, Array]:
-        """Basic variables z, shape (k, m), with ``block z + right = 0`` on the rows, and the residual of all rows."""
+        """The z with ``block z + right = 0`` on the rows, shape (k, m), and the residual of all rows."""
         if not self.rows.size:
             return np.zeros((0, right.shape[1])), right
         block, fine = self.block, self.block.size <= EXTENDED
@@ -57,7 +57,7 @@ class Basis:
         return z, left
 
     def row_of_inverse(self, column: int) -> Array:
-        """The dependence of one basic variable on the rows, shape (k,)."""
+        """The dependence of one basic variable on the rows."""
         return self._inverse((self.columns == column).astype(float), transposed=1)
 
     def _inverse(self, right: Array, transposed: int = 0) -> Array:

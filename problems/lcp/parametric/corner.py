@@ -14,13 +14,11 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
-"""Most switches for which all 2^m pieces are tried (30 ms for ten; beyond, pivots find one ray), and largest order for
-all faces (0.1 s for ten).
-"""
+"""Most switches for which all 2^m pieces are tried (30 ms), and largest order for all faces (0.1 s)."""
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
-    """All rays, including that of arrival; the edges if they fill a cone; one ray of many switches, by Lemke's method.
+    """All rays, including that of arrival; a cone's edges; one ray of many switches, by Lemke's method.
 
     Parameters
     ----------
@@ -32,7 +30,6 @@ def rays(S: Array, r: Array) -> list[Ray]:
     if m > LARGEST_LISTED:
         grown = _a_solution(S, r)
         return [] if grown is None else [Ray(grown, 1.0)]
-    # Comparable units make zero recognisable.
     unit = np.maximum(np.abs(r), np.abs(S).max(axis=1))
     unit = np.where(unit > 0.0, unit, 1.0)
     whole = np.column_stack([S / unit[:, None], r / unit])
@@ -58,7 +55,6 @@ def rays(S: Array, r: Array) -> list[Ray]:
 
 
 def _edges(signs: Array) -> list[Array]:
-    """The edges of the cone ``signs @ c >= 0``."""
     dimension = signs.shape[1]
     if dimension == 0:
         return []
@@ -71,7 +67,6 @@ def _edges(signs: Array) -> list[Array]:
 
 
 def _a_solution(S: Array, r: Array) -> Array | None:
-    """A complementary v' >= 0 with ``S v' + r >= 0``, or None."""
     path = covering(LCP(S, r), np.ones(r.size))
     if path is None or path.run(PIVOTS_PER_SWITCH * r.size) is not Ended.REACHED:
         return None

@@ -40,11 +40,11 @@ class ExactPath:
     Attributes
     ----------
     points : tuple of tuples of Fraction
-        (x, t) of ends and kinks. All points on the segments between them are exact solutions.
+        (x, t) of ends and kinks; all points between them are exact solutions.
     pieces : tuple of tuples of int
         For each segment the state of every pair (-1, 0, 1: below, between, above its corners).
     single : bool
-        Whether no other path branches off: each segment is its piece's only line, and one pair switches at each kink.
+        Whether no other path branches off.
     """
 
     points: tuple[Exactly, ...]
@@ -58,7 +58,7 @@ class ExactPath:
 
 
 def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> ExactPath:
-    """Prove a path of `along` in rational arithmetic, for A, q and d exactly as stored.
+    """Prove a path of `along` in rational arithmetic.
 
     Parameters
     ----------
@@ -130,9 +130,7 @@ def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
 
 @frozen(eq=False)
 class _Exactly:
-    """Integers over 2^shift: `table` holds [A, d, q], `values` the stairs, 0 for infinity; `floats`, of shape (n, n +
-    2), is [A, d, q].
-    """
+    """Integers over 2^shift: `table` holds [A, d, q], `values` the stairs, with 0 for infinity."""
 
     stairs: Stairs
     floats: Array
@@ -163,7 +161,6 @@ class _Exactly:
         """The corner between two pieces where `tied` switch, or a point with one number held."""
         there = before != after
         there[list(tied)] = True
-        # Two pieces of a pair meet at its nearer corner.
         x, w = near[:-1], self.floats @ np.append(near, 1.0)
         corners = np.where(self.stairs.levels, w - near[-1] * self.stairs.corner_slope, x - self.stairs.corner_x)
         corner, at, rest = np.abs(corners).argmin(axis=0), np.flatnonzero(there), np.flatnonzero(~there)
@@ -183,13 +180,7 @@ class _Exactly:
         return whole
 
     def at_corners(self, state: State, point: Exactly, stretch: int) -> int:
-        """The number of pairs at corners of their graphs.
-
-        Raises
-        ------
-        UnprovenError
-            If the point is off the piece.
-        """
+        """The number of pairs at corners; raises `UnprovenError` if the point is off the piece."""
         unit, piece = lcm(*(value.denominator for value in point)), (state.astype(np.intp) + 1, np.arange(state.size))
         whole: Integers = np.array([int(value * unit) for value in point] + [unit], dtype=object)
         x, w, moves_x = whole[:-2] * (1 << self.shift), self.table @ whole, self.stairs.moves_x[piece]

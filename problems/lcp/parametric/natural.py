@@ -16,7 +16,7 @@ from problems.lcp.parametric.stairs import Stairs
 class NaturalMap:
     """x - mid(lower, x - w, upper), w = Ax + q + t d; for a level, w + mid(-t level, x - w, t level).
 
-    `d`, `level`, of shape (n,), as for `along`; `begin`, of shape (n + 1,), on the path.
+    `d` and `level` are as for `along`; `begin`, of shape (n + 1,), is on the path.
     """
 
     problem: MixedLCP
@@ -29,7 +29,7 @@ class NaturalMap:
         return self.begin[:-1], float(self.begin[-1])
 
     def residual(self, y: Array, lam: float) -> Array:
-        """Zero on the path, shape (n,) like y."""
+        """Zero on the path, shape (n,)."""
         found: Array = self.residuals(np.append(y, lam)[None])[0]
         return found
 
@@ -48,7 +48,7 @@ class NaturalMap:
         return off[np.isfinite(stairs.corner_x)]
 
     def piece(self, signs: Array) -> Homotopy:
-        """The linear equations of the piece with these signs."""
+        """The linear homotopy of the piece with these signs."""
         stairs = Stairs.of(self.problem, self.level)
         side = np.zeros(stairs.corner_x.shape)
         side[np.isfinite(stairs.corner_x)] = signs

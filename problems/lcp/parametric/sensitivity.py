@@ -16,7 +16,7 @@ from problems.lcp.parametric.corner import rays
 from problems.options import finite_vector, real_array
 
 BIACTIVE = 1e-10
-"""Relative to its row's terms, |w_i| up to this is zero and x_i at its bound, as in certificates of `solve`."""
+"""Smaller |w_i|, relative to its row's terms, is zero."""
 
 
 class NotDifferentiableError(ValueError):
@@ -32,8 +32,7 @@ class Gradient:
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether biactive indices exist. The derivative holds them at their bounds, as an element of the generalised
-        Jacobian.
+        Whether biactive indices exist, which the derivative holds at their bounds.
     """
 
     q: Array
@@ -90,8 +89,7 @@ class Sensitivity:
 
         References
         ----------
-        Cottle, Pang and Stone, section 7.4; Robinson, "Strongly regular generalized equations", Math. Oper. Res. 5,
-        1980.
+        Cottle, Pang and Stone, section 7.4; Robinson, Math. Oper. Res. 5, 1980.
         """
         n, inside, at = self.x.size, self.moving, self.biactive
         moved = np.zeros(n) if dq is None else finite_vector("dq", dq, n)
@@ -133,7 +131,6 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
     ----------
     problem : LCP or MixedLCP
     x : ndarray, shape (n,)
-        A solution.
 
     Raises
     ------

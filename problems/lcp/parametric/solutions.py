@@ -31,9 +31,7 @@ SAME_SOLUTION = 1e-7
 """Relative difference up to which solutions are equal."""
 
 IN_VAIN = 30
-"""Directions in a row without a new solution, at least twice the number found, that end the search. 10 suffice for all
-31 equilibria of the coordination game m = 5.
-"""
+"""Directions in a row without a new solution, at least twice the number found, that end the search."""
 
 CORNERS_A_PATH = 50
 """Longest path, in kinks per unknown."""
@@ -47,7 +45,6 @@ class Solutions:
     ----------
     problem : MixedLCP
     certificates : tuple of Certificate
-        One per solution.
     complete : bool
         Whether these are all solutions, by an exact test.
     paths : int
@@ -86,9 +83,9 @@ def solutions(
 ) -> Solutions:
     """Find several solutions of an LCP(q, A), with or without bounds.
 
-    For order ten or less each complementary face of an LCP is solved exactly, which finds all solutions, unless a face
-    holds a continuum. Otherwise paths of q + t d, for random d, start from known solutions; each crossing of t = 0 is a
-    solution. All are certified.
+    Up to order ten each complementary face of an LCP is solved exactly, which finds all solutions, unless a face holds
+    a continuum. Otherwise paths of q + t d, for random d, start from known solutions; each crossing of t = 0 is a
+    solution.
 
     Parameters
     ----------
@@ -100,8 +97,7 @@ def solutions(
     seed : int
         Seed of the directions d.
     budget : continuation.Budget, optional
-        Its steps limit the kinks of all paths, by default 200,000. The search ends after 30 directions in a row, at
-        least twice the number of solutions, without a new one.
+        Its steps limit the kinks of all paths, by default 200,000.
     tolerance : float
         As for `solve`.
 
@@ -112,12 +108,11 @@ def solutions(
     Raises
     ------
     TypeError, ValueError
-        For bad input, or if a point of `known` is no solution.
+        For bad input, or a wrong point in `known`.
 
     References
     ----------
-    Cottle, Pang and Stone, section 4.5; for games, Shapley, "A note on the Lemke-Howson algorithm", Math. Programming
-    Study 1, 1974.
+    Cottle, Pang and Stone, section 4.5; for games, Shapley, Math. Programming Study 1, 1974.
     """
     require_problem(problem)
     check_tolerance(tolerance)
@@ -155,8 +150,6 @@ def _on_faces(problem: LCP, tolerance: float) -> Solutions:
 
 @define(eq=False)
 class _Search:
-    """The search for solutions."""
-
     structure: Structure
     tolerance: float
     random: np.random.Generator

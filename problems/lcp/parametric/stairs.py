@@ -1,4 +1,4 @@
-"""The graph of each pair (x_i, w_i): up to three pieces that meet at two corners.
+"""The graph of each pair (x_i, w_i): up to three pieces.
 
 A bound fixes x_i on outer pieces and w_i between; a level fixes x_i = 0 between, and w_i outside.
 """
@@ -21,10 +21,9 @@ Mask = NDArray[np.bool_]
 class Stairs:
     """Fixed values and limits, by state (row state + 1) and index.
 
-    `moves_x`, of shape (3, n): Whether x_i moves and w_i is fixed, or vice versa. `values`, of shape (6, 3, n): The
-    fixed value is ``values[0] + t values[1]``, the limits are ``values[2] + t values[4]`` and ``values[3] + t
-    values[5]``. `levels`, of shape (n,): Whether outer pieces fix w_i. `corner_x`, `corner_slope`, of shape (2, n):
-    Corners, infinite if absent, with w_i = ``t corner_slope``.
+    `moves_x`: whether x_i moves and w_i is fixed, or vice versa. The fixed value is ``values[0] + t values[1]``, the
+    limits are ``values[2] + t values[4]`` and ``values[3] + t values[5]``. `levels`: whether outer pieces fix w_i.
+    Corners, infinite if absent, have w_i = ``t corner_slope``.
     """
 
     moves_x: Mask
@@ -35,13 +34,12 @@ class Stairs:
 
     @classmethod
     def of(cls, problem: MixedLCP, level: Array) -> Self:
-        """The graphs of a problem; `level`, of shape (n,), is zero at bounds."""
+        """The graphs; `level` is zero at bounds."""
         n = problem.n
         levels = level > 0.0
         corner_x = np.array([np.where(levels, 0.0, problem.lower), np.where(levels, 0.0, problem.upper)])
         slope = np.array([level, -level])
         zero, infinite = np.zeros(n), np.full(n, np.inf)
-        # Between corners x grows or w falls.
         left = np.array([-infinite, corner_x[0], corner_x[1]])
         right = np.array([corner_x[0], corner_x[1], infinite])
         bottom, top = np.array([zero, zero, -infinite]), np.array([infinite, zero, zero])

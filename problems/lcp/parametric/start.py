@@ -18,9 +18,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
-    """The walk from t = +inf (sign = -1), or -inf.
-
-    Raises `ValueError` if the point nearest to zero is no solution for large t.
+    """The walk from t = +inf (sign = -1), or -inf; `ValueError` if the point nearest to zero is no solution for large
+    t.
     """
     state: State = np.where(
         level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
@@ -28,7 +27,6 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     walk = Walk(problem, d, Stairs.of(problem, level), state, problem.n, 0.0, -sign)
     walk.locate()
     gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
-    # No gap may shrink for ever.
     wrong = ((rates < 0.0) | ((rates == 0.0) & (gaps < 0.0))) & np.isfinite(gaps)
     if wrong.any():
         i = int(np.argmax(wrong)) % problem.n
@@ -80,7 +78,6 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
 
 
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
-    """The walk along the kernel of [A, d], if A is singular."""
     moving = np.flatnonzero(walk.moves_x)
     block = np.column_stack([walk.problem.A[np.ix_(moving, moving)], walk.shares[moving]])
     q, r, _ = qr(block.T, pivoting=True)

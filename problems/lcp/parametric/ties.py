@@ -18,9 +18,9 @@ class Corner:
     Attributes
     ----------
     switches : tuple of int
-        The pairs at a corner of their graphs.
+        The pairs that switch.
     directions : list of Array of shape (n + 1,)
-        All rays, if several switches vanish.
+        All rays, if several pairs switch.
     dead : bool
         Whether only the ray of arrival exists.
     """
@@ -45,7 +45,6 @@ def turn(walk: Walk, step: float) -> Corner | None:
                 walk.switch(edges[onward[0]].grown > 0.0)
                 aim(walk, found[onward[0]], step)
                 return Corner(switches, found)
-            # Complete if the ray of arrival is found.
             return Corner(switches, found, dead=True) if edges else None
         switched, driver = np.isin(np.arange(len(switches)), on.switched), on.driver
     walk.switch(switched)
@@ -81,7 +80,6 @@ def small(walk: Walk) -> tuple[Array, Array, Array]:
     moving = walk.moves_x[tied]
     j = walk.driver
     if j < n and not walk.moves_x[j]:
-        # Its w moves with the corner it left.
         left[j] = (walk.d[j] - walk.shares[j]) * along[n, :m]
     rates = np.where(moving[:, None], along[tied, :m], left[tied])
     side = np.where(walk.low, 0, 1), tied

@@ -24,8 +24,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 class Trail:
     """A path in the making.
 
-    `units`: Scales of x and t. `points`, `tangents`: Points and directions of arrival, of shape (n + 1,). `kinks`:
-    Point number to name, pairs, rays.
+    `units` are scales of x and t, `tangents` directions of arrival; `kinks` maps a point's number to name, pairs and
+    rays.
     """
 
     units: Array
@@ -101,7 +101,7 @@ class Trail:
         return steps, events
 
     def _add(self, u: Array, unit: Array, corner: Corner | None) -> None:
-        # A kink's tangent is that of arrival, as in the engine; its first ray leads back, the second on.
+        # A kink's first ray leads back, its second on.
         arrival = unit if self._unit is None else self._unit
         if corner is not None:
             back = -arrival

@@ -13,30 +13,29 @@ from problems.lcp.parametric.stairs import Stairs
 
 FLAT = 1e-11
 """Relative rates below this are rounding. Switches so close, relative to the step and t, vanish together: on 10,000
-integer problems (n <= 6) 1e-13 to 1e-7 give the same; 1e-6 is too loose for cond X = 1e6.
+integer problems 1e-13 to 1e-7 give the same; 1e-6 is too loose for cond X = 1e6.
 """
 
 ZERO_SWITCH = 1e-14
-"""Switches so small, relative to their row's terms, are zero; so are rates of t."""
+"""Smaller switches, relative to their row's terms, and rates of t are zero."""
 
 SLOW_RATE = 1e-6
 """Relative rate of t below which its rounding is estimated."""
 
 OUTSIDE_LIMITS = 1e-9
-"""Largest violation of limits by rounding, relative to the row, on a valid path."""
+"""Largest violation of limits by rounding, relative to the row."""
 
 
 @define(eq=False)
 class Walk:
     """A point of the path, and its continuation.
 
-    `state`: The piece of each pair. `driver`: The variable that moves on: that of pair i on its piece, or t for i = n.
-    `value`: x_driver or t at the last corner, or the distance of w_driver from its corner. `sign`: 1 if the driver
-    grows, -1 if it falls. `sizes`: The largest entry of each row of [A, d]. `moves_x`: Whether x moves and w is fixed.
-    `basis`: Rows of fixed w, columns of moving x and t, without the driver. `shares`: The column of t. `u`, of shape
-    (2, n + 1): (x, t) at the last corner and its derivative. `slopes`: Derivatives of limits by t. `gaps`, `rates`, of
-    shape (2, n): Distances from lower and upper limits, and derivatives. `tied`: The pairs at the next corner; `low`:
-    whether at lower limits. `noise`: The scales of gaps and rates.
+    `state`: the piece of each pair. `driver`: the variable that moves on, that of pair i on its piece, or t for i = n.
+    `value`: x_driver or t at the last corner, or the distance of w_driver from its corner. `sign`: whether the driver
+    grows (1) or falls (-1). `moves_x`: whether x moves and w is fixed. `basis`: rows of fixed w, columns of moving x
+    and t, without the driver. `shares`: the column of t. `u`: (x, t) at the last corner and its derivative. `gaps`,
+    `rates`: distances from lower and upper limits, and derivatives. `tied`: the pairs at the next corner; `low`:
+    whether at lower limits. `noise`: the scales of gaps and rates.
     """
 
     problem: MixedLCP
@@ -66,22 +65,18 @@ class Walk:
         self.sizes = np.maximum(np.abs(self.problem.A).max(axis=1, initial=0.0), np.abs(self.d))
 
     def locate(self) -> bool:
-        """Solve for corner and direction; return whether limits hold.
-
-        Raises `SingularBasisError` if the equations are dependent.
-        """
+        """Solve for corner and direction; return whether limits hold. Raises `SingularBasisError`."""
         n, j, A = self.problem.n, self.driver, self.problem.A
         row, every = self.state.astype(np.intp) + 1, np.arange(n)
         self.moves_x = self.stairs.moves_x[row, every]
         fixed, slope, *ends = self.stairs.values[:, row, every]
         limits, self.slopes = np.array(ends[:2]), np.array(ends[2:])
-        # Gaps are differences of terms of this size times the largest number.
         self.terms = np.where(self.moves_x, 1.0, self.sizes)
         by_x, self.shares = j == n or bool(self.moves_x[j]), self.d - slope
         rows = np.flatnonzero(self.moves_x)
         columns = np.append(rows[rows != j], np.full(int(j != n), n))
         if not by_x:
-            # Its w is the driver's distance from its corner, which moves with t.
+            # Its w is the driver's distance from its corner.
             rows = np.append(rows, j)
             self.shares[j] -= self.slopes[0 if self.sign > 0.0 else 1, j]
         block = np.empty((n, columns.size), order="F")
@@ -113,7 +108,6 @@ class Walk:
         if j != n and abs(self.dt) <= SLOW_RATE * motion:
             of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
             self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
-        # x that does not move is fixed.
         whole[0, :n] += fixed
         self.gaps, self.rates = y[0] - limits - self.t * self.slopes, y[1] - self.dt * self.slopes
         np.negative(self.gaps[1], out=self.gaps[1])
@@ -136,7 +130,6 @@ class Walk:
             return step
         reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
         vanishing = self.gaps + step * self.rates <= ZERO_SWITCH * (self.noise[0] + step * self.noise[1])
-        # The driver has left its corner.
         if self.driver < self.problem.n:
             vanishing[:, self.driver] = False
         vanishing.ravel()[falling[steps <= step + FLAT * reach]] = True

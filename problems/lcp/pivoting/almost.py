@@ -32,8 +32,7 @@ class Ended(Enum):
 class AlmostComplementary:
     """A path through bases with one variable of each pair, but for one pair; w_i is variable i, x_i is n + i.
 
-    `dictionaries`: one, or two for a game. `entering`: the next variable to enter. `stop`: the path ends when one of
-    these leaves.
+    `dictionaries`: one, or two for a game. `stop`: the path ends when one of these leaves.
     """
 
     n: int

@@ -1,6 +1,6 @@
 """The pivots of `almost.AlmostComplementary` as one loop, compiled if the program has imported numba.
 
-An import of numba takes as long as 25,000 numpy pivots of order 50: none is made here.
+An import of numba takes as long as 25,000 numpy pivots of order 50.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def pivots(
 ) -> tuple[int, int, int]:
     """Pivot in place like `Dictionary`; return pivots, entering variable, last to leave (-1 on a ray).
 
-    `tables` (by columns) and indices: of two dictionaries, one perhaps empty. `firsts`: the first of each one's m
-    consecutive variables basic at the start. `tiny`: `ZERO_PIVOT`, `TIE`.
+    `tables` belong to two dictionaries, one perhaps empty. `firsts`: the first of each one's variables basic at the
+    start.
     """
     zero, tie = tiny
     leaving = 2 * n + 1  # none

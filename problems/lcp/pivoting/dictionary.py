@@ -21,23 +21,23 @@ ZERO_PIVOT = 1e-10
 """Smaller entries, relative to their column's largest, are rounding: a pivot there loses the path."""
 
 TIE = 1e-11
-"""How far basic variables may fall below zero, relative to the largest constant, if another row than the first leaves:
-rows that may leave so are tied (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5, 1973)."""
+"""Basic variables that fall below zero by less, relative to the largest constant, are tied (Harris, Math. Programming
+5, 1973)."""
 
 DELAYED = 32
 """Pivots of a large table put into it by one product;"""
 
 LARGE = 100_000
 """a table with more entries is large. Microseconds per pivot of a game, singly and 32 together: 31 and 29 (90,000
-entries), 53 and 40 (250,000), 280 and 86 (1e6). Compiled single pivots take 51 at 360,000, delayed ones 44."""
+entries), 280 and 86 (1e6)."""
 
 
 @define(eq=False)
 class Dictionary:
     """``y_basic = table @ (y_nonbasic, 1)``, and the dictionary at the start.
 
-    `first`, (m, k + 1): the first table, constants last. `rows`, (m,), `columns`, (k,): its basic (consecutive) and
-    nonbasic variables; `basic`, `nonbasic`: now. `places`: indices among the nonbasic, or -1.
+    `first`, (m, k + 1): the first table, constants last. `rows`, `columns`: its basic and nonbasic variables; `basic`,
+    `nonbasic`: those now. `places`: indices among the nonbasic, or -1.
     """
 
     first: Array
@@ -69,7 +69,7 @@ class Dictionary:
 
     @property
     def compilable(self) -> bool:
-        """Whether numba's pivots are quicker; it cannot tell the layout of one row or column."""
+        """Whether numba's pivots are quicker."""
         return min(self._table.shape) > 1 and self._table.size <= LARGE
 
     @property

@@ -9,14 +9,13 @@ from continuation.arrays import Array
 from problems.lcp.pivoting.dictionary import ZERO_PIVOT
 
 MOST_PIVOTS = 3
-"""Most pivots, times the order, plus ten: 2,000 random P-matrices of order 5, 10, 20 need at most n + 10, and no
-Gaussian path ends after 3 n + 10. Cycles would delay the others."""
+"""Most pivots over the order, plus ten: no Gaussian path ends after 3 n + 10. Cycles would delay others."""
 
 
 def lemke_bases(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """The x that are basic at the end of Lemke's path with covering vector e, and whether t left the basis.
 
-    Unlike `pivoting.starts.covering` the least index breaks ties, so paths may cycle. A (k, n, n), q (k, n).
+    The least index breaks ties, so paths may cycle. A (k, n, n), q (k, n).
     """
     k, n = q.shape
     t = 2 * n

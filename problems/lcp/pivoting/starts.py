@@ -24,13 +24,13 @@ def unit_of(problem: LCP) -> float:
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
     """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
-    `d`, (n,): positive for a start at infinity. `active`, (n,): where x may be positive at t = 1; None if its face is
-    singular or holds no solution.
+    `d`, (n,): positive for a start at infinity. `active`, (n,): where x may be positive at t = 1; None if its face
+    holds no solution.
 
     References
     ----------
-    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
-    Stone, Algorithm 4.4.5, section 4.5 (parametric) and section 4.9 (lexicographic rule).
+    Lemke, Management Science 11, 1965; Cottle, Pang and
+    Stone, Algorithm 4.4.5 and sections 4.5 and 4.9.
     """
     n = problem.n
     t = 2 * n
@@ -91,7 +91,7 @@ class Game:
 
         References
         ----------
-        Lemke and Howson, "Equilibrium points of bimatrix games", SIAM J. Appl. Math. 12, 1964.
+        Lemke and Howson, SIAM J. Appl. Math. 12, 1964.
         """
         n, m = self.problem.n, self.actions
         players = (0, m), (m, n)

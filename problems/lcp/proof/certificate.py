@@ -22,10 +22,10 @@ from problems.options import finite_vector
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
 
 LARGEST_ACTIVE_SET = 400
-"""An exact solve of this order takes tens of seconds; cost grows like n^4."""
+"""An exact solve of this order takes tens of seconds."""
 
 ROUND_OFF = 64 * float(np.finfo(float).eps)
-"""Relative residuals below this are round-off; refinement in twice the precision reaches it."""
+"""Smaller relative residuals are round-off."""
 
 BOTH_ZERO = 1e-6
 """Smaller x_i and w_i, relative to the terms, may both be zero."""
@@ -39,7 +39,7 @@ _quiet = without_warnings(over="ignore", under="ignore", invalid="ignore")
 
 @frozen(eq=False)
 class Certificate:
-    """How well x solves the problem, in twice the working precision.
+    """How well x solves the problem.
 
     With bounds, |x - mid(l, x - w, u)|_i replaces |min(x_i, w_i)|.
 
@@ -49,17 +49,16 @@ class Certificate:
     x, w : Array of shape (n,)
         w = A x + q, correctly rounded unless 32 digits cancel.
     relative_residual : float
-        The residual relative to the terms (|A| |x| + |q|)_i of each row, independent of units. For x >= 0 with exact
-        zeros it is the componentwise backward error: the least eps such that x solves an LCP(q + dq, A + dA) with |dq|
-        <= eps |q|, |dA| <= eps |A|.
+        The residual relative to the terms (|A| |x| + |q|)_i of each row. For x >= 0 with exact zeros it is the
+        componentwise backward error: the least eps such that x solves an LCP(q + dq, A + dA) with |dq| <= eps |q|, |dA|
+        <= eps |A|.
     drowned : float
-        Largest defect of a row relative to max |q_i| in balanced units (`problems.lcp.data.scaling`), zero up to 1e-10.
-        It is large if x runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
+        Largest defect of a row relative to max |q_i| in balanced units, zero up to 1e-10. It is large if x runs off to
+        infinity along a solution of LCP(0, A), where the relative residual is small.
 
     References
     ----------
-    Oettli and Prager, Compatibility of approximate solution of linear equations with given error bounds for
-    coefficients and right-hand sides, Numer. Math. 6, 1964.
+    Oettli and Prager, Numer. Math. 6, 1964.
     """
 
     problem: MixedLCP = field(repr=False)
@@ -90,7 +89,7 @@ class Certificate:
     @property
     @_quiet
     def complementarity(self) -> float:
-        """max_i |x_i w_i|; with bounds, the distance from the bound replaces x_i."""
+        """max_i |x_i w_i|; with bounds, distances replace x_i."""
         above, below = self.x - self.problem.lower, self.problem.upper - self.x
         distance = np.where(np.isinf(below) | ((self.w > 0.0) & np.isfinite(above)), above, below)
         products = np.where((distance == 0.0) | (self.w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * self.w))
@@ -102,7 +101,7 @@ class Certificate:
         Parameters
         ----------
         tolerance : float, default 1e-10
-            Of the relative residual.
+            For the relative residual.
 
         Returns
         -------
@@ -119,8 +118,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     problem : MixedLCP
     x : Array of shape (n,)
     zero : float
-        Entries this near to zero or a bound, in natural units (|q|_inf over the largest row norm of A), are moved there
-        first.
+        Entries this near to a bound, in natural units, are moved there first.
 
     Raises
     ------
@@ -165,7 +163,7 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
-    """Defects, zero in rows where rounding of subnormal x_j explains them."""
+    """Defects; zero where rounding of subnormal x_j explains them."""
     if largest(off) <= ROUND_OFF:
         return off
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
@@ -188,7 +186,7 @@ class ExactCertificate:
     Attributes
     ----------
     solves : bool
-        Whether the point solves the problem exactly: a proof.
+        Whether the point solves the problem exactly.
     x, w : tuple of n Fraction, or None
         None if the equations are inconsistent.
     active : tuple of int
@@ -211,11 +209,10 @@ class ExactCertificate:
 
 
 def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
-    """Solve exactly on the active set of x, and decide whether the result solves the problem.
+    """Solve exactly on the active set of x and decide whether this solves the problem.
 
-    The active set is {x_i > w_i}, relative to the terms, or with bounds the piece of the natural map. If it fails,
-    indices with both nearly zero (`BOTH_ZERO`) are left out, then taken in. On singular sets dependent x_i keep their
-    values.
+    The active set is {x_i > w_i}, or with bounds the piece of the natural map. If it fails, indices with both nearly
+    zero (`BOTH_ZERO`) are left out, then taken in.
 
     Parameters
     ----------
@@ -245,7 +242,6 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
 
 def _states(problem: MixedLCP, x: Array) -> list[State]:
-    """The state of x, then doubtful indices at bounds, then between."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
@@ -266,7 +262,6 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
 def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Array) -> ExactCertificate:
     active = np.flatnonzero(state == BETWEEN)
     chosen = tuple(int(i) for i in active)
-    # The shift makes nonzero bounds integers.
     at_bounds, shift = integers(problem.at(state))
     right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
     solution = solve_exactly(block_of([rows[i] for i in chosen], active, problem.n) << shift, right, x[active])

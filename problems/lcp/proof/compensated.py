@@ -20,25 +20,22 @@ _HIGH_BITS = np.array(~0x7FFFFFF)
 """Keeps 26 leading bits of a double: products are exact."""
 
 _BLOCK = 2**15
-"""Entries per block of rows: two blocks of 256 KiB fit the cache. Up to a quarter, slices are slower."""
+"""Entries per block of rows: two blocks of 256 KiB fit the cache."""
 
 DOUBLE_BITS = 53
 """Bits of a double's mantissa."""
 
 LARGEST_TERMS = 1e240
-"""Rows whose terms sum to more than this, or less than its inverse, are scaled: low halves of products below 1e-260 are
-inexact."""
+"""Rows whose terms sum to more than this, or less than its inverse, are scaled: products below 1e-260 are inexact."""
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """A x + q by compensated summation, with an error bound for each entry; both infinite where a product overflows.
-
-    `x`, of shape (n,): Finite.
+    """A x + q by compensated summation, with error bounds; both are infinite where a product overflows. `x` is finite.
 
     References
     ----------
-    Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
+    Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
     """
     w, size, terms = _rows(problem, x)
     bound = error_bound(w, size, terms)
@@ -57,8 +54,7 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 class Terms:
     """The rows of A x + q, each divided by 2^exponents[i].
 
-    `A` of shape (n, n), `x` of shape (n,): Give the divided products. `w`, `size`, of shape (n,): (A x + q)_i and (|A|
-    |x| + |q|)_i, divided. `exponents`, of shape (n,): Usually zero.
+    `A` and `x` give the divided products; `w` and `size` are A x + q and |A| |x| + |q|, divided.
     """
 
     A: Matrix
@@ -70,11 +66,11 @@ class Terms:
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
-    """The rows of A x + q without overflow or underflow; x is finite, of shape (n,)."""
+    """The rows of A x + q without overflow or underflow."""
     w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
     if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
-        return Terms(problem.A, x, w, size, none)  # w is finite where the size is
+        return Terms(problem.A, x, w, size, none)
     doubtful, small = ~(size <= LARGEST_TERMS), size < 1.0 / LARGEST_TERMS
     if small.any():
         doubtful |= small & _filled(problem, x)
@@ -95,7 +91,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
         row_of = np.arange(problem.n)[:, None]
         exponents = np.maximum(exponents, products.max(axis=1))
     exponents = np.where(exponents == lowest, 0, exponents)
-    # Products below 2^-1000 of the row's largest may vanish.
+    # Smaller products than 2^-1000 of the row's largest may vanish.
     moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
     q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
     A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
@@ -112,7 +108,6 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int
         return total + lost, sizes, count + 1
     support = x.nonzero()[0]
     if 2 * support.size <= x.size:
-        # Columns that do not count cost less than to leave them out, where they are few.
         A, x = A[:, support], x[support]
     if 4 * A.size <= _BLOCK:
         total, lost, sizes = summed(A.T, x[:, None], q)
@@ -131,10 +126,7 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
-    """Sums of products along the first axis plus constants: rounded sums, errors, magnitude sums.
-
-    `entries` of shape (m, ...). `factors`: Broadcasts to it. `constants` of shape (...).
-    """
+    """Sums of products plus constants along the first axis: rounded sums, errors, magnitude sums."""
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])
     partial = np.add.accumulate(terms, axis=0)
@@ -145,12 +137,11 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
 def _sliced(A: Array, x: Array, q: Array) -> tuple[Array, Array, Array]:
     """`summed` for a dense matrix by exact BLAS products of slices: two of A, three (all) of x.
 
-    The rest of A, at most 2^-42 of a row's largest product, is multiplied as usual.
+    The rest of A is multiplied as usual.
 
     References
     ----------
-    Ozaki, Ogita, Oishi and Rump, "Error-free transformations of matrix multiplication by using fast routines of matrix
-    multiplication and its applications", Numer. Algorithms 59, 2012.
+    Ozaki, Ogita, Oishi and Rump, Numer. Algorithms 59, 2012.
     """
     mantissas, powers = np.frexp(x)
     # n products of integers below 2^(digits - 1) sum to less than 2^53.
@@ -183,7 +174,7 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
     longest_first = np.argsort(-lengths, kind="stable")
     ordered = lengths[longest_first]
     for k in range(int(ordered[0])):
-        # Slices avoid gathering rows, which costs more than the sums.
+        # Slices avoid gathering rows.
         everywhere = k < ordered[-1]
         rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = A.indptr[:-1][rows] + k
@@ -202,7 +193,7 @@ def _lost(a: Array, b: Array, total: Array) -> Array:
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its error (Dekker; masking cannot overflow)."""
+    """The rounded product and its error (Dekker)."""
     product = a * b
     a_high, b_high = _high(a), _high(b)
     a_low, b_low = a - a_high, b - b_high

@@ -1,7 +1,7 @@
 """Multipliers, checked in integers, prove that an LCP has no (strictly) feasible point.
 
-For y >= 0 with A'y <= 0, every feasible x gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves that none exists
-(Farkas). If q'y = 0 and y is not zero, F = {x > 0, w > 0} is empty (Motzkin). Duality: both are necessary.
+For y >= 0 with A'y <= 0, a feasible x gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves that none exists
+(Farkas). If q'y = 0 and y is not zero, F = {x > 0, w > 0} is empty (Motzkin).
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers
 HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance of HiGHS."""
 MULTIPLIER_ZERO = 1e-9
-"""Ten times HiGHS's tolerance: scaled values below this are zero."""
+"""Smaller scaled values are zero: ten times HiGHS's tolerance."""
 
 PRECISION = 100 * float(np.finfo(float).eps)
-"""Relative errors of A'y <= 0 up to this are rounding."""
+"""Smaller relative errors of A'y <= 0 are rounding."""
 GAP_IN_DOUBT = 1e-6
 """Smaller gaps -q'y, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
-"""Conditions below this, relatively, are equations in the refinement."""
+"""Smaller relative values are equations in the refinement."""
 _REFINEMENTS = 4
 """Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
@@ -40,22 +40,21 @@ LARGEST_REFINED = 1500
 LARGEST_VERTEX = 300
 """Largest order at which tight equations are solved in rationals."""
 AFFORDABLE_VERTEX = 100
-"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s, against 6 s at order 300."""
+"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s; order 300 takes 6 s."""
 
 
 @frozen(eq=False)
 class Farkas:
     """A multiplier y >= 0, y != 0, with A'y <= 0, q'y <= 0, checked in integers.
 
-    With bounds, y_i may be negative where x_i has no lower bound, and is zero where x_i has two; see `inequalities`.
+    With bounds see `inequalities`.
 
     Attributes
     ----------
     y : tuple of n int
         Without a common factor.
     gap : Fraction
-        Exactly q'y (with bounds, q'y + sup (A'y)'x): negative if no point is feasible, zero if none is strictly
-        feasible.
+        q'y (with bounds, q'y + sup (A'y)'x): negative if no point is feasible, zero if none is strictly feasible.
     """
 
     y: tuple[int, ...]
@@ -129,7 +128,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     Returns
     -------
     Farkas or None
-        None if no multiplier passed the exact check.
+        None if no multiplier passes the exact check.
 
     References
     ----------
@@ -145,9 +144,9 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
     Parameters
     ----------
     problem : MixedLCP
-        Tight conditions are solved in rationals up to order `AFFORDABLE_VERTEX`.
+        Up to order `AFFORDABLE_VERTEX` rationals are tried.
     guess : Array of shape (n,), optional
-        A multiplier tried instead of the linear program's.
+        Replaces the linear program's.
     """
     scaled = _Scaled.of(problem)
     if (scaled.system.q >= 0.0).all():
@@ -162,10 +161,7 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
-    """Minimise q'y subject to A'y <= 0, sum y = 1, y >= 0; None on failure.
-
-    `matrix`, of shape (m, k). `vector`, of shape (m,).
-    """
+    """Minimise q'y subject to A'y <= 0, sum y = 1, y >= 0; None on failure."""
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
     result = linprog(
@@ -202,7 +198,7 @@ def empty_interior(problem: LCP) -> Farkas | None:
 
 
 def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
-    """Powers of two: rows of [A, q] over r, then columns of A over c, have maximum about 1."""
+    """Powers of two r, c: rows of [A, q] over r, then columns of A over c, have maximum about 1."""
     size: Matrix = abs(problem.A)
     largest = np.asarray(size.max(axis=1).toarray()).ravel() if problem.sparse else size.max(axis=1)
     rows = _power_of_two(np.maximum(largest, np.abs(problem.q)))
@@ -249,8 +245,7 @@ class _Scaled:
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess that passes the integer check."""
-        # The check uses the unscaled data, so scaling errors do not matter.
+        """The first candidate near a scaled guess that is exact."""
         conditions = conditions_of(self.system)
         for candidate in self._candidates(conditions, guess, largest):
             if conditions.hold(candidate, strict):
@@ -269,7 +264,7 @@ class _Scaled:
                 yield found
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact solution of the equations on the guess's support."""
+        """The exact solution of equations on the guess's support."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None

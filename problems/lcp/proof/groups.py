@@ -1,8 +1,7 @@
 """Proofs that a feasible LCP has no solution: multipliers exclude groups of complementary faces.
 
 A group fixes some x_i = 0 and some w_i = 0. If y_i >= 0 unless w_i is fixed, and (A'y)_j <= 0 unless x_j is fixed, its
-points have 0 <= y'w - (A'y)'x = q'y; so q'y < 0 excludes it (Farkas). Groups that cover all faces exclude all
-solutions.
+points have 0 <= y'w - (A'y)'x = q'y; so q'y < 0 excludes it (Farkas). Groups that cover all faces exclude all.
 """
 
 from __future__ import annotations
@@ -30,8 +29,7 @@ Fixed = NDArray[np.bool_]
 class Group:
     """Faces with common fixed variables, and why none holds a solution.
 
-    `fixed`, of shape (2n,). `y`, of length n: The multiplier in floats or integers; None for one face decided in
-    rationals.
+    The multiplier `y` holds floats or integers, or is None for one face decided in rationals.
     """
 
     fixed: Fixed
@@ -49,7 +47,7 @@ class Groups:
 
     @property
     def root(self) -> list[int] | None:
-        """The one multiplier that excludes all faces (a Farkas vector), if any."""
+        """A Farkas vector that excludes all faces, if any."""
         one = self.groups[0] if len(self.groups) == 1 else None
         return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
 
@@ -92,7 +90,7 @@ def _whole(y: Array | Sequence[int]) -> list[int]:
 
 
 def _all_of_them(groups: NDArray[np.bool_]) -> bool:
-    """Whether groups, of shape (number, 2, n), cover all faces; recursion over a pair that each fixes."""
+    """Whether groups, of shape (number, 2, n), cover all faces: recursion over a pair that each fixes."""
     if not groups.size:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
@@ -122,15 +120,13 @@ class Excluding:
 
     @cached_property
     def exact(self) -> tuple[list[list[int]], list[int], Conditions]:
-        """A and q in integers, and the conditions on multipliers."""
+        """A and q in integers, and conditions on multipliers."""
         return *whole_numbers(self.problem)[:2], conditions_of(self.problem)
 
     def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
         """The group, if a dictionary's row makes its basic variable times `sign` negative.
 
         Adding a little of the other rows exceeds rounding; otherwise integers are used.
-
-        `fixed`, of shape (2n,). `basic`, of shape (n,). `row`: Index in `basic`.
         """
         right = np.zeros((basic.size, 2))
         right[:, 1] = ~fixed[basic]
@@ -155,7 +151,6 @@ class Excluding:
         return group if group is not None and self.exactly(group) else None
 
     def _clearly(self, fixed: Fixed, y: Array) -> bool:
-        """Whether floats prove it."""
         n, q = y.size, self.problem.q
         unit, size = (n + 4) * SUM_OF_TERMS_ROUNDING, np.abs(y)
         terms = self._sizes[:n] @ size

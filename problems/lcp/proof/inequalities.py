@@ -1,4 +1,4 @@
-"""Inequalities that solutions satisfy without complementarity, and conditions on their multipliers.
+"""Inequalities that hold without complementarity, and conditions on their multipliers.
 
 A solution has l <= x <= u, w_i >= 0 without an upper bound, w_i <= 0 without a lower one, w_i = 0 without both.
 Multipliers y with y'w >= 0 give 0 <= y'(A x + q), so
@@ -28,8 +28,7 @@ from problems.lcp.proof.rational import IntegerRow, integer_rows
 class Inequalities:
     """The points z >= 0 with A z + q >= 0.
 
-    `A` of shape (m, k). `q` of shape (m,). `rows`, `signs`, of shape (m,): Rows of the problem (-1 for bounds) and
-    signs; None if unchanged.
+    `rows` and `signs` refer to the problem's rows (-1 for bounds); None if unchanged.
     """
 
     A: Matrix
@@ -44,11 +43,11 @@ class Inequalities:
 
     @property
     def sparse(self) -> bool:
-        """Whether A is stored as a sparse array."""
+        """Whether A is sparse."""
         return bool(sp.issparse(self.A))
 
     def on_rows(self, y: Any, n: int) -> Any:
-        """Multipliers in terms of the problem's n rows."""
+        """Multipliers on the problem's n rows."""
         y = np.asarray(y)
         if self.rows is None or self.signs is None:
             return y
@@ -85,10 +84,7 @@ def inequalities(problem: MixedLCP) -> Inequalities:
 
 @frozen
 class Conditions:
-    """The conditions on a multiplier in integers: rows (A'y)_j and q'y.
-
-    `lower`, `upper`: Bounds of x. `signs`: Whether y_i may be positive, negative.
-    """
+    """The conditions on a multiplier, in integers. `signs` say whether y_i may be positive, negative."""
 
     columns: list[IntegerRow]
     constant: IntegerRow
@@ -97,7 +93,7 @@ class Conditions:
     signs: list[tuple[bool, bool]]
 
     def gap(self, y: list[int]) -> Fraction | None:
-        """Exactly q'y + sup (A'y)'x; None if infinite or y is not allowed."""
+        """The gap q'y + sup (A'y)'x; None if infinite or y is not allowed."""
         if not any(y):
             return None
         for value, (positive, negative) in zip(y, self.signs):

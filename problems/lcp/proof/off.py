@@ -16,18 +16,15 @@ DROWNED = 1e-6
 """Largest allowed defect relative to max |q_i| in balanced units."""
 
 FAR_BELOW_Q = 1e-10
-"""Smaller values count as zero: runs to infinity are far above, Maros-Meszaros solutions below 1e-12."""
+"""Smaller values count as zero: Maros-Meszaros solutions are below 1e-12."""
 
 CLEAR_OF_ZERO = 1e-13
-"""Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would cost 0.45 of 1.2
-ms (five-stone arches)."""
+"""Smaller defects, relative to the least nonzero |q_i|, are zero if entries are `alike`: units would cost 0.45 of
+1.2 ms."""
 
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """Signed distances from a bound as largest shares in a row's terms; infinite where not asked.
-
-    An x_i in no row has share 1. `x`, `distance`, `asked` of shape (n,).
-    """
+    """Signed distances from a bound as largest shares in a row's terms; infinite where not asked."""
     shares = np.where(distance == 0.0, 0.0, np.inf)
     indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
     if indices.size:
@@ -35,7 +32,6 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
         sizes = np.abs(terms.x[indices])
         moved = distance[indices] != x[indices]
         if moved.any():
-            # Scaled rows hold shares of x_i.
             with np.errstate(all="ignore"):
                 scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
             known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
@@ -54,10 +50,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 
 
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """See `Certificate.drowned`; units are computed only if needed.
-
-    `off`, of shape (n,): Defects relative to the terms.
-    """
+    """See `Certificate.drowned`. `off` are defects relative to the terms."""
     moved = np.count_nonzero(terms.exponents)
     q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q
     asked = off * terms.size > DROWNED * np.abs(q)

@@ -34,8 +34,8 @@ class NoStrictlyFeasiblePoint(ValueError):
 def strictly_feasible_start(problem: LCP) -> Array:
     """Find a point of F = {x > 0, A x + q > 0} of the largest scaled margin up to 1.
 
-    HiGHS seeks the least x of margin 1, else maximises t <= 1 with x >= t, A x + q >= t (slow for large sparse A: a
-    dense column). A rigorous error bound verifies positivity.
+    HiGHS seeks the least x of margin 1, else maximises t <= 1 with x >= t, A x + q >= t. A rigorous error bound
+    verifies positivity.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
 
     References
     ----------
-    Dutta, Das and Jana, "Bounded Homotopy Path Approach" (needs such a start).
+    Dutta, Das and Jana, "Bounded Homotopy Path Approach".
     """
     require_lcp(problem)
     largest = float("nan")
@@ -81,12 +81,11 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
 
 
 def _programs(problem: LCP) -> Iterator[tuple[Array | None, float]]:
-    """The least x of margin 1; then the x of largest margin t <= 1, and t; (None, nan) on failure."""
+    """The least x of margin 1; then the x of largest margin t <= 1, and t."""
     rows, columns = scales(problem)
     (matrix, vector), n, none = scaled_data(problem, rows, columns), problem.n, (None, float("nan"))
     result = linprog(np.ones(n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
     yield (result.x / columns, 1.0) if result.status == 0 else none
-    # Unknowns (u, t), x = u / columns.
     block, eye = (sp.block_array, sp.eye_array(n)) if problem.sparse else (np.block, np.eye(n))
     left = block([[-eye, np.ones((n, 1))], [-matrix, np.ones((n, 1))]])
     bounds = [(None, None)] * n + [(None, 1.0)]

@@ -1,11 +1,11 @@
-"""Complementary pieces that may hold a solution; floats with rounding bounds exclude most others.
+"""Floats with rounding bounds exclude most complementary pieces that hold no solution.
 
 Let R be an approximate inverse of a piece's block B with |I - R B| <= d < 1. Then its equations have one solution,
-within |R r| / (1 - d) of a point with residual r (maximum norm). A sign wrong beyond this excludes the piece.
+within |R r| / (1 - d) of a point with residual r (maximum norm). A sign that is wrong by more excludes the piece.
 
 References
 ----------
-Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+Rump, Acta Numerica 19, 2010, section 10.
 """
 
 from __future__ import annotations
@@ -32,9 +32,8 @@ States = NDArray[np.int8]
 
 
 def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
-    """Which pieces may hold a solution, shape (number,).
-
-    `states`, of shape (number, n): -1 at the lower bound, 0 between, 1 at the upper.
+    """Which pieces may hold a solution, for `states` of shape (number, n): -1 at the lower bound, 0 between, 1 at the
+    upper.
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
@@ -55,7 +54,7 @@ def all_faces(n: int) -> NDArray[np.bool_]:
 
 
 def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Faces that no row excludes by signs alone (no rounding, singular faces too)."""
+    """Faces that no row excludes by signs alone."""
     support = inside.astype(float)
     rises, falls = support @ (A > 0.0).T > 0.0, support @ (A < 0.0).T > 0.0
     forbidden = (~rises & (q < 0.0)) | (inside & ~falls & (q > 0.0))
@@ -63,10 +62,7 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 
 
 def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
-    """Which pieces, of one problem or one each, may hold a solution, shape (number,).
-
-    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, or None.
-    """
+    """Which pieces, of one problem or one each, may hold a solution."""
     n = states.shape[1]
     sizes, one, ones = np.abs(A), identity(n), np.ones(n)
     unit = (n + 4) * SUM_OF_TERMS_ROUNDING
@@ -117,10 +113,7 @@ def identity(n: int) -> Array:
 
 
 def inverses(B: Array) -> Array:
-    """Approximate inverses, NaN for singular matrices.
-
-    `B` of shape (number, n, n) or (n, n) (direct LAPACK: three times as fast).
-    """
+    """Approximate inverses, NaN for singular matrices; for one matrix LAPACK is three times as fast."""
     if B.ndim == 2:
         found, singular = dgesv(B, identity(len(B)))[2:]
         return np.full_like(B, np.nan) if singular else np.asarray(found)

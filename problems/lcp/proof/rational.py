@@ -1,6 +1,6 @@
-"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b.
+"""Exact linear algebra on floats as integer rows, with Dixon's p-adic solution of M z = b.
 
-Floats times powers of two are integers; every result is checked in them.
+Every result is checked in integers.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Integers = NDArray[Any]
 """An object array of Python integers."""
 
 PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
-"""Residue products fit an int64; several, in case one divides a determinant."""
+"""Residue products fit an int64; there are several, since one may divide a determinant."""
 
 
 @frozen
@@ -34,7 +34,7 @@ class IntegerRow:
     shift: int
 
     def times(self, numerators: list[int], denominator: int) -> int:
-        """The row's value at numerators / denominator, times the denominator."""
+        """The row's value at numerators / denominator, times denominator."""
         total = self.constant * denominator
         for column, value in zip(self.columns, self.values):
             total += value * numerators[column]
@@ -67,7 +67,7 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
-    """Selected columns of rows, shape (number of rows, number of columns)."""
+    """Selected columns of rows."""
     place = np.full(n, -1)
     place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)
@@ -81,12 +81,12 @@ def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> I
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
     """A rational solution of an integer system of any shape and rank, or None if inconsistent.
 
-    `matrix`, of shape (m, k). `guess`, of shape (k,): Large entries get pivots first, columns without a pivot keep its
-    values. Returns (numerators, denominator), checked on every row.
+    Large entries of `guess` get pivots first; columns without a pivot keep its values. Returns (numerators,
+    denominator), checked on every row.
 
     References
     ----------
-    Dixon, Exact solution of linear equations using p-adic expansions, Numer. Math. 40, 1982.
+    Dixon, Numer. Math. 40, 1982.
     """
     kept, shift = integers(guess)
     for prime in PRIMES:
@@ -124,7 +124,6 @@ def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
 
 
 def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rows, columns and inverse of a largest nonsingular block modulo the prime."""
     m = matrix.shape[0]
     work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
     unused = np.ones(m, dtype=bool)
@@ -143,15 +142,12 @@ def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[
         columns.append(int(column))
     k = matrix.shape[1]
     chosen = np.array(rows, dtype=np.intp)
-    # Pivot rows combine only pivot rows.
     return chosen, np.array(columns, dtype=np.intp), work[np.ix_(chosen, k + chosen)]
 
 
 def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
-    """Solve block z = right, lifting until the exact check succeeds."""
     residual, power, attempt = right, 1, prime**4
     expansion = np.zeros(right.size, dtype=object)
-    # Hadamard's and Cramer's bounds.
     bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
     enough = 2 ** int(2 * (bits + max(int(abs(value)).bit_length() for value in right)) + prime.bit_length())
     while True:
@@ -170,7 +166,7 @@ def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) 
 
 
 def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
-    """Numerators and denominator below sqrt(modulus / 2), congruent to the expansion, or None."""
+    """Numerators and denominator congruent to the expansion, or None."""
     bound = isqrt(modulus // 2)
     denominator = 1
     for value in expansion:

@@ -13,13 +13,13 @@ from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
 POINT_CORRECTIONS = 2
-"""Corrections with w in twice the working precision, as in `active_set.finish`."""
+"""Corrections with w in twice the working precision."""
 
 
 def judged(
     A: Array, q: Array, active: NDArray[np.bool_], tolerance: float
 ) -> tuple[NDArray[np.bool_], Array, Array, Array]:
-    """Points of faces, corrected in twice the working precision.
+    """Correct points of faces in twice the working precision.
 
     Parameters
     ----------

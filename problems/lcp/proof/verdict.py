@@ -20,25 +20,20 @@ UNDERFLOW = float(np.finfo(float).tiny) / EPS
 """Smaller products may have lost digits."""
 
 LARGEST_DECIDED = 12
-"""Largest order for exact trial of all faces (about 1 s) and for exact confirmation of inaccurate solutions."""
+"""Largest order for exact trial of all faces (about 1 s) and exact confirmation."""
 
 ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
-"""Smaller residuals are rounding: half an eps each for x, row unit, column unit, products."""
+"""Smaller residuals are rounding: half an eps each for x, units and products."""
 
 STATIONARY = 1e-6
-"""Relative tolerance of optimality conditions: degenerate ends are series in the root of lambda, with half the
-digits.
-"""
+"""Relative tolerance of optimality conditions: degenerate ends have half the digits."""
 
 NEARLY = 1e-5
 """Ends with smaller residuals are inaccurate solutions."""
 
 
 def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
-    """Whether the point is a solution; for small problems exact arithmetic must agree unless defects are rounding.
-
-    `tolerance`: Of the relative residual.
-    """
+    """Whether the point is a solution; for small problems exact arithmetic must agree."""
     if not certificate.solves(tolerance):
         return False
     if certificate.relative_residual <= ENTRY_ROUNDING or problem.n > LARGEST_DECIDED:
@@ -47,9 +42,9 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
-    """Whether x solves a program's conditions up to round-off of its largest data.
+    """Whether x solves a program's conditions up to round-off of its largest data, in balanced units.
 
-    `confirmed` rejects every x where a file has 1e-16 instead of zero. `problem`: In balanced units.
+    `confirmed` rejects every x where a file has 1e-16 instead of zero.
     """
     if problem.primal == 0 or certificate.drowned > 0.0:
         return False
@@ -59,18 +54,16 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
 def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     """Whether an exact solution exists on the face of x or an adjacent one.
 
-    Floats prove it where rounding cannot matter, else rationals.
-
     Parameters
     ----------
     problem : MixedLCP
-        Small: dense matrices are made.
+        It becomes dense.
     x : ndarray, shape (n,)
     w : ndarray, shape (n,), optional
 
     References
     ----------
-    Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+    Rump, Acta Numerica 19, 2010, section 10.
     """
     point, answer = problem.known.get("exact", (None, False))
     if point is None or not (point is x or np.array_equal(point, x)):
@@ -80,7 +73,6 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
-    """Whether floats prove it (`Faced`); w is in twice the working precision."""
     if not x.any():
         return least(problem.q) >= 0.0
     if least(x) < 0.0:
@@ -96,13 +88,12 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 @frozen(eq=False)
 class Faced:
-    """Face equations of points of a stack of LCPs, in units of x, with approximate inverses R.
+    """Face equations of points of a stack of LCPs, with approximate inverses R.
 
     If |I - R B| <= d < 1, B is nonsingular and B u = r has |u| <= |R| |r| / (1 - d) (maximum norm); off the face B has
     rows of the identity.
 
-    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and maximum of a row's terms. `size`,
-    of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or infinite without proof.
+    `on` says where x > 0; `total` and `top` are the sum and maximum of a row's terms, `size` is |R|, `defect` d.
     """
 
     on: NDArray[np.bool_]
@@ -113,14 +104,11 @@ class Faced:
 
     @classmethod
     def of(cls, A: Array, x: Array) -> Faced:
-        """For points x >= 0.
-
-        `A` of shape (..., n, n). `x` of shape (..., n).
-        """
+        """For points x >= 0, of shape (..., n)."""
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
         sizes = np.abs(terms)
-        # Ufunc reductions: array methods take 1.5 times as long here.
+        # Array methods take 1.5 times as long.
         total = np.add.reduce(sizes, axis=-1)
         top = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
         fine = np.minimum.reduce(top, axis=-1) > UNDERFLOW
@@ -128,7 +116,7 @@ class Faced:
         block = np.where(on[..., None], terms, one)
         block /= top[..., None]
         inverse = inverses(block)
-        # Twice the rounding of block and product (Higham, section 3.5); rows of |B| sum to at most n.
+        # Twice the rounding of block and product (Higham, section 3.5).
         size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
         off = np.abs(inverse @ block - one)
         off += n * rounding * size
@@ -136,7 +124,7 @@ class Faced:
         return cls(on, total, top, size, np.where(fine, defect, np.inf))
 
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
-        """Whether the equations have a solution near x with w > 0 elsewhere; w and its bound of shape (..., n)."""
+        """Whether the equations have a solution near x with w > 0 elsewhere."""
         right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
         moved = moved * (1.0 + ROUND_OFF) / (1.0 - self.defect)
@@ -148,8 +136,7 @@ class Faced:
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
-    That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0, relative to their sizes. Bounds:
-    see `KKTHomotopy`.
+    That is, (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = w_i z2_i = 0. For bounds see `KKTHomotopy`.
     """
     rows = Rows(problem)
     if y.size != rows.size:

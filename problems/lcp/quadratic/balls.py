@@ -1,4 +1,4 @@
-"""Single-precision products, and interval polynomials by middle and radius."""
+"""Single-precision products and interval polynomials."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ UNIT = float(np.finfo(np.float32).epsneg)
 """Relative error in single precision."""
 
 SINGLE_UNDERFLOW = float(np.finfo(np.float32).tiny)
-"""Underflow error, even if subnormal numbers are flushed to zero."""
+"""Underflow error, even if subnormal numbers become zero."""
 
 
 def rounded(count: int) -> float:
-    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, for eight more operations."""
+    """`accumulated` in single precision (Higham, section 3.1), for eight more operations."""
     whole = (count + 8) * UNIT
     return whole / (1.0 - whole) * (1.0 + 8.0 * EPS) if whole < 0.5 else np.inf
 
 
 def image_of(matrix: Single, x: Array) -> Array:
-    """Bound of matrices >= 0 times vectors >= 0."""
+    """Bound of nonnegative matrices times vectors."""
     m = x.shape[1]
     unit = x.max(axis=1, keepdims=True)
     unit = np.where(unit == 0.0, 1.0, unit)
-    # Clamped numbers do not underflow in single precision.
+    # Clamped numbers do not underflow.
     scaled = np.maximum(x / unit, 2.0**-60).astype(np.float32)
     image: Array = np.matmul(matrix, scaled[..., None])[..., 0].astype(float)
     bound: Array = (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * SINGLE_UNDERFLOW) * unit * (1.0 + 4.0 * EPS)
@@ -79,12 +79,11 @@ class Ball:
 
 
 POLYNOMIAL_PARTS = 8
-"""Parts of a slab for the range of H along the cubic: H nearly vanishes at both ends, so one sum of coefficient sizes
-is several times too large."""
+"""Parts of a slab for the range of H along the cubic: one sum of coefficient sizes is several times too large."""
 
 
 def _shifts() -> Array:
-    """Exact map from degree-8 coefficients on [-1, 1] to those on parts, (9, POLYNOMIAL_PARTS * 9)."""
+    """Exact map from degree-8 coefficients on [-1, 1] to those on parts."""
     out = np.zeros((9, POLYNOMIAL_PARTS, 9))
     for part in range(POLYNOMIAL_PARTS):
         middle = (2 * part + 1) / POLYNOMIAL_PARTS - 1.0
@@ -105,5 +104,5 @@ def largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
         room[..., there] += v.radius + 64.0 * EPS * np.abs(v.middle)
     powers = offset[:, :, None] ** np.arange(9.0)
     parts = np.abs(np.matmul(middle * powers, _SHIFTS)).reshape(*middle.shape[:2], POLYNOMIAL_PARTS, 9)
-    # Rounding is within that of the sizes: |part's middle| + 1 / POLYNOMIAL_PARTS is at most 1.
+    # The rounding of sizes bounds the rounding of parts.
     return up_by(parts.sum(axis=-1).max(axis=-1) + (room * powers).sum(axis=-1), 64)

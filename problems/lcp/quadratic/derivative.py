@@ -12,10 +12,8 @@ from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 
 def _apply(part: Affine, q: Ends) -> Ends:
-    """The part along a cubic, shape (slabs, 4, N), from coefficients (slabs, 4, N + 1)."""
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
-    # Errors of the matrix, radius of q, rounding of products.
     room = part.linear_size(q.radius(middle) + accumulated(count) * size)
     if part.sizes is not None:
         room = room + part.linear_error(size + q.radius(middle))
@@ -26,11 +24,9 @@ def _apply(part: Affine, q: Ends) -> Ends:
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
-"""Assigns products of coefficients to powers."""
 
 
 def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
-    """H along the cubic, shape (slabs, N, 7)."""
     products = alpha[:, :, None] * beta[:, None, :]
     count, n = alpha.shape[0], alpha.shape[2]
     flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))
@@ -50,7 +46,7 @@ class Derivative:
     residual : Ends, shape (slabs, N, 7)
         Coefficients of H.
     a, b : ndarray, shape (slabs, 4, N)
-        Middles of alpha, beta.
+        Middles of alpha and beta.
     ra, rb : ndarray
         Radii.
     """
@@ -76,7 +72,7 @@ class Derivative:
         return out + form.plain.matrix if k == 0 else out
 
     def image(self, x: Array) -> tuple[Array, Array]:
-        """Bounds of |exact| x and |exact - matrix| x, shape (slabs, 4, N)."""
+        """Bounds of |exact| x and |exact - matrix| x."""
         form, count = self.form, 2 * x.shape[1]
         by_second, by_first = (part.linear_size(x)[:, None] for part in (form.second, form.first))
         error = self.ra * by_second + self.rb * by_first

@@ -1,7 +1,7 @@
 """Krawczyk's test for quadratic homotopies, exact in the tube's width.
 
-H(p + d) = H(p) + H'(p) d + Q(d, d): only rounding needs bounds. Along a cubic, H has degree 6 and H' degree 3. The
-preconditioner is the inverse's second-order series, so third-order terms remain.
+H(p + d) = H(p) + H'(p) d + Q(d, d), so only rounding needs bounds. The preconditioner is the inverse's second-order
+series, so third-order terms remain.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from problems.lcp.quadratic.form import Quadratic
 from problems.lcp.quadratic.polynomial import Polynomial
 
 CACHED_NUMBERS = 200_000
-"""Numbers in an array of matrices, 1.6 MB: a few fit in cache."""
+"""Numbers in an array of matrices; a few such arrays fit in cache."""
 
 
 @frozen(eq=False)

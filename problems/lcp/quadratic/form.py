@@ -42,7 +42,6 @@ class Affine:
 
     @cached_property
     def _alone(self) -> Index | None:
-        """Columns of the entries, if no row has two."""
         there = self.size != 0.0
         return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
 
@@ -88,7 +87,7 @@ class Affine:
 
 
 SUM_ROUNDING = 8.0 * EPS
-"""Relative error of a sum of up to eight exact terms: seven roundings, and the bound's."""
+"""Relative error of a sum of up to eight exact terms."""
 
 
 @frozen(eq=False, slots=False)

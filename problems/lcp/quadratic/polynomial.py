@@ -1,7 +1,7 @@
 """Krawczyk's test for quadratic homotopies: I - Y(s) G' as a polynomial in x = s - middle.
 
 The preconditioner is Y(s) = (I - x E + x^2 C) Y_0. Units d are powers of two near the radii. E, C and the remainder
-need two digits: single precision, with bounded rounding, costs half.
+need two digits, so single precision suffices.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Polynomial:
         chart, form = slabs.cells.chart, derivative.form
         G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1) * d[:, None, :]
         moving = bool(slabs.offset.any())
-        # Pivoting needs rows of equal size; those of complementary pairs may vanish.
+        # Pivoting needs rows of equal size.
         rows = np.abs(G0).max(axis=2, keepdims=True)
         Y = inverses(G0 / rows) / rows.transpose(0, 2, 1)
         whole, *found = form.times(Y, derivative.a, derivative.b, chart, d, 4 if moving else 1)
@@ -126,8 +126,8 @@ class Polynomial:
     def _errors(self) -> tuple[Array, Array]:
         """A vector x, and bounds of |I - Y G'| x from rounding and Y_0 G_0, scaled.
 
-        I, E, F and H are off by e_k, C by e_C from E E - F: e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) +
-        t^3 (...) and so on.
+        The errors e_k of I, E, F, H, and e_C of C, give e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) + t^3
+        (...) and so on.
         """
         with np.errstate(all="ignore"):
             misfit = self.misfit / self.d

@@ -1,8 +1,8 @@
-"""Implicit enumeration of complementary faces: linear programs exclude most of them in groups.
+"""Implicit enumeration of complementary faces, which linear programs exclude in groups.
 
 A node fixes some x_i and some w_i at zero. If no x >= 0, w >= 0 has these zeros, a row of the dictionary gives a
-multiplier, which `proof.groups` checks. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is
-fixed either way.
+multiplier for `proof.groups`. Else the point with least c'x is a solution, or a pair x_i > 0, w_i > 0 is fixed either
+way.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from problems.lcp.reference.enumeration import Exhaustion
 Active = NDArray[np.bool_]
 
 ROUNDED_TO_ZERO = 1e-9
-"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide, and claims are checked."""
+"""Smaller entries, relative to the largest, cause no pivot: linear programs only guide."""
 
 PIVOTS_PER_NODE = 50
-"""Most pivots, times the order: none of 600 nodes (n = 20 to 60) needed more than the order."""
+"""Most pivots over the order: none of 600 nodes needed more than the order."""
 
 
 @frozen(eq=False)
@@ -44,8 +44,7 @@ class Node:
 class Branching:
     """The tree of one problem.
 
-    `problem`: dense. `accepts`: whether the caller accepts the face with these w_i = 0.
-    `accepted`: whether it did.
+    `accepts` tells whether the caller accepts the face with these w_i = 0.
     """
 
     problem: LCP
@@ -61,7 +60,6 @@ class Branching:
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
         self._excluding = Excluding(problem)
-        # Different costs leave few pivots tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
         rows = np.column_stack([problem.A, problem.q]) / unit_of(problem)
         table = np.vstack([rows, np.append(costs, 0.0)])
@@ -86,14 +84,12 @@ class Branching:
         return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
-        """Exclude a node or queue its children; whether to go on."""
         dictionary, fixed, n = node.dictionary, node.fixed, self.problem.n
         row = infeasible_row(dictionary, fixed)
         if row is None:
             return False
         if row >= 0:
             if not self._excluded(node, row):
-                # Floats do not suffice: its children decide.
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
@@ -125,7 +121,7 @@ class Branching:
         return group is not None
 
     def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
-        """Fix the pair whose children's cost bounds differ most; the cheaper child is next."""
+        """Fix the pair whose children's cost bounds differ most."""
         dictionary, n = node.dictionary, self.problem.n
         places = np.empty(2 * n + 1, dtype=np.intp)
         places[dictionary.basic] = np.arange(n + 1)
@@ -148,7 +144,6 @@ class Branching:
             self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
 
     def _divided(self, node: Node, closed: Active) -> bool:
-        """Fix any open pair, or decide a face in rationals."""
         if not closed.all():
             self._put(node, int(closed.argmin()), x_first=True)
             return True
@@ -160,9 +155,8 @@ class Branching:
 
 
 def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
-    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them, None without an end.
-
-    `dictionary`: dually feasible, cost last; changes.
+    """The row that forbids the fixed zeros, by the dual simplex method; -1 if a point has them,
+    None if the method does not end. The dictionary changes.
     """
     n = dictionary.nonbasic.size
     for _ in range(PIVOTS_PER_NODE * n):

@@ -18,18 +18,17 @@ from problems.lcp.proof.groups import Groups
 from problems.lcp.proof.pieces import doubtful
 
 LARGEST_FACES = 14
-"""Largest order: 2^14 faces, or pieces, take 1.2 s for one-digit integers."""
+"""Largest order: 2^14 faces take 1.2 s for one-digit integers."""
 
 PER_PIECE = 3
-"""Most unknowns with bounds, times the order of an LCP with as many faces: free ones enlarge pieces."""
+"""Most unknowns with bounds over the order of an LCP with as many faces."""
 
 
 @frozen
 class ExactSolution:
     """One rational solution: x >= 0, w = A x + q >= 0, x_i w_i = 0, exactly.
 
-    `faces`: the faces {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: whether they hold no other
-    solution.
+    `faces` are those that contain it; `isolated`: whether they hold no other solution.
     """
 
     x: tuple[Fraction, ...]
@@ -50,10 +49,7 @@ class ExactSolution:
 
 @frozen
 class Enumeration:
-    """The distinct solutions on all faces; `solvable` is a proof either way.
-
-    It holds all isolated ones, and a point of each continuum.
-    """
+    """The distinct solutions on all faces: all isolated ones, and a point of each continuum."""
 
     solutions: tuple[ExactSolution, ...]
 
@@ -74,7 +70,7 @@ class Enumeration:
 
 
 def solve_by_enumeration(problem: LCP) -> Enumeration:
-    """All solutions of LCP(q, A), by brute force over 2^n faces; floats are exact rationals.
+    """All solutions of LCP(q, A), by exact trial of 2^n faces.
 
     Parameters
     ----------
@@ -88,8 +84,7 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
 
     Notes
     -----
-    Faces with singular submatrices are linear feasibility problems, solved exactly by the simplex method. There is no
-    tolerance.
+    The simplex method decides faces with singular submatrices exactly.
     """
     require_lcp(problem)
     entries, q, scale = _integers(problem)
@@ -110,7 +105,7 @@ class Exhaustion:
     faces : int
         Number tried.
     groups : Groups, optional
-        Excluded groups with multipliers; `Groups.holds` checks them again.
+        Excluded groups with multipliers.
     """
 
     x: tuple[Fraction, ...] | None
@@ -119,12 +114,12 @@ class Exhaustion:
 
     @property
     def solvable(self) -> bool:
-        """Whether a solution exists: a proof either way."""
+        """Whether a solution exists."""
         return self.x is not None
 
     @property
     def point(self) -> Array | None:
-        """X in floats, shape (n,), infinite or zero beyond their range."""
+        """The point x in floats, shape (n,), or None."""
         return None if self.x is None else np.array([_float(value) for value in self.x])
 
 
@@ -143,7 +138,7 @@ def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
 def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
     """Decide exactly whether the problem has a solution; ValueError unless `decidable`.
 
-    `filtered`: skip pieces that floats with error bounds exclude.
+    If `filtered`, skip pieces that floats with error bounds exclude.
     """
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
@@ -159,7 +154,6 @@ def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
 
 
 def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
-    """Every state, the first index changing fastest."""
     choices = []
     for low, high in zip(problem.lower[::-1], problem.upper[::-1]):
         inside = () if low == high else (0,)
@@ -168,14 +162,12 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The data as integers over one scale."""
     if not decidable(problem):
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     return whole_numbers(problem)
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
-    """The point in the problem's units; `wide`: faces with more solutions."""
     support = sum(1 << i for i, v in enumerate(point.x) if v)
     outside = sum(1 << i for i, v in enumerate(point.w) if v)
     faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]

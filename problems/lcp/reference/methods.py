@@ -1,4 +1,4 @@
-"""Published reference methods, on dense matrices: a sparse A becomes dense."""
+"""Published reference methods, on dense matrices."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 SOLVED_BELOW = 1e-8
-"""Largest natural residual of a solution, relative to 1 + |q|_inf; relative to |x| diverging iterates could pass,
-unless A is R0."""
+"""Largest natural residual of a solution, relative to 1 + |q|_inf; relative to |x| diverging iterates could pass."""
 
 MODULUS_ITERATIONS, MIN_NEWTON_ITERATIONS = 10_000, 300
 """Most iterations: convergent runs take some hundred, from zero some ten."""
@@ -22,7 +21,7 @@ MODULUS_ITERATIONS, MIN_NEWTON_ITERATIONS = 10_000, 300
 
 @frozen(eq=False)
 class ReferenceResult:
-    """The outcome of a reference method, checked on the data.
+    """The outcome of a reference method.
 
     Attributes
     ----------
@@ -31,7 +30,7 @@ class ReferenceResult:
     solved : bool
         Whether the residual is at most `SOLVED_BELOW` (1 + |q|_inf).
     residual : float
-        The natural residual, absolute; infinite without x.
+        The natural residual; infinite without x.
     iterations, factorizations : int
         Pivots or iterations; matrices factored.
     message : str
@@ -68,8 +67,8 @@ def _dense(problem: LCP) -> Array:
 def lemke(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by Lemke's method with the covering vector of ones.
 
-    The lexicographically least of tied rows leaves, so it ends at a solution or on a secondary ray. O(n^2) per pivot,
-    at most 50 n + 100 pivots.
+    The lexicographically least of tied rows leaves, so it ends at a solution or on a secondary ray. It takes at most 50
+    n + 100 pivots.
 
     Parameters
     ----------
@@ -97,8 +96,8 @@ def lemke(problem: LCP) -> ReferenceResult:
 def modulus(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by the modulus iteration (I + A) z_next = (I - A)|z| - q from z = 0.
 
-    A fixed point gives x = |z| + z and w = |z| - z. It converges for symmetric P and some other matrices; elsewhere it
-    may cycle or diverge.
+    A fixed point gives x = |z| + z and w = |z| - z. It converges for symmetric P-matrices; elsewhere it may cycle or
+    diverge.
 
     Parameters
     ----------
@@ -106,7 +105,7 @@ def modulus(problem: LCP) -> ReferenceResult:
 
     References
     ----------
-    van Bokhoven 1980; Schaefer, On the modulus algorithm for the LCP, Oper. Res. Lett. 32, 2004.
+    van Bokhoven 1980; Schaefer, Oper. Res. Lett. 32, 2004.
     """
     z = x = np.zeros(problem.n)
     factors, exchanged, singular = dgetrf(_dense(problem) + np.eye(problem.n))
@@ -115,7 +114,7 @@ def modulus(problem: LCP) -> ReferenceResult:
     for iteration in range(1, MODULUS_ITERATIONS + 1):
         size = np.abs(z)
         z = dgetrs(factors, exchanged, size - problem.A @ size - problem.q)[0]
-        if not np.abs(z).max() <= 1e20:  # near overflow, or NaN
+        if not np.abs(z).max() <= 1e20:
             return _result(problem, x, iteration, 1, f"Diverged after {iteration} iterations.")
         x = np.abs(z) + z
         if is_solved(problem, x):
@@ -126,8 +125,7 @@ def modulus(problem: LCP) -> ReferenceResult:
 def min_newton(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) from zero by damped min-Newton, the primal-dual active-set method with a line search.
 
-    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular. If none reduces the merit, the
-    full step is taken.
+    A step makes w = 0 where x_i > w_i and x = 0 elsewhere, by least squares if singular.
 
     Parameters
     ----------
@@ -135,14 +133,13 @@ def min_newton(problem: LCP) -> ReferenceResult:
 
     References
     ----------
-    Pang, Newton's method for B-differentiable equations, Math. Oper. Res. 15, 1990; Hintermueller, Ito and Kunisch,
+    Pang, Math. Oper. Res. 15, 1990; Hintermueller, Ito and Kunisch,
     SIAM J. Optim. 13, 2003.
     """
     A, x = _dense(problem), np.zeros(problem.n)
     for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _solved_on(A, x > w, -np.minimum(x, w)))
-        # Polish a solution while it improves.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return _result(problem, x, iteration, iteration + 1, "")
         x = trial
@@ -151,7 +148,6 @@ def min_newton(problem: LCP) -> ReferenceResult:
 
 
 def _solved_on(A: Array, active: NDArray[np.bool_], right: Array) -> Array:
-    """Solve J d = right, with rows of A where active, else of I; least squares if singular."""
     J = np.where(active[:, None], A, np.eye(len(A)))
     try:
         return np.asarray(np.linalg.solve(J, right))

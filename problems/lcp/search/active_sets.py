@@ -1,7 +1,6 @@
-"""Active sets: Newton's method on min(x, A x + q), from a guess of the set where x is positive.
+"""Active sets: Newton's method on min(x, A x + q).
 
-The guess comes from the caller, from coarser problems of a grid, or from q < 0. For semidefinite or symmetric A, rounds
-with A + shift I follow, for a program the augmented Lagrangian.
+If A is semidefinite or symmetric, rounds with A + shift I follow; for a program, the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -27,10 +26,10 @@ DESCENDED = "Solved by descent of the quadratic function in the box: a point tha
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
-"""Most corrections for a Z-matrix; n are enough, since each enlarges the active set until it is right."""
+"""Most corrections for a Z-matrix, where each enlarges the active set."""
 
 PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
-"""Of the proximal method where A is semidefinite, and of descent in a box."""
+"""Rounds of the proximal method where A is semidefinite, and of descent in a box."""
 
 
 @define(eq=False)
@@ -61,9 +60,9 @@ class ActiveSets:
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
         first = first_state(search)
         yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
-        facts = search.facts  # as costly as a small solve
+        facts = search.facts  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
-            return  # singular, as in contact problems: pivots are quicker
+            return
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
@@ -88,11 +87,11 @@ def zero_solves(problem: MixedLCP) -> bool:
 
 
 def first_state(search: Search) -> State:
-    """The state at the point nearest to zero; for a convex function after projected gradient steps."""
+    """The state at the point nearest to zero, or for a convex function after projected gradient steps."""
     problem = search.problem
     if not problem.standard:
         convex = search.facts.symmetric and not search.facts.negative_diagonal
         return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
-    # On a grid take q_i = 0 too: these else join one by one (Chandrasekaran's method).
+    # On a grid these join one by one otherwise (Chandrasekaran's method).
     grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
     return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)

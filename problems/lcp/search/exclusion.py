@@ -1,7 +1,6 @@
-"""Exclusion of faces: each node of a tree fixes some x_i and some w_i at zero, and a proof excludes its faces.
+"""Exclusion of faces: each node of a tree fixes some x_i and some w_i at zero.
 
-A Farkas vector excludes the root if no point is feasible; floats with error bounds, or exact arithmetic, exclude the
-leaves.
+A Farkas vector may exclude the root; floats with error bounds, or exact arithmetic, exclude the leaves.
 """
 
 from __future__ import annotations
@@ -19,15 +18,14 @@ from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.search import Search
 
 LARGEST_LEAVES = 5
-"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots; at n = 6 both take as long."""
+"""Up to this order floats exclude all faces in 0.1 ms, quicker than pivots."""
 
 LARGEST_TREE = 40
-"""Largest order of the tree: feasible Gaussian problems take 5 to 150 nodes up to n = 20, 1,200 at 40, of 0.1 to 0.2 ms
-each; at n = 60 2 to 7 s, where restarts take 0.6 s."""
+"""Largest order of the tree: Gaussian problems take up to 1,200 nodes of 0.2 ms at n = 40; at n = 60 2 to 7 s, where
+restarts take 0.6 s."""
 
 LARGEST_PROOF = 30_000_000
-"""Largest order times entries for the linear program that seeks a Farkas vector: two seconds for a dense matrix of
-order 300."""
+"""Largest order times entries of the linear program for a Farkas vector: two seconds for order 300."""
 
 TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 
@@ -82,7 +80,7 @@ class Exclusion:
     sought: bool = field(default=False, init=False)
 
     def run(self, work: float) -> str:
-        """Visit up to `work` nodes (0: the root alone), seek a Farkas vector, try all leaves of a small problem."""
+        """Visit up to `work` nodes (0: the root alone), seek a Farkas vector, try all leaves."""
         search = self.search
         if work and groupable(search) and self._branched(int(work)):
             assert self.tree is not None

@@ -25,7 +25,7 @@ from problems.lcp.search.search import Candidate, Search
 
 
 def answer(search: Search, message: str) -> Solution:
-    """The answer, from all that the search found; `message` says what was done."""
+    """The answer; `message` says what was done."""
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
     rest = (
@@ -72,12 +72,11 @@ def exactly(search: Search, found: Solution) -> Solution:
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
     """The scaling for the search, or None.
 
-    `roughly`: keep the units of an LCP with similar largest entries in all rows and columns, but for a common factor:
-    to find others costs as much as a solution.
+    `roughly`: keep the units, but for a common factor, if largest entries are similar.
     """
     if roughly and problem.standard:
         scaled, alike = without_far_factor(problem)
-        # Balancing may round these: then exact arithmetic decides.
+        # Balancing may round: then exact arithmetic decides.
         plain = problem if scaled is None else scaled.problem
         if alike and (problem.n > LARGEST_DECIDED or not extreme(plain)):
             return scaled
@@ -85,7 +84,7 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
 
 
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer in the given units; scaling is exact."""
+    """The answer in the given units."""
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
@@ -110,7 +109,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
 
 
 def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solution:
-    """The answer with fixed unknowns put back and proofs repeated."""
+    """The answer with fixed unknowns put back."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
@@ -167,13 +166,11 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
 
 
 def _rounded(found: Solution, tolerance: float) -> bool:
-    """Whether a row of a solved program misses the tolerance relative to its own terms."""
     end = found.certificate
     return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
-    """The answer at a point of the given problem, infinite or zero beyond floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if (

@@ -23,13 +23,13 @@ from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
-"""Largest order pivoted together: at n = 20 in a tenth of `solve`'s time, at n = 50 in half."""
+"""Largest order pivoted together: n = 20 takes a tenth of `solve`'s time."""
 
 LARGEST_ALL_FACES = 8
-"""Largest order with all faces tried together: 1.6 ms (n = 8), where `solve` takes 4 ms; at n = 9 both take 4 ms."""
+"""Largest order with all faces tried together: n = 8 takes 1.6 ms, where `solve` takes 4 ms."""
 
 TABLE_ENTRIES = 1 << 16
-"""Table entries of a batch: half a megabyte fits the cache."""
+"""Table entries of a batch, which fit the cache."""
 
 
 @frozen(eq=False)
@@ -41,7 +41,7 @@ class Answers:
     x : Array of shape (k, n)
         The solutions; NaN without one.
     outcome : ndarray of int, shape (k,)
-        An `Outcome` each.
+        Each an `Outcome`.
     residual, relative_residual : Array of shape (k,)
         As in `Certificate`; infinite without a point.
     singly : integer array
@@ -56,7 +56,7 @@ class Answers:
 
     @property
     def solved(self) -> NDArray[np.bool_]:
-        """Which are solved, perhaps only to working precision; shape (k,)."""
+        """Which problems are solved, shape (k,)."""
         return np.isin(self.outcome, (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION))
 
     def __len__(self) -> int:
@@ -73,9 +73,8 @@ def solve_many(
 ) -> Answers:
     """Solve k problems LCP(q_i, A_i) of one order, or LCP(q_i, A) for one matrix.
 
-    Up to order 20 Lemke's method runs on all together. Up to order 8 all faces of the rest are tried together, with
-    error bounds: this finds a solution or proves that none exists. `solve` treats the others singly. All ends are
-    certified.
+    Up to order 20 Lemke's method runs on all together. Up to order 8 all faces of the rest are tried, which finds a
+    solution or proves that none exists. `solve` treats the others singly.
 
     Parameters
     ----------
@@ -83,9 +82,9 @@ def solve_many(
     q : array_like, shape (k, n)
     tolerance : float, default 1e-10
     budget : continuation.Budget, optional
-        Of each problem solved singly.
+        For each problem solved singly.
     executor : concurrent.futures.Executor, optional
-        Runs batches; answers stay the same.
+        Runs batches.
 
     Returns
     -------
@@ -98,8 +97,7 @@ def solve_many(
 
     References
     ----------
-    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
-    Stone, Algorithm 4.4.5.
+    Lemke, Management Science 11, 1965; Cottle, Pang and Stone, Algorithm 4.4.5.
     """
     matrices, constants = _stacks(A, q)
     solve(LCP(np.eye(1), np.ones(1)), tolerance=tolerance, budget=budget)

@@ -56,7 +56,7 @@ class Outcome(Described):
 
     @property
     def success(self) -> bool:
-        """Whether a solution was found, perhaps only to working precision."""
+        """Whether a solution was found."""
         return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
@@ -94,25 +94,25 @@ class Solution:
     problem : MixedLCP
     outcome : Outcome
     message : str
-        Says what was done, and what the outcome means.
+        What was done, and what the outcome means.
     certificate : Certificate or None
-        Of the point `x`, whatever the outcome.
+        Of the point `x`.
     paths : tuple of Path
-        All traced paths, in order; of failed restarts only the ends (an archive keeps all).
+        All traced paths; of failed restarts only the ends.
     best : int
         Index of the path that led to `x`, or -1.
     counts : Counts
-        Of all paths and finishes.
+        For all paths and finishes.
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
         Proves UNSOLVABLE if no point is feasible.
     exhaustion : Exhaustion or None
-        If all faces were tried: the other proof of UNSOLVABLE.
+        Proves UNSOLVABLE if all faces were tried.
     float_farkas : FloatFarkas or None
-        The vector y of INFEASIBLE_TO_PRECISION.
+        Proves INFEASIBLE_TO_PRECISION up to rounding.
     program : Program or None
-        The quadratic program behind the problem.
+        The program behind the problem.
     """
 
     problem: MixedLCP
@@ -130,7 +130,7 @@ class Solution:
 
     @property
     def proof(self) -> str:
-        """How UNSOLVABLE is proved, or that a solution exists beyond floats; else empty."""
+        """The proof of UNSOLVABLE, or that a solution exists beyond floats; else empty."""
         if self.outcome is Outcome.NOT_FOUND and self.exhaustion is not None and self.exhaustion.solvable:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
@@ -141,7 +141,7 @@ class Solution:
 
     @property
     def farkas(self) -> Farkas | None:
-        """The proof that no point is feasible, computed on demand after exhaustion, or None."""
+        """The proof that no point is feasible, or None."""
         at_once = self.exhaustion is not None and self.exhaustion.groups is None and self.problem.standard
         if not at_once or self._farkas is not None or self.outcome is not Outcome.UNSOLVABLE:
             return self._farkas
@@ -179,7 +179,7 @@ class Solution:
 
     @property
     def solved(self) -> bool:
-        """Same as `success`."""
+        """See `success`."""
         return self.success
 
     @property
@@ -194,30 +194,30 @@ class Solution:
 
     @property
     def named(self) -> Mapping[str, Array]:
-        """The unknowns by name: x, `equations`, `rows`, `bounds` of a `Program`, else x, w; empty without a point."""
+        """The unknowns by name: x, `equations`, `rows`, `bounds` of a `Program`, else x, w."""
         if self.x is None or self.w is None:
             return {}
         return {"x": self.x, "w": self.w} if self.program is None else self.program.named(self.x, self.w)
 
     @property
     def objective(self) -> float:
-        """The program's objective at x; NaN without a program or a point."""
+        """The program's objective at x, or NaN."""
         if self.program is None or self.x is None:
             return math.nan
         return self.program.objective(self.x[: self.program.n])
 
     @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
+        """The natural residual max_i |min(x_i, w_i)|; infinite without a point."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property
     def relative_residual(self) -> float:
-        """The residual with each row relative to its own terms (`Certificate`)."""
+        """See `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.relative_residual
 
     def plot(self, axes: Any = None) -> Any:
-        """Draw the message, the path that led to x, the face of x and the residual.
+        """Draw the message, the path to x, its face and the residual.
 
         Parameters
         ----------
@@ -242,7 +242,7 @@ class Solution:
         Raises
         ------
         NotDifferentiableError
-            A ValueError: there is no solution, or it is not isolated.
+            If there is no isolated solution.
         """
         if not self.solved or self.x is None:
             raise NotDifferentiableError(f"solution: expected one, found none. {self.outcome}")

@@ -15,22 +15,22 @@ from problems.lcp.data.problem import MixedLCP
 
 @frozen(eq=False)
 class Padded:
-    """An observer that pads paths with NaN to `unknowns`, as an archive needs."""
+    """An observer that pads paths with NaN to `unknowns`, as archives need."""
 
     observer: Observer
     unknowns: int
 
     @classmethod
     def of(cls, observer: Observer, problem: MixedLCP) -> Padded:
-        """Make it for a problem: KKT paths have most unknowns."""
+        """Pad to the KKT path's unknowns."""
         return cls(observer, (3 if problem.standard else 6) * problem.n)
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """Pass on the padded step."""
+        """Pass on the step."""
         self.observer.step(tracer, evolve(step, u=self._filled(step.u), tangent=self._filled(step.tangent)))
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Pass on the padded event."""
+        """Pass on the event."""
         self.observer.event(tracer, evolve(event, u=self._filled(event.u), tangent=self._filled(event.tangent)))
 
     def end(self, tracer: Tracer) -> None:
@@ -48,7 +48,6 @@ class Padded:
 def show(path: Path, homotopy: Any, observer: Observer) -> None:
     """Show an observer a finished path."""
     tracer = Tracer(homotopy)
-    # The archive reads a kink from a growing path's last events.
     tracer.path, tracer.counts = Path(), path.counts
     events = {event.step: event for event in path.events}
     for step in path.steps:

@@ -1,7 +1,7 @@
 """Paths of Wang's and of the KKT homotopy, then restarts from random starts.
 
-An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w that
-solves nothing; other starts lead elsewhere.
+An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w that is
+no solution.
 """
 
 from __future__ import annotations
@@ -37,21 +37,21 @@ from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Candidate, Search
 
 RESTART_STEPS = 60
-"""Most steps of a restart, besides n: of 144 solving paths one took nearly as many. The first path, with shorter steps,
-gets twice as many: one of a Hankel matrix of order 100 had not ended after 3,000."""
+"""Most steps of a restart, besides n: of 144 solving paths one took nearly as many. The first path gets twice as many.
+"""
 
 LARGEST_MADE_DENSE = 500
-"""Up to this order sparse matrices become dense for paths, whose matrices fill: with 5 % entries and n = 200 a path
-then takes a tenth of the time."""
+"""Largest order at which paths make sparse matrices dense, as they fill: with 5 % entries (n = 200) a path takes a
+tenth of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
-"""Last increment of a restart: the finish is exact, and Newton's method about squares it."""
+"""Last increment of a restart: the finish is exact."""
 
 AT_ONCE = 64
-"""Restarts handed over together, more than the workers of one machine."""
+"""Restarts handed over together, more than one machine's workers."""
 
 Patience = Callable[[Step], str]
-"""Maps a step to the reason to give up, empty for none."""
+"""Maps a step to the reason to give up, or ""."""
 
 
 SEARCH = Preset(
@@ -72,10 +72,7 @@ def follow(
     observers: tuple[Observer, ...] = (),
     **options: Any,
 ) -> Path:
-    """Trace a path and try the finish along it; the path counts the factorisations of both.
-
-    `patience`: its reason becomes the path's message.
-    """
+    """Trace a path and try the finish along it. The reason of `patience` becomes its message."""
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)
     tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
@@ -91,10 +88,7 @@ def follow(
 
 @frozen(eq=False)
 class Restart:
-    """The k-th restart: it depends on these fields alone, so another process can trace it.
-
-    `name`: "kkt", or a homotopy in (x, y). `tolerance`: of the finish.
-    """
+    """The k-th restart, which another process can trace."""
 
     structure: Structure
     name: str
@@ -104,7 +98,7 @@ class Restart:
     options: Mapping[str, Any]
 
     def homotopy(self) -> LCPHomotopy:
-        """The homotopy at its start; with the finish solves are not refined."""
+        """The homotopy at its start."""
         problem = self.structure.problem
         start = random_start(problem, np.random.default_rng([self.seed, self.k]))
         return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
@@ -113,7 +107,6 @@ class Restart:
         """Trace the path until it ends or is given up."""
         homotopy, parts, longest, finish = self.homotopy(), {"preset": SEARCH, "examine": True}, np.inf, None
         if self.tolerance is not None:
-            # With the finish only the active set counts.
             finish, longest = Finish(Faces(self.structure), self.tolerance), RESTART_STEPS + homotopy.n
             parts |= {"tolerance": LOOSE, "examine": False}
         return follow(homotopy, finish, budget, lambda step: unending(step, longest) or exhausted(), observers,
@@ -121,7 +114,7 @@ class Restart:
 
 
 def unending(step: Step, longest: float) -> str:
-    """The reason to give up so long a path, empty for none."""
+    """The reason to give up so long a path, or ""."""
     late = step.kind == Kind.REGULAR and step.index >= longest
     return f"it has not ended after {step.index} steps" if late else ""
 
@@ -161,7 +154,7 @@ class Paths:
         return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
 
     def _names(self) -> tuple[str, ...]:
-        """If some a_ii < 0, A is not copositive, and Wang's path mostly diverges, except in a box."""
+        """If some a_ii < 0, Wang's path mostly diverges, except in a box."""
         search = self.search
         if search.asked.homotopy != "auto":
             return (search.asked.homotopy,)
@@ -177,7 +170,6 @@ class Paths:
                 assert isinstance(problem, LCP)
                 start = strictly_feasible_start(problem)
             except NoStrictlyFeasiblePoint as error:
-                # Infeasibility settles the problem.
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
@@ -190,7 +182,7 @@ class Paths:
         hurried = name == "kkt" and automatic and asked.restarts > 0 and search.finish is not None and not asked.options
         longest = 2.0 * (RESTART_STEPS + problem.n) if hurried else np.inf
         preset = {"preset": FAST} if automatic else {}
-        # The finish certifies ends, so arcs need no examination.
+        # The finish certifies ends.
         options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}
         self.add(follow(homotopy, search.finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
                         self._observers(), **options))  # fmt: skip
@@ -207,14 +199,13 @@ class Paths:
         search.paths.append(path)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
-        """The certificate of a path's end, improved by the finish if possible."""
         search, problem = self.search, self.search.problem
         x = problem.clipped(path.endpoint.y[: problem.n])
         end = certify(problem, x)
         if not arrived:
             return end
         if not search.confirmed(end):
-            # Only zeros move, so a stationary point stays one.
+            # Only zeros move: a stationary point stays one.
             zeros = certify(problem, x, search.tolerance)
             zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
             end = min(end, zeros, key=lambda one: one.relative_residual)
@@ -225,7 +216,6 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        """Trace restarts, in order, until one solves the problem; return their number."""
         search, asked = self.search, self.search.asked
         tolerance = None if search.finish is None else search.tolerance
         together = 1 if asked.executor is None else AT_ONCE
@@ -246,7 +236,7 @@ class Paths:
         if asked.executor is None:
             yield tasks[0].trace(self._left(), lambda: search.exhausted, self._observers())
             return
-        # Workers spend CPU time: the wall clock limits them.
+        # Workers spend CPU time, so the wall clock limits them.
         left = evolve(self._left(), seconds=max(search.budget.seconds - search.seconds, 1e-3))
         for task, path in zip(tasks, asked.executor.map(trace_light, tasks, repeat(left))):
             if asked.log is not None:
@@ -263,7 +253,6 @@ class Paths:
         return (*archive, Progress())
 
     def _left(self) -> Budget:
-        """The budget left, at least one of each; seconds are checked at each step."""
         b, counts = self.search.budget, self.search.counts
         return Budget(
             steps=max(b.steps - counts.accepted, 1.0), factorizations=max(b.factorizations - counts.factorizations, 1.0)

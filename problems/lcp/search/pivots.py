@@ -1,4 +1,4 @@
-"""Pivots: Lemke's method, that of Lemke and Howson for games, and the path from a nearby problem's solution.
+"""Pivots by the methods of Lemke and of Lemke and Howson, and from a nearby problem's solution.
 
 An almost complementary path ends at a solution or on a ray, which proves infeasibility for semidefinite A.
 """
@@ -24,28 +24,26 @@ LARGEST_TABLE = 3000
 """Largest order that is pivoted: each pivot visits all 72 MB of the table."""
 
 PIVOT_WORK = LARGEST_TABLE**2
-"""Most pivots times order: at the largest order one per unknown, as traffic takes; at n = 1000 one second, where a path
-takes ten."""
+"""Most pivots times order: one second at n = 1000, where a path takes ten."""
 
 COVERINGS = 5
-"""Covering vectors for a quadratic program: on 40 indefinite box QPs 5 suffice with entries 10^U(-3, 0); entries from
-0.1 to 3 need up to 51."""
+"""Covering vectors for a quadratic program: 5 with entries 10^U(-3, 0) suffice on 40 indefinite box QPs."""
 
 SHORT_PATHS = 8
-"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of the labels of games of order 1000 have such a path,
-most take more than 10,000."""
+"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of the labels of games of order 1000 have such a path.
+"""
 
 GAME_WORK = 1_000_000_000
 """Most table entries that a game's path visits: covariant games of order 300 take up to 17,000 pivots, 0.6 s."""
 
 
 def most_pivots(n: int, per_order: float = 10.0) -> int:
-    """Pivots worth trying before a path: `per_order` times n, fewer for large n."""
+    """Pivots worth trying before a path, fewer per order for large n."""
     return min(int(per_order * n), PIVOT_WORK // n)
 
 
 def pivotable(search: Search) -> bool:
-    """Whether the problem is an LCP whose table is small enough, with the finish on."""
+    """Whether the problem is an LCP with a small table, and the finish is on."""
     return search.problem.standard and search.problem.n <= LARGEST_TABLE and search.finish is not None
 
 
@@ -76,7 +74,7 @@ class Pivots:
         return ""
 
     def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:
-        """Paths from random covering vectors for programs, last the path from e."""
+        """Paths from random covering vectors for programs, then from e."""
         most, unit = most_pivots(problem.n, work), unit_of(problem)
         bounds = constraints(problem)
         if bounds.any():
@@ -87,11 +85,11 @@ class Pivots:
         yield covering(problem, np.full(problem.n, unit)), most
 
     def _lemke_howson(self, played: Game, work: float) -> Iterator[tuple[AlmostComplementary, int]]:
-        """Paths from a label of each player, ever longer, then short ones from many labels.
+        """Ever longer paths from one label of each player, then short ones from many labels.
 
         References
         ----------
-        Codenotti, De Rossi and Pagan, "An experimental analysis of Lemke-Howson algorithm", arXiv 0811.3247, 2008.
+        Codenotti, De Rossi and Pagan, arXiv 0811.3247, 2008.
         """
         n, m = played.problem.n, played.actions
         most = int(work * n)
@@ -107,23 +105,23 @@ class Pivots:
 
 
 def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool:
-    """Follow a path; return whether it gave a solution or a proof that none exists."""
+    """Follow a path; return whether it settled the problem."""
     ended = None if path is None else path.run(most)
     if path is None or ended not in (Ended.REACHED, Ended.RAY):
         return False
     if ended is Ended.RAY:
         search.proof = infeasibility(search.problem, guess=path.ray())
         return search.proof is not None
-    # Rounding may make the last basis singular: its own point may do.
+    # Rounding may make the last basis singular.
     if search.settle(active_state(path.active)):
         return True
     return search.finish is not None and search.found(search.finish.take(path.values()))
 
 
 def by_guess(search: Search, guess: Nearby) -> bool:
-    """Follow LCP(q + t (q' - q), A) from t = 1 to 0 (Cottle, Pang and Stone, section 4.5); return whether it solved.
+    """Follow LCP(q + t (q' - q), A) from t = 1 to 0 (Cottle, Pang and Stone, section 4.5).
 
-    q' = w - A x with x and w of the guess, so x solves LCP(q', A) whatever its own problem.
+    With q' = w - A x the guess x solves LCP(q', A). Returns whether x was reached.
     """
     problem = search.problem
     x = problem.clipped(guess.x)
@@ -144,9 +142,9 @@ def by_guess(search: Search, guess: Nearby) -> bool:
 def constraints(problem: LCP) -> Mask:
     """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions, where d is zero.
 
-    ``A = [[Q, B'], [-B, 0]]`` up to units and order. With t in the rows of Q alone, LCP(q + t d, A) is the program with
-    cost c + t d; for large t and bounded x its only stationary point is x = 0, so no other ray returns (Eaves, "On
-    quadratic programming", Management Science 17, 1971).
+    ``A = [[Q, B'], [-B, 0]]``. With t in the rows of Q alone, LCP(q + t d, A) is the program with cost c + t d; for
+    large t and bounded x its only stationary point is x = 0 (Eaves, Management Science 17,
+    1971).
     """
     rows: Mask = (problem.q >= 0.0) & (problem.A.diagonal() == 0.0)
     none = np.zeros_like(rows)

@@ -1,14 +1,12 @@
 """Douglas and Rachford's iteration between two sets: the points with w = A x + q, and those with complementary pairs.
 
-The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. A step is one product with a
-matrix, a thousandth of a path's. Without convexity nothing guarantees convergence, but only solutions are fixed points.
-Random problems neither monotone nor P take 0.02 s (n = 100), 0.3 (300), 3 (600); restarts take 1, 60, over 300
+The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. Nothing guarantees convergence,
+but only solutions are fixed points. Random problems neither monotone nor P take 0.3 s (n = 300); restarts take 60
 (`examples/benchmarks/outside.py`).
 
 References
 ----------
-Elser, Rankenburg and Thibault, "Searching with iterated maps", PNAS 104, 2007. Aragon Artacho, Campoy and Tam, "The
-Douglas-Rachford algorithm for convex and nonconvex feasibility problems", Math. Methods Oper. Res. 91, 2020.
+Elser, Rankenburg and Thibault, PNAS 104, 2007; Aragon Artacho, Campoy and Tam, Math. Methods Oper. Res. 91, 2020.
 """
 
 from __future__ import annotations
@@ -28,21 +26,20 @@ from problems.lcp.search.search import Search
 Single = NDArray[np.float32]
 
 RUNS_AT_ONCE = 16
-"""The slowest of 24 Gaussian problems, n = 200, takes 2.1 s with two runs, 1.3 with eight, 0.16 with sixteen."""
+"""The slowest of 24 Gaussian problems, n = 200, takes 2.1 s with two runs, 0.16 with sixteen."""
 
 CHECKED = 25
-"""Iterations between two comparisons of faces, each as costly at n = 30. A run at a solution keeps its face, so
-unchanged faces are tried."""
+"""Iterations between comparisons of faces: unchanged faces are tried."""
 
 LARGEST_REFLECTED = 1000
 """Largest order: a round takes a minute there; Gaussian problems need 5 to 17 s."""
 
 ROUND_WORK = 4e8
-"""Least iterations times n^2 of a round: 1.3 s; 16 s at order 600."""
+"""Least iterations times n^2 of a round, 1.3 s."""
 
 
 def run_length(n: int) -> int:
-    """Iterations until all runs restart: Gaussian problems need 100 (n = 30), 300 (100), 1,000 (300), 3,000 (600)."""
+    """Iterations of a round: Gaussian problems need 300 (n = 100), 3,000 (600)."""
     return 1000 + 10 * n
 
 
@@ -50,8 +47,8 @@ def run_length(n: int) -> int:
 class Sets:
     """The two sets, in units that weigh w like x.
 
-    `onto`, (2 n, 2 n): projects onto differences of points with w = A x + q. `nearest`, (2 n, 1): the point of that set
-    nearest to w = 0 and the x nearest to zero; its mean entry is the unit. `lower`, `upper`, (n, 1): from that x.
+    `onto` projects onto differences of points with w = A x + q. Its point `nearest` is nearest to w = 0 and to the x
+    nearest to zero, from which bounds count.
     """
 
     onto: Single
@@ -64,7 +61,7 @@ class Sets:
     def of(cls, problem: MixedLCP) -> Sets | None:
         """The sets of a problem; None without a finite, positive unit of length."""
         A, n = problem.A.toarray() if problem.sparse else problem.A, problem.n
-        # The median ignores a large rank-one term, as in games.
+        # The median ignores a large rank-one term.
         diagonal = np.abs(sl.qr(A, mode="r", check_finite=False)[0].diagonal())
         unit = float(np.median(diagonal)) or largest(diagonal) or 1.0
         basis = sl.qr(np.vstack([np.eye(n), A / unit]), mode="economic", overwrite_a=True, check_finite=False)[0]
@@ -78,7 +75,7 @@ class Sets:
         return cls(onto.astype(np.float32), _single(nearest / length), lower, upper, problem.standard)
 
     def rounds(self, random: np.random.Generator) -> Iterator[tuple[int, list[State]]]:
-        """Yield without end the finished rounds and the faces kept over `CHECKED` steps."""
+        """Yield without end the rounds done and the faces kept."""
         n, over = self.lower.size, 0
         while True:
             z = random.standard_normal((2 * n, RUNS_AT_ONCE), np.float32)
@@ -96,7 +93,6 @@ class Sets:
             over += 1
 
     def _complementary(self, z: Single) -> tuple[NDArray[np.int8], Single]:
-        """The nearest complementary points, and their faces."""
         n = self.lower.size
         x, w = z[:n], z[n:]
         if self.standard:
@@ -129,7 +125,7 @@ class Reflections:
     _runs: Iterator[tuple[int, list[State]]] | None = None
 
     def run(self, work: float) -> str:
-        """Run up to `work` rounds, at least one; fewer if n is large."""
+        """Run up to `work` rounds, fewer if n is large."""
         search, n = self.search, self.search.problem.n
         if self._runs is None:
             sets = Sets.of(search.problem)

@@ -29,7 +29,7 @@ from problems.lcp.search.work import default_budget
 
 @frozen(eq=False)
 class Nearby:
-    """A nearby problem's solution x, and w there."""
+    """A nearby problem's solution x, and its w."""
 
     x: Array
     w: Array
@@ -53,10 +53,7 @@ class Asked:
 
 @frozen(eq=False)
 class Candidate:
-    """A point that a method reached; `path` is its path's index, or -1.
-
-    `stationary`: x ends a KKT path and satisfies its equations.
-    """
+    """A point that a method reached; `path` is its path's index, or -1."""
 
     certificate: Certificate
     path: int = -1
@@ -65,11 +62,7 @@ class Candidate:
 
 @define(eq=False, slots=False)
 class Search:
-    """The state of a search.
-
-    `finish`: None if switched off. `traced`: cost of the paths. `ends`: points reached. `proof`: of infeasibility.
-    `tried`: restarts begun.
-    """
+    """The state of a search."""
 
     structure: Structure
     finish: Finish | None
@@ -104,12 +97,12 @@ class Search:
 
     @property
     def seconds(self) -> float:
-        """Wall-clock time; no method decides by it."""
+        """Wall-clock time; no method depends on it."""
         return time.perf_counter() - self.began
 
     @property
     def processor(self) -> float:
-        """CPU seconds: a busy machine does not change them."""
+        """CPU seconds, which a busy machine does not change."""
         # Reading the clock takes longer than a small problem.
         return time.process_time() - self._processor if self.budget.seconds < math.inf else 0.0
 
@@ -121,12 +114,12 @@ class Search:
 
     @cached_property
     def share(self) -> float:
-        """The budget over the default one, at most 1; default work scales with it."""
+        """The budget over the default one, at most 1."""
         return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
     @cached_property
     def facts(self) -> Structure:
-        """The matrix, if a method asked what it is: then the message says so."""
+        """The matrix's properties, which the message then reports."""
         return self.structure
 
     @property
@@ -144,7 +137,7 @@ class Search:
         return self.solved
 
     def settle(self, state: State, policy: Policy = AT_END) -> bool:
-        """Try active sets; return whether they led to a solution."""
+        """Try active sets; return whether one solves."""
         return self.finish is not None and self.found(self.finish.settle(state, policy))
 
     def found(self, x: Array | None) -> bool:
@@ -155,7 +148,7 @@ class Search:
         return True
 
     def best(self) -> Candidate | None:
-        """The best candidate: confirmed, to precision, nearly solved, stationary, least residual."""
+        """The best candidate."""
         nearest = None if self.finish is None else self.finish.nearest
         ends = self.ends if nearest is None else [*self.ends, Candidate(nearest)]
         if len(ends) < 2:

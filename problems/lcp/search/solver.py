@@ -76,31 +76,29 @@ def solve(
     ----------
     problem : LCP, MixedLCP or Program
     homotopy : str
-        "auto" tries active sets, pivots, exclusion of faces and reflections, then Wang's path, the KKT path and
-        restarts (order: `search.table`). Or "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu"
-        or "kmm".
+        "auto" tries active sets, pivots, exclusion of faces and reflections, then paths. Or "kkt", "wang", "yu", "xu",
+        "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start; for "kkt" it may be infeasible, and at a feasible one z1 = z2 = e, the paper's start. "auto"
-        accepts zeros and first tries the set x0 > A x0 + q.
+        A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
+        zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem of the same order: first the piecewise linear path from its data is followed.
+        Solution of a nearby problem, from whose data a piecewise linear path is followed.
     finish : bool
-        Whether active sets are tried, before and along the path; without them `path` is the pure homotopy.
+        Whether active sets are tried, before and along paths.
     path : bool
-        Trace a path even if "auto" needs none, and locate its turning and branch points.
+        Trace a path even if "auto" needs none; locate its turning and branch points.
     restarts : int, optional
-        Paths from random starts after the first fails. Default: 0 for a named homotopy, 1000 for "auto".
+        Paths from random starts after the first. Default: 0 for a named homotopy, 1000 for "auto".
     seed : int
-        Seeds random starts and reflections; restart k depends on `seed` and k alone. A call repeats its answer on one
-        machine; elsewhere rounding differs.
+        For random starts and reflections; a call repeats its answer on one machine.
     budget : continuation.Budget, optional
-        For the whole search. Default: the factorisations of about a minute, from n alone (`default_budget`), so no
-        clock decides; reflections add at most half a minute. ``Budget(seconds=60)`` counts CPU seconds.
+        Default: the factorisations of about a minute, from n alone (`default_budget`); reflections add at most half a
+        minute. ``Budget(seconds=60)`` counts CPU seconds.
     tolerance : float
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
         A new HDF5 file for all traced paths; of restarts over an executor only the ends. Without paths it holds the
-        message and the solution as one point (x, w, x), the KKT path's end.
+        solution as the KKT path's end.
     progress : bool
         One progress bar per path (needs tqdm).
     executor : concurrent.futures.Executor, optional
@@ -122,7 +120,7 @@ def solve(
 
     References
     ----------
-    Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
+    Dutta, Das and Jana (see `KKTHomotopy`).
     """
     if isinstance(problem, Program):
         return of_program(problem, solve(problem.problem, homotopy, **_given(locals()), **options))
@@ -167,7 +165,6 @@ def solve(
         Asked(homotopy, start, near, restarts, seed, executor, path, log, progress, dict(options)),
         scaled,
     )
-    # No certificate accepts an overflow.
     with Silence(), one_thread, log if log is not None else nullcontext():
         if beyond:
             found = beyond_floats(problem, tolerance)
@@ -192,7 +189,6 @@ def _title(problem: MixedLCP) -> str:
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
-    """The problem without bounds where they are equal: a start may be anything there."""
     if not problem.fixed.any():
         return problem
     none = np.where(problem.fixed, np.inf, 0.0)
@@ -202,7 +198,6 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 def _check_arguments(
     tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
-    """Refuse at once what would fail late or never."""
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
@@ -267,7 +262,6 @@ def _account(search: Search, settled: str) -> str:
 
 
 def _archive_without_path(log: PathLog, found: Solution) -> None:
-    """Archive the message, and the solution as the KKT path's end (`at_solution`)."""
     homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate

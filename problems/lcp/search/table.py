@@ -1,8 +1,8 @@
 """The methods of `solve` and their order.
 
-A solution lies on one of 2^n complementary faces; one linear system settles a face. *Active sets* move to the face that
-the last signs ask for, *pivots* to a neighbour, *reflections* through points of no face, *paths* through interior
-points; *exclusion* proves many faces empty at once. Rows limit work, so that no clock decides.
+A solution lies on one of 2^n complementary faces. Active sets move to the face that the last signs ask for, pivots to a
+neighbour, reflections through points of no face, paths through interior points; exclusion proves many faces empty at
+once.
 """
 
 from __future__ import annotations

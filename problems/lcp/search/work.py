@@ -15,11 +15,10 @@ LEAST_WORK = 100
 
 
 def default_budget(problem: MixedLCP) -> Budget:
-    """Factorisations, and steps, of about one minute; at least `LEAST_WORK`.
+    """Factorisations and steps of about one minute.
 
-    CPU milliseconds per factorisation, one thread: dense 0.33 (n = 10), 0.46 (50), 0.71 (100), 2.9 (200), 5.4 (300), 17
-    (500), 80 (1000), within a factor of 2 of 0.35 (1 + n^2 / 5000); sparse 6.3 to 180 (n = 900 to 10,000), within a
-    factor of 5 of 0.35 (1 + n / 50).
+    CPU milliseconds per factorisation, one thread: dense 0.33 (n = 10) to 80 (1000), within a factor of 2 of 0.35 (1 +
+    n^2 / 5000); sparse 6.3 to 180 (n = 900 to 10,000), within a factor of 5 of 0.35 (1 + n / 50).
     """
     size = problem.n / 50.0 if problem.sparse else problem.n**2 / 5000.0
     return _budget(max(round(FACTORIZATIONS / (1.0 + size)), LEAST_WORK))
