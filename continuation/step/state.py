@@ -1,4 +1,4 @@
-"""The state of a trace between steps, for archives."""
+"""The state of a trace between steps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from continuation.predictors import Knot
 
 @frozen(eq=False)
 class State:
-    """State at an accepted point; with the settings it determines the rest of the path, bit for bit.
+    """State at an accepted point; with the settings it determines the rest of the path.
 
     Attributes
     ----------
@@ -27,9 +27,9 @@ class State:
         Next step length.
     controller : tuple of float
     monitors : tuple of float
-        Of the events; 0 if found at the point.
+        Values of the events; 0 if found at the point.
     occurrences : tuple of int
-        Of the events.
+        Counts of the events.
     origin : Knot
         The start, with metric `origin_weights`.
     divergence_monitor : tuple of float
@@ -39,11 +39,11 @@ class State:
     last_failed_endgame : float
         Parameter value, or inf.
     index : int
-        Of the last step.
+        The last step's.
     signs : tuple of int
         The piece ahead.
     noise : ndarray, shape (N,), or (0,) where there is none
-        Of each equation.
+        Each equation's.
     tolerance : float
         Raised for noise, else 0.
     """
