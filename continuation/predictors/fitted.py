@@ -1,4 +1,4 @@
-"""Series coefficients without jets: a fit to nearby points of the path."""
+"""Series coefficients without jets, by a fit to nearby points."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ FITTED_ORDER = 11
 """Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
 
 CHORD = Contraction()
-"""With the current factorisation; divergence shortens the range."""
+"""The current factorisation serves; divergence shortens the range."""
 
 ROUNDS = 40
-"""Limit of range changes; 4^-40 of a range is nothing."""
+"""Limit of range changes."""
 
 
 def fitted(
