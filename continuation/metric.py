@@ -157,7 +157,7 @@ class Automatic:
 class Inherited:
     """`Automatic` for a branch, with scales bounded below by its trunk's.
 
-    Scales of components that stand still would shrink from branch to branch.
+    Otherwise scales of components that stand still shrink from branch to branch.
 
     Parameters
     ----------

@@ -22,20 +22,9 @@ OVERHANG = 1e-3
 class Cells:
     """Consecutive pieces of a path; arrays of shape (cells, N + 1) unless stated.
 
-    Attributes
-    ----------
-    begin, end : ndarray
-        Nodes p(0), p(1) of the Hermite cubic p.
-    slope_begin, slope_end : ndarray
-        p'(0), p'(1).
-    chart : ndarray
-        The vector c: u has the parameter s with c . (u - p(s)) = 0.
-    radius : ndarray
-        Tube: |u - p(s)| <= radius by component.
-    slabs : ndarray of int, shape (cells,)
-        Equal parts in the test.
-    place : ndarray, shape (cells, 2)
-        Arclengths of the ends.
+    `begin`, `end`: nodes p(0), p(1) of the Hermite cubic p. `slope_begin`, `slope_end`: p'(0), p'(1). `chart`: the
+    vector c; u has the parameter s with c . (u - p(s)) = 0. `radius`: the tube is |u - p(s)| <= radius by component.
+    `slabs`, shape (cells,): equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
     """
 
     begin: Array

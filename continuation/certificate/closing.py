@@ -25,16 +25,7 @@ class SupportsEndCertificate(Protocol):
     """A homotopy that proves in another way that its ends are solutions."""
 
     def certify_end(self, y: Array) -> str:
-        """A sentence on the end that is proved; empty if nothing is.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N,)
-
-        Returns
-        -------
-        str
-        """
+        """A sentence on the end y, shape (N,), if it is proved; else empty."""
         ...
 
 

@@ -40,12 +40,8 @@ def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
 class Tubes:
     """Cells with test results.
 
-    Attributes
-    ----------
-    undefined : ndarray of bool, shape (cells,)
-        Residual undefined or undecided in the last box.
-    pieces : list of list of list of Piece
-        By cell and observed number.
+    `undefined`, shape (cells,): whether the residual is undefined or undecided in the last box. `pieces`: by cell and
+    observed number.
     """
 
     cells: Cells

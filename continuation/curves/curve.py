@@ -232,37 +232,15 @@ class Curve:
         return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Derivatives by the unknowns and by mu.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        """
+        """Derivatives by the unknowns and by mu."""
         return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative times a direction.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        v : ndarray
-            One longer than y.
-        """
+        """The derivative times a direction."""
         return self._at(y, lam).times(v)
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The bordered derivative, factored by elimination.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        border : ndarray
-            One longer than y.
-        """
+        """The bordered derivative, factored by elimination."""
         return self._at(y, lam).bordered(border)
 
     def _at(self, y: Array, lam: float) -> Here:

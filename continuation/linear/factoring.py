@@ -32,14 +32,8 @@ def check_method(argument: str, name: object) -> str:
 class Factoring:
     """Factors sparse matrices and counts the methods.
 
-    Attributes
-    ----------
-    method : str
-        "auto", "superlu", or "cholmod" for definite matrices.
-    direct : SuperLUMethod
-        For all others.
-    used : dict
-        By name: number of matrices, largest fill.
+    `method`: "auto", "superlu", or "cholmod" for definite matrices. `direct`: for all others. `used`: number of
+    matrices and largest fill by name.
     """
 
     method: str = "auto"

@@ -38,20 +38,10 @@ RANK = SIX_DIGITS
 
 @frozen(eq=False, slots=False)
 class Bordered:
-    """[[A, P], [R, S]], factored whole; A, (n, m), dense or sparse, real or complex.
+    """[[A, P], [R, S]], factored whole; A, (n, m), is dense or sparse, real or complex.
 
-    Attributes
-    ----------
-    shape : (int, int)
-        Of A.
-    matrix : ndarray or sparse array
-        The whole; sparse border rows are scaled.
-    columns : ndarray
-        P, (n, l).
-    lu : object
-        Its factors.
-    scale : ndarray, shape (n + k, 1)
-        Row factors.
+    `shape`: of A. `matrix`: the whole, with scaled border rows if sparse. `columns`: P, (n, l). `lu`: its factors.
+    `scale`, (n + k, 1): row factors.
     """
 
     shape: tuple[int, int]

@@ -78,23 +78,10 @@ class Spectrum:
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide stability.
 
-    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k nearest to
-    a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
-    Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
-
-    Parameters
-    ----------
-    matrix : ndarray, sparse array, Banded or Symmetric, shape (N, N)
-    side : {1, -1}
-    k : int, optional
-        6 by default.
-
-    Raises
-    ------
-    TypeError
-        If the matrix is an operator.
-    ArithmeticError
-        If Arnoldi's method does not converge.
+    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k (default 6)
+    nearest to a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical
+    Equilibria, Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
+    Raises `TypeError` for an operator, `ArithmeticError` if Arnoldi's method does not converge.
     """
     if isinstance(matrix, Symmetric):
         return Spectrum(np.empty(0, dtype=complex), factor_ldl(matrix.matrix)[0].count(side))

@@ -34,15 +34,8 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 class SparseFactor:
     """A factored sparse matrix.
 
-    Attributes
-    ----------
-    name : str
-    solve : callable
-        Solves A x = rhs, shape (N,); keeps `rhs`.
-    fill : int
-        Number of entries, or 0.
-    tell_sign : callable
-        Sign of det A, or 0.
+    `solve`: solves A x = rhs, shape (N,), and keeps `rhs`. `fill`: number of entries, or 0. `tell_sign`: sign of det A,
+    or 0.
     """
 
     name: str

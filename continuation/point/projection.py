@@ -48,17 +48,9 @@ SMALL_INCREMENT = 1e-4
 class PathSolver:
     """Puts points of one homotopy on its path.
 
-    Attributes
-    ----------
-    evaluator : Evaluator
-    tolerance : Tolerance
-        The start may raise it for noise in H (`continuation.step.start`).
-    max_step : callable or None
-        How far an interior path may go in a direction (`continuation.homotopy.SupportsMaxStep`).
-    straight : callable or None
-        About how far a path of straight pieces goes before it bends.
-    room : callable or None
-        How far a straight path without a target goes to its end.
+    `tolerance`: raised at the start for noise in H. `max_step`: how far an interior path may go in a direction.
+    `straight`: about how far a path of straight pieces goes before it bends. `room`: how far a straight path without a
+    target goes to its end.
     """
 
     evaluator: Evaluator
@@ -79,20 +71,10 @@ class PathSolver:
         return f" The residual is noisy: the tolerance was raised to {least:.0e}." if least > self.asked else ""
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
-        """Bring a guess onto the path in the hyperplane orthogonal to `border`.
+        """Bring a guess onto the path in the hyperplane orthogonal to `border`; return the point and the factorisation
+        used.
 
-        A nearby factorisation serves while increments halve, then new ones.
-
-        Returns
-        -------
-        u : ndarray, shape (N + 1,)
-        anchor : Anchor
-            The factorisation used.
-
-        Raises
-        ------
-        EvaluationError
-            If all fail.
+        A nearby factorisation serves while increments halve, then new ones. Raises `EvaluationError` if all fail.
         """
         evaluator = self.evaluator
         settled = self.settled(near, guess, border)

@@ -76,14 +76,8 @@ AT_END = 1e-6
 
 @frozen(eq=False)
 class Crossed:
-    """A branch point on an arc.
-
-    Attributes
-    ----------
-    point : Linearization
-        With the arc's first factors.
-    rays : ndarray, shape (4, N + 1), or None
-        Unit vectors back, onward, and along the other branch; None if H' loses several ranks.
+    """A branch point on an arc. `rays`, shape (4, N + 1): unit vectors back, onward, and along the other branch; None
+    if H' loses several ranks.
     """
 
     point: Linearization

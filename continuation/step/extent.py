@@ -158,9 +158,8 @@ def initial_extent(
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """Factor for the sizes of components that stand still, so that H is about linear.
-
-    Too large a size would make a branch of a symmetric trunk as short as round-off.
+    """Factor for the sizes of components that stand still, so that H is about linear: too large ones would make a
+    branch of a symmetric trunk short.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -202,7 +201,6 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
             ahead = point.approximate(residual - evaluator.residual(point.u + h * np.where(small, 0.0, v))) / h
             replaced |= np.abs(ahead - v) > REPLACED * np.abs(v)
         except EvaluationError:
-            # Outside the domain only H' decides.
             pass
     return np.where(small & replaced, 0.0, v)
 

@@ -13,39 +13,12 @@ from continuation.predictors import Knot
 class State:
     """State at an accepted point; with the settings it determines the rest of the path.
 
-    Attributes
-    ----------
-    history : tuple of Knot
-        The predictor's knots, the current point last.
-    weights : ndarray, shape (N + 1,)
-        Metric.
-    anchor : tuple of two ndarrays, shape (N + 1,)
-        Point and border of the factorisation.
-    orientation : int
-        Determinant sign of the tangent.
-    h : float
-        Next step length.
-    controller : tuple of float
-    monitors : tuple of float
-        Values of the events; 0 if found at the point.
-    occurrences : tuple of int
-        Counts of the events.
-    origin : Knot
-        The start, with metric `origin_weights`.
-    divergence_monitor : tuple of float
-        See `continuation.ends.divergence`.
-    last_failed_landing : float
-        Parameter value, or inf.
-    last_failed_endgame : float
-        Parameter value, or inf.
-    index : int
-        The last step's.
-    signs : tuple of int
-        The piece ahead.
-    noise : ndarray, shape (N,), or (0,) where there is none
-        Each equation's.
-    tolerance : float
-        Raised for noise, else 0.
+    `history`: the predictor's knots, the current point last. `weights`: the metric. `anchor`: point and border of the
+    factorisation. `orientation`: determinant sign of the tangent. `h`: the next step length. `monitors`, `occurrences`:
+    values and counts of the events; a monitor that vanishes at the point is 0. `origin`: the start, with metric
+    `origin_weights`. `divergence_monitor`: see `continuation.ends.divergence`. `last_failed_landing`,
+    `last_failed_endgame`: parameter values, or inf. `index`: of the last step. `signs`: the piece ahead. `noise`: of
+    each equation, shape (N,), or (0,) without. `tolerance`: raised for noise, else 0.
     """
 
     history: tuple[Knot, ...]
