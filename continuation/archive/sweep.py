@@ -220,7 +220,7 @@ class _Kept:
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
-        # A path with points had a tracer, so this one is made too.
+        # A path with points had a tracer, so making one succeeds.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None

@@ -110,7 +110,7 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
 def holds(evaluator: Evaluator, u: Array) -> bool:
     """Whether H vanishes where Newton's increment is small.
 
-    It may be round-off, or noise with an increment that halves it.
+    The residual may be round-off, or noise with an increment that halves it.
     """
     if not far_from_round_off(evaluator, u):
         return True

@@ -13,7 +13,7 @@ NOISE_LOOKS = 4.0
 """Factor from one random sample to the largest of many."""
 
 LOOK = 64.0
-"""Least distance of samples, in ulps, so that its own rounding is small."""
+"""Least distance of samples, in ulps, whose own rounding is then small."""
 
 NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
 """Sample parameters. Even places hid the noise of 17 of 150 rings that are zero by symmetry."""

@@ -18,7 +18,7 @@ REMEMBERED = 64
 """Pieces kept; kinks need the same few again."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
-"""Capabilities of the whole map by its pieces."""
+"""Capabilities that the map takes from its pieces."""
 
 
 class SwitchError(ArithmeticError):

@@ -209,7 +209,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
             bend = reduced.bend(heading / extent, step)
             if not resting.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
-            # Cubic terms; quadratic ones halve the extent's error, in digits.
+            # This suits cubic terms; for quadratic ones it halves the extent's error, in digits.
             extent = np.where(resting, extent * np.sqrt(BENT / bend), extent)
         found = _on_sphere(reduced, step)
         branches = [_branch(reduced, a, step, reduced.extent**-2.0) for a in found]

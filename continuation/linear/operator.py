@@ -15,7 +15,7 @@ from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
 
 LARGEST_RESIDUAL = 1e-4
-"""Relative to the right-hand side, for condition number 1e12."""
+"""Largest residual relative to the right-hand side: that of condition number 1e12."""
 
 RESTART = 100
 CYCLES = 20

@@ -135,7 +135,7 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
-    # A singular matrix needs a shift. If all eigenvalues are stable, it is comparable to oscillations.
+    # A singular matrix needs a shift; if all eigenvalues are stable, one comparable to oscillations.
     least = SHIFT * SIX_DIGITS * float(np.abs(matrix.diagonal()).max())
     shift = max(SHIFT * max(real, 0.1 * imaginary), least)
     inverse, wanted, solves = _solver(matrix, shift), min(k, n), 0

@@ -132,13 +132,13 @@ class Advance:
         if self.extent is not None:
             h = min(h, self.extent.longest)
         if math.isinf(h):
-            # Nobody has a range yet: begin with the point's size.
+            # Neither controller nor predictor has a range: begin with the point's size.
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(
             point, prediction, h, controller.bounds.maximum, state.last_failed_landing
         )
         if landing is not None:
-            # A long correction discredits a landing too.
+            # A long correction makes a landing unreliable too.
             if (
                 isinstance(landing, Arrival)
                 and controller.update(memory, self._measures(landing, prediction, 0)).accept

@@ -80,7 +80,7 @@ class Stepper:
         reason = None
         if dot(border, correction.u - point.u) <= 0.0:
             reason = Rejection.BACKWARDS
-        # Such a correction left the predicted path.
+        # A correction longer than the step left the predicted path.
         elif correction.distance > h:
             reason = Rejection.TOO_FAR
         elif solver.max_step is not None and not solver.max_step(point.u, correction.u - point.u) > 1.0:
