@@ -1,4 +1,4 @@
-"""Paths with further unknowns, which make residuals plain arithmetic."""
+"""Paths with further unknowns, with which the residual is plain arithmetic."""
 
 from __future__ import annotations
 

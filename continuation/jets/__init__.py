@@ -1,4 +1,4 @@
-"""Truncated Taylor arithmetic on numpy arrays."""
+"""Truncated Taylor arithmetic on numpy arrays: derivatives of functions in plain NumPy."""
 
 from continuation.numbers import Jet, JetDomainError
 from continuation.numbers.derivatives import (
