@@ -45,7 +45,7 @@ class Tolerance:
 
 
 def as_tolerance(value: float | Tolerance) -> Tolerance:
-    """A Tolerance; a number is its relative part."""
+    """A Tolerance; a number is its relative part. `TypeError` or `ValueError` for others."""
     expected = "a positive finite number or a Tolerance"
     if not isinstance(value, Tolerance):
         if not is_number(value):

@@ -87,7 +87,7 @@ def from_functions(
     Raises
     ------
     TypeError, ValueError
-        If an argument is wrong.
+        If an argument is no function, or the start no pair.
     """
     for name, function in (("residual", residual), ("jacobian", jacobian)):
         if not callable(function) and (name == "residual" or function is not None):

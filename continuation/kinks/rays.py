@@ -73,7 +73,8 @@ class Corner:
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
     """All branches that leave the corner, each once.
 
-    For too many switches, pivots give one ray if a path has `come` there.
+    For too many switches, pivots give one ray if a path has `come` there. Raises `UnresolvedError` if the
+    rays cannot be determined.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(

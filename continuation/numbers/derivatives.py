@@ -96,6 +96,11 @@ def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int)
     Returns
     -------
     ndarray, (order + 1, *shape of f)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
     """
     c = taylor(f, x, order, v)
     factorials = np.array([float(factorial(k)) for k in range(len(c))])
@@ -142,6 +147,11 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
     Returns
     -------
     ndarray, (n, m)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
     """
     x, v = _numbers(x, "x"), _numbers(v, "v")
 
@@ -183,6 +193,11 @@ def path_series(
     Returns
     -------
     ndarray, (order + 1, N + 1)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
     """
     u0, tangent = _numbers(u0, "u0"), _numbers(tangent, "tangent")
     if u0.ndim != 1 or len(u0) < 2 or tangent.shape != u0.shape:
@@ -212,6 +227,11 @@ def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]
     -------
     tuple
         Two arrays of the kind of x and v.
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
     """
     like = next((a for a in (x, v) if isinstance(a, Truncated)), None)
     if like is None:
