@@ -1,7 +1,6 @@
 """Pseudo-arclength continuation with pluggable parts.
 
-``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target. Names are imported at
-first use.
+``continuation.trace(homotopy)`` follows the zero curve of H(y, lam). Names are imported at first use.
 """
 
 from importlib import import_module
@@ -78,7 +77,6 @@ _HOMES = {
     "tolerance": "Tolerance",
     "tracing": "solve_at trace trace_both",
 }
-"""Module of each name."""
 
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

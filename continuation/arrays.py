@@ -13,34 +13,33 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dasum, ddot, dscal, idamax
 
 Array: TypeAlias = NDArray[np.float64]
-"""A float64 array."""
 
 Matrix: TypeAlias = Any
 """Dense (N, N) array, scipy sparse array, `continuation.linear.Banded`, or LinearOperator."""
 
 
 EPS = float(np.finfo(float).eps)
-"""Round-off of a number, relative to it."""
+"""Relative round-off of a number."""
 
 ROOT_OF_ROUND_OFF = float(np.sqrt(EPS))
-"""Half of the digits: what the square root leaves of round-off."""
+"""Half of the digits."""
 
 SIX_DIGITS = 1e-6
-"""Six digits make a sign, a rank, a direction or a refinement certain; the other ten may be lost."""
+"""Six digits make a sign, rank, direction or refinement certain; others may be lost."""
 
 
 def finite(entries: Array) -> bool:
-    """Return whether contiguous entries are finite: four times as fast as numpy, without warnings."""
+    """Whether contiguous entries are finite, four times as fast as numpy."""
     return isfinite(dasum(entries))
 
 
 def largest(entries: Array) -> float:
-    """Return the largest magnitude of finite entries, N > 0."""
+    """The largest magnitude of finite entries, N > 0."""
     return abs(float(entries[idamax(entries)]))
 
 
 def least(entries: Array) -> float:
-    """Return the smallest entry, or NaN, N > 0: five times as fast as numpy."""
+    """The smallest entry, or NaN, N > 0: five times as fast as numpy."""
     return entries.item(entries.argmin())
 
 
@@ -49,27 +48,27 @@ dot: Callable[[Array, Array], float] = ddot
 
 
 def multiple(factor: float, x: Array) -> Array:
-    """Return a new ``factor x``, x contiguous: twice as fast as numpy."""
+    """A new ``factor x``, x contiguous: twice as fast as numpy."""
     product: Array = dscal(factor, x.copy())
     return product
 
 
 def median(entries: Array) -> float:
-    """Return the median of finite entries, N > 0: six times as fast as numpy."""
+    """The median of finite entries, N > 0: six times as fast as numpy."""
     ordered, half = np.sort(entries), entries.size // 2
     return float(ordered[half] if entries.size % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 
 
 @lru_cache(maxsize=4)
 def generic_vector(n: int) -> Array:
-    """Return a fixed read-only vector in [-1, 1]^n with a part in every direction."""
+    """A fixed read-only vector in [-1, 1]^n with a part in every direction."""
     vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
     vector.flags.writeable = False
     return vector
 
 
 def asked_by_sparse() -> bool:
-    """Return whether scipy's sparse product calls this `__array__`; an array of None leaves it to `__rmatmul__`."""
+    """Whether scipy's sparse product calls this `__array__`; an array of None leaves it to `__rmatmul__`."""
     caller = sys._getframe(2)
     return caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse")
 

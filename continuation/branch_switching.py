@@ -1,4 +1,4 @@
-"""Branch switching: directions of crossing branches, and starts on them."""
+"""Directions of crossing branches, and starts on them."""
 
 from __future__ import annotations
 
@@ -22,22 +22,21 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 SHORTER, TRIALS = 0.25, 16
-"""Factor and number of trial steps: an unknown that stands still along the path has no known size on
-the other branch.
-"""
+"""Factor and number of trial steps: an unknown that stands still along the path has no known size on the other
+branch."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""
 
 ROUND_OFF_SHARE = 1e-12
-"""A smaller tangent component, relative to the largest, may be round-off."""
+"""Tangent component, relative to the largest, that may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
     """Return the directions of the branches at a branch point.
 
-    At a simple one they solve the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the
-    kernel (Keller 1977; Allgower and Georg, Section 8.1).
+    At a simple one they solve sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel (Keller 1977; Allgower and
+    Georg, Section 8.1).
 
     Parameters
     ----------
@@ -68,39 +67,18 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
 
 
 def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> list[Leaving]:
-    """Return all branches at a multiple branch point; the first are the path's, back and onward.
+    """All branches at a multiple branch point, first the path's, back and onward.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    event : LocatedEvent
-        Kind SINGULAR_POINT.
-    step : float, default 1e-2
-        Distance of the points found.
-
-    Raises
-    ------
-    ArithmeticError
-        If the kernel of H' has more than four dimensions, or branches form a continuum.
+    `step`: distance of the points. Raises `ArithmeticError` if the kernel of H' has more than four dimensions, or
+    branches form a continuum.
     """
     return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 
 
 def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
-    """Return the rays back, onward and both of the other branch, stored or recomputed.
+    """The rays back, onward and both of the other branch, stored or recomputed.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    event : LocatedEvent
-        Kind BRANCH_POINT.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the event is no simple branch point.
-    ArithmeticError
-        If no rays are found.
+    Raises `TypeError` or `ValueError` if the event is no simple branch point, `ArithmeticError` without rays.
     """
     if not isinstance(event, LocatedEvent):
         raise complain(TypeError, "event", "a located event of a path", event)
@@ -118,7 +96,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
 
 
 def metric_at(event: LocatedEvent) -> Array:
-    """Return the metric at the event, stored or from its tangent."""
+    """The metric at the event, stored or from its tangent."""
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)

@@ -12,7 +12,7 @@ from continuation.counts import Counts
 
 @frozen
 class Budget:
-    """Limits of steps, seconds, factorisations and arclength; the path ends with BUDGET_EXHAUSTED."""
+    """Limits of steps, seconds, factorisations and arclength."""
 
     steps: float = field(default=10_000, validator=POSITIVE)
     seconds: float = field(default=math.inf, validator=POSITIVE)
@@ -20,7 +20,7 @@ class Budget:
     arclength: float = field(default=math.inf, validator=POSITIVE)
 
     def spent(self, counts: Counts, seconds: float, arclength: float = 0.0) -> str:
-        """Return the exhausted limit as text, or "".
+        """The exhausted limit as text, or "".
 
         Parameters
         ----------

@@ -13,23 +13,22 @@ from attrs import define, frozen
 from continuation.arrays import Array
 
 HALVING = 0.5
-"""The last increment then bounds the error; iterative refinement stops here too (Higham, Accuracy and Stability of
-Numerical Algorithms, Section 12.1; LAPACK's xGERFS).
-"""
+"""The last increment then bounds the error (Higham, Accuracy and Stability of Numerical Algorithms, Section 12.1;
+LAPACK's xGERFS)."""
 
 RELIABLE = 0.3
-"""For important decisions: determinant signs, series coefficients, branches of landings."""
+"""Ratio for important decisions: determinant signs, series coefficients, landings."""
 
 MONOTONE = 0.9
-"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), for limits checked afterwards."""
+"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), if checked afterwards."""
 
 
 @frozen
 class Contraction:
     """When an iteration gives up.
 
-    `iterations`: Limit; twenty halvings are six digits. `ratio`: Largest ratio of increments. `first`: Largest first
-    ratio, if different. `noise`: Smaller increments are round-off, their ratios ignored.
+    `iterations`: limit; twenty halvings are six digits. `ratio`: largest ratio of increments. `first`: largest first
+    ratio, if different. `noise`: smaller increments are round-off.
     """
 
     iterations: int = 20
@@ -42,8 +41,8 @@ class Contraction:
 class Iteration:
     """State of an iteration.
 
-    `x`: Iterate. `size`: Last added increment. `ratio`, `worst`: Last and largest ratio. `count`: Increments computed.
-    `stalled`: Stopped for its ratio.
+    `size`: last added increment. `ratio`, `worst`: last and largest ratio. `count`: increments computed. `stalled`:
+    stopped for its ratio.
     """
 
     x: Array
@@ -73,9 +72,9 @@ class Iteration:
     def run(
         self, increment: Callable[[], Array], measure: Callable[[Array], float], done: Callable[[float], bool]
     ) -> bool:
-        """Add increments; return whether done. Fast loops call `add` themselves.
+        """Add increments; return whether done.
 
-        `increment`: Next increment at `x`. `measure`: Its size. `done`: Whether a size ends the iteration.
+        `increment`: the next at `x`. `measure`: its size. `done`: whether a size ends the iteration.
         """
         self.count = 0
         while self.count < self.rule.iterations:

@@ -7,7 +7,7 @@ from attrs import asdict, define, field
 
 @define
 class Counts:
-    """Operations of a trace. A dense factorisation is O(N^3), a solve O(N^2)."""
+    """Operations of a trace."""
 
     residuals: int = 0
     jacobians: int = 0
@@ -19,11 +19,11 @@ class Counts:
     """How missing derivatives were made; not archived."""
 
     def as_dict(self) -> dict[str, int]:
-        """Return the counts by name."""
+        """The counts by name."""
         return asdict(self, filter=lambda attribute, _: attribute.name != "notes")
 
     def copy(self) -> Counts:
-        """Return a copy."""
+        """A copy."""
         return Counts(*self.as_dict().values(), notes=set(self.notes))
 
     def __add__(self, other: Counts) -> Counts:

@@ -1,4 +1,4 @@
-"""Protocols of plug-ins: two methods, and optional capabilities."""
+"""Protocols of plug-ins."""
 
 from __future__ import annotations
 
@@ -60,8 +60,7 @@ class SupportsJacobian(Protocol):
 class SupportsSparsity(Protocol):
     """Sparsity of H_y without `jacobian`; default: searched from 64 unknowns on.
 
-    Shape (N, N), dense or sparse; nonzeros count. Columns without common equations are differentiated together; one
-    more product finds missing entries.
+    Shape (N, N), dense or sparse; nonzeros count. Columns without common equations are differentiated together.
     """
 
     sparsity: Matrix
@@ -97,7 +96,7 @@ class SupportsBordered(Protocol):
 
 @runtime_checkable
 class SupportsDifferential(Protocol):
-    """H' times a vector: with `bordered` no matrix is formed; without it the library builds H' from products."""
+    """H' times a vector; without `bordered` the library builds H' from products."""
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """Return H_y v_y + H_lam v_lam.
@@ -116,7 +115,7 @@ class SupportsDifferential(Protocol):
 
 
 class TangentPoint(Protocol):
-    """A point of the path, as plug-ins see it."""
+    """A point of the path for plug-ins."""
 
     @property
     def u(self) -> Array:
@@ -203,7 +202,6 @@ class SupportsBlocks(Protocol):
     """Unknowns that sample one field share a scale of the default metric."""
 
     blocks: Sequence[int]
-    """Labels 0, 1, ..."""
 
 
 @runtime_checkable
@@ -316,5 +314,5 @@ def _names(protocol: Any) -> tuple[str, ...]:
 
 
 def offers(part: Any, protocol: Any) -> bool:
-    """Return whether an object has a Protocol's attributes: ten times as fast as `isinstance`."""
+    """Whether an object has a Protocol's attributes, ten times as fast as `isinstance`."""
     return all(getattr(part, name, None) is not None for name in _names(protocol))

@@ -50,22 +50,19 @@ class Euclidean:
     """Weights 1."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return ones."""
+        """Ones."""
         return np.ones_like(u) if current is None else current
 
 
 @frozen
 class Weighted:
-    """Given weights of y (one, or one a component) and of the parameter.
-
-    ``Weighted(1 / N, 1)`` is the root-mean-square metric.
-    """
+    """Given weights of y (one, or one a component) and of the parameter."""
 
     y: float | Array = 1.0
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the given weights."""
+        """The given weights."""
         if current is not None:
             return current
         weights = np.empty_like(u)
@@ -81,7 +78,7 @@ class RootMeanSquare:
     """The L2 norm of a discretised function: weights 1/N on y, 1 on the parameter."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the weights."""
+        """The weights."""
         return Weighted(1.0 / (u.size - 1)).weights(u, v, current)
 
 
@@ -93,7 +90,7 @@ class Relative:
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the weights."""
+        """The weights."""
         weights: Array = np.maximum(np.abs(u), self.floor) ** -2
         weights[-1] = self.lam
         return weights
@@ -104,14 +101,12 @@ class Automatic:
     """Each component in units of how far the path has gone in it.
 
     ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``. The extent S is how far a component goes
-    until the path turns (`continuation.step.extent`), later at least its distance from the start. Units and origin do
-    not change the steps.
+    until the path turns, later at least its distance from the start. Units and origin do not change the steps.
 
     Parameters
     ----------
     share : float
-        Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth
-        (examples/benchmarks/units).
+        Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth.
     blocks : ndarray of int, shape (N,), optional
         Labels; a label's unknowns get its largest scale.
     """
@@ -125,7 +120,7 @@ class Automatic:
         return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """Return the current weights, else those for `v`."""
+        """The current weights, else those for `v`."""
         if current is not None:
             return current
         size = np.abs(v)
@@ -162,15 +157,14 @@ class Automatic:
 class Inherited:
     """`Automatic` for a branch, with scales bounded below by its trunk's.
 
-    Otherwise scales of components that stand still would shrink from branch to branch.
+    Otherwise scales of components that stand still shrink from branch to branch.
 
     Parameters
     ----------
     before : ndarray, shape (N + 1,)
         Weights where it leaves.
     part : float
-        Of the old scale. On four successive pitchforks 0.01 starts the third generation a thousandth as far away as the
-        first; 0.1 is good.
+        Of the old scale. On four successive pitchforks 0.01 starts the third a thousandth as far away as the first.
     """
 
     before: Array

@@ -9,7 +9,7 @@ from attrs import frozen
 
 
 class Rejection(Enum):
-    """Why an attempt failed; the value is the sentence."""
+    """Why an attempt failed."""
 
     NO_VALUE = "the homotopy has no finite value at a point that was tried"
     SINGULAR = "the bordered matrix has no factorisation at a point that was tried"
@@ -34,7 +34,7 @@ class Rejection(Enum):
 
     @property
     def leaves_domain(self) -> bool:
-        """Whether the homotopy cannot be evaluated ahead."""
+        """Whether the homotopy cannot be evaluated."""
         return self in (Rejection.NO_VALUE, Rejection.OVERFLOW)
 
 
@@ -49,7 +49,7 @@ class Rejected:
     reason : Rejection
     detail : str
     contraction : float
-        Largest ratio of corrector increments, or nan.
+        Largest ratio of increments, or nan.
     factor : float
         Next step, relative to h.
     """

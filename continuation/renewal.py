@@ -1,4 +1,4 @@
-"""`follow`: a path in unknowns renewed along it, such as adapted meshes, by successive traces."""
+"""`follow`: a path in unknowns renewed along it, such as adapted meshes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Followed:
     homotopies: tuple[Any, ...]
     paths: tuple[Path, ...]
     path: Path = field(init=False, repr=False)
-    """All steps and events as one path: observed scalars keep their meaning."""
+    """All steps and events as one path."""
 
     @path.default
     def _path(self) -> Path:
@@ -96,7 +96,7 @@ class Followed:
 def follow(
     homotopy: Any, *, every: int = 5, archive: str | PathLike[str] | None = None, **options: Unpack[Options]
 ) -> Followed:
-    """Trace a path and renew the homotopy every few steps, for example its mesh.
+    """Trace a path and renew the homotopy, for example its mesh, every few steps.
 
     Closed curves, event occurrences and budgets other than steps concern one part only.
 

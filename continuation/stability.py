@@ -1,4 +1,4 @@
-"""Stability along a path: eigenvalues, Hopf points, and an eigenvalue count.
+"""Stability along a path: eigenvalues and Hopf points.
 
 A point is stable in dy/dt = side H(y, lam) if all eigenvalues of side H_y have negative real parts. Complex pairs cross
 the axis at Hopf points, real eigenvalues at turning points and branch points.
@@ -27,12 +27,11 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns, where eigenvalues are cheap, arcs are sampled inside: a pair may cross, become real, and one
-return through a turning point (MatCont's catalyst).
-"""
+"""Up to 30 unknowns arcs are sampled inside: a pair may cross, become real, and one return through a turning point
+(MatCont's catalyst)."""
 
 EVENT_MARGIN = 0.02
-"""Events this near, in arc lengths, may change an interval's count."""
+"""Distance of events, in arc lengths, that may change an interval's count."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
 """Largest number of eigenvalues crossing at an event."""
@@ -41,7 +40,7 @@ SPECTRA_KEPT = 12
 """Enough for an arc and an event."""
 
 ON_AXIS = 1e-6
-"""Largest relative real part of a Hopf pair; otherwise a pair appeared or vanished."""
+"""Largest relative real part of a Hopf pair."""
 
 ZERO_RESOLVED = 1e-14
 """Relative real part that is round-off."""
@@ -71,7 +70,7 @@ class HopfPoint:
     name: str = field(default="Hopf point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """Return 1: only the `bound` event sees H_y."""
+        """Return 1, since only the `bound` event sees H_y."""
         return 1.0
 
     def bound(self, evaluator: Evaluator) -> BoundHopf:
@@ -132,7 +131,7 @@ class BoundHopf:
     _known: dict[Any, Spectrum] = field(factory=dict, init=False)
 
     def at(self, u: Array) -> Spectrum:
-        """Return the eigenvalues at a point."""
+        """The eigenvalues at a point."""
         key = (id(self.evaluator.homotopy), u.tobytes())
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
@@ -152,12 +151,12 @@ class BoundHopf:
             raise EvaluationError(str(error)) from error
 
     def monitor(self, u: Array, v: Array) -> float:
-        """Return the real part of the pair nearest to the axis."""
+        """The real part of the pair nearest to the axis."""
         pairs = self.at(u).pairs
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
     def observe(self, u: Array) -> dict[str, float]:
-        """Return a point's stored scalars."""
+        """A point's stored scalars."""
         found = self.at(u)
         if not found.values.size:
             return {"unstable": float(found.unstable)}
@@ -167,11 +166,10 @@ class BoundHopf:
         return dict(zip(("unstable", "rightmost", "frequency", "covered"), known))
 
     def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
-        """Return the Hopf points of an arc, in order."""
+        """The Hopf points of an arc, in order."""
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs
-            # Pairs that become real, or the reverse, change only the number of pairs.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
             points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
@@ -179,13 +177,11 @@ class BoundHopf:
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
-        """Spectra at an arc's ends, and inside if cheap."""
         inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
-        """Real part of the pair of a rank, rightmost first."""
         found = self.at(u)
         if rank >= found.pairs.size:
             return -found.size
@@ -193,7 +189,6 @@ class BoundHopf:
         return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """The zero of a pair's real part on the path, or None."""
         ends = {0.0: arc.a.u, 1.0: arc.b.u}
 
         def real_part(t: float) -> float:
@@ -202,7 +197,6 @@ class BoundHopf:
             )
 
         a, b = (left, real_part(left)), (right, real_part(right))
-        # The segment may differ from the path.
         t = None if a[1] * b[1] > 0.0 else root(real_part, a, b, solver.noise(arc.a) / arc.length)
         if t is None:
             return None
@@ -211,7 +205,7 @@ class BoundHopf:
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
-        """Return whether an arc's events explain its change in unstable eigenvalues."""
+        """Whether an arc's events explain its change in unstable eigenvalues."""
         length = position(arc, arc.b.u)
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):

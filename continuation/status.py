@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Described(IntEnum):
-    """Numbers with sentences as descriptions."""
+    """Numbers with sentences."""
 
     def __new__(cls, number: int, sentence: str = "") -> Described:
         """Make a member."""
@@ -17,12 +17,12 @@ class Described(IntEnum):
 
     @property
     def flag(self) -> str:
-        """Lower-case name, for CF flag_meanings."""
+        """Name, for CF flag_meanings."""
         return self.name.lower()
 
 
 class Status(Described):
-    """The end of a path. Archives store the numbers: never renumber."""
+    """The end of a path; archives store the number: never renumber."""
 
     TRACING = 0, "The path is still being traced."
     REACHED_TARGET = 1, "The path reached the target."
@@ -55,7 +55,7 @@ class Status(Described):
 
 
 class Kind(Described):
-    """Kind of a stored point. Archives store the numbers: never renumber."""
+    """Kind of a stored point; archives store the number: never renumber."""
 
     REGULAR = 0, "A point like others."
     START = 1, "Where the path begins."

@@ -1,4 +1,4 @@
-"""Tolerance of corrections, in the metric of the path."""
+"""Tolerance of corrections."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from continuation.arrays import Array
 from continuation.metric import norm
 
 LEAST_TOLERANCE = sys.float_info.epsilon**2
-"""As a fraction of the path: the error after an increment at round-off."""
+"""Fraction of the path: the error after an increment at round-off."""
 
 
 @frozen
 class Tolerance:
-    """An increment d is small if ``|d|_W <= relative``, in the metric of the path: a fraction of the path, by default.
+    """An increment d is small if ``|d|_W <= relative``, in the metric of the path.
 
     Newton's error is about the last increment's square. So up to the root of round-off (the default) residuals must be
     round-off; looser tolerances accept errors of about their square.
@@ -33,7 +33,7 @@ class Tolerance:
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, weights: Array) -> float:
-        """Return an increment's length in tolerances.
+        """An increment's length in tolerances.
 
         Parameters
         ----------
@@ -45,10 +45,7 @@ class Tolerance:
 
 
 def as_tolerance(value: float | Tolerance) -> Tolerance:
-    """Return a Tolerance, from a number as its relative part.
-
-    `TypeError` for other types, `ValueError` unless round-off squared <= number < 1.
-    """
+    """A Tolerance; a number is its relative part. `TypeError` or `ValueError` for others."""
     expected = "a positive finite number or a Tolerance"
     if not isinstance(value, Tolerance):
         if not is_number(value):

@@ -54,7 +54,7 @@ def trace(
         Prove the path (`continuation.certify`), with shorter steps if needed; see `path.proof`. The residual must
         accept interval arrays.
     observers : sequence of Observer, default ()
-        Watch the trace: a plot, a log.
+        They watch the trace.
     state : State, default None
         Resume from here; `continuation.archive.resume` reads it from a file.
     {options}
@@ -69,7 +69,7 @@ def trace(
     TypeError, ValueError
         For bad input.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with ``interrupt.path``, which the archive has too.
+        After Ctrl-C: a KeyboardInterrupt with ``interrupt.path``.
     """
     check_run(observers, state)
     for name, flag in (("progress", progress), ("certified", certified)):
@@ -120,7 +120,7 @@ def trace_both(
     Returns
     -------
     Path
-        Status and message of the half with growing parameter; a closed curve is traced once.
+        With the status of the half with growing parameter; a closed curve is traced once.
 
     Raises
     ------

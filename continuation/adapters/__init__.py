@@ -1,4 +1,4 @@
-"""Homotopies from residuals in JAX, CasADi or SymPy; each library is imported on call."""
+"""Homotopies from residuals in JAX, CasADi or SymPy, which are imported on call."""
 
 from continuation.adapters.casadi import from_casadi
 from continuation.adapters.jax import from_jax

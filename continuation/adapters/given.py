@@ -17,7 +17,7 @@ from continuation.evaluation.pattern import Pattern
 
 @frozen(eq=False, slots=False)
 class Adapted:
-    """A homotopy computed by another library; see `from_jax`, `from_casadi` and `from_sympy`.
+    """A homotopy by another library; see `from_jax`, `from_casadi` and `from_sympy`.
 
     `more`: further methods by name. `again`: a function and arguments that rebuild it, for pickling.
     """
@@ -42,13 +42,7 @@ class Adapted:
 
 
 def library(name: str) -> Any:
-    """Import a library or one of its modules.
-
-    Raises
-    ------
-    ImportError
-        If it is not installed; names the package.
-    """
+    """Import a library or one of its modules, or raise an ImportError that names the package."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -57,13 +51,7 @@ def library(name: str) -> Any:
 
 
 def started(start: Any) -> tuple[Array, float]:
-    """(y0, lam0) as numbers.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `start` is no such pair.
-    """
+    """The pair (y0, lam0) as numbers; TypeError or ValueError otherwise."""
     if not isinstance(start, (tuple, list)) or len(start) != 2:
         raise complain(ValueError, "start", "a pair (y0, lam0)", start)
     lam0 = real_vector("start", start[1])
@@ -73,7 +61,7 @@ def started(start: Any) -> tuple[Array, float]:
 
 
 def filled(pattern: Pattern, entries: Array) -> Matrix:
-    """The matrix with these entries: dense if small or a quarter full, else sparse."""
+    """The matrix with these entries: dense if small or a quarter full."""
     n = pattern.n
     if n >= SPARSE_FROM and 4 * entries.size <= n * n:
         return pattern.matrix(entries)

@@ -1,4 +1,4 @@
-"""Residuals in JAX, compiled, with derivatives, products and Taylor coefficients."""
+"""Residuals in JAX, with derivatives, products and Taylor coefficients."""
 
 from __future__ import annotations
 
@@ -35,8 +35,7 @@ def from_jax(
     target : float or None
         As of `continuation.from_functions`.
     jacobian : str
-        "dense" by forward derivatives; "sparse" by products, in groups of columns that share no equation; "operator"
-        for GMRES.
+        "dense"; "sparse", by groups of columns that share no equation; or "operator", for GMRES.
 
     Raises
     ------
@@ -88,7 +87,7 @@ def from_jax(
         jax.eval_shape(series, u, np.zeros((2, u.size)))
         more["taylor"] = partial(_taylor, series)
     except (KeyError, NotImplementedError, TypeError, ValueError):
-        # Nested forward derivatives compile slowly: 0.5, 2.4, 18 s for three unknowns, order 4, 6, 8.
+        # Nested forward derivatives compile slowly: 0.5, 2.4, 18 s for order 4, 6, 8.
         pass
     again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
     return Adapted(

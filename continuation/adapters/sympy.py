@@ -1,4 +1,4 @@
-"""Residuals in SymPy, compiled to numpy and scipy with their derivatives."""
+"""Residuals in SymPy, compiled with their derivatives."""
 
 from __future__ import annotations
 
@@ -90,7 +90,6 @@ def from_sympy(
 
 
 def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
-    """The derivative; at a jump, that of either side."""
     return sp.diff(one, x, order).replace(sp.DiracDelta, lambda *_: sp.Integer(0))
 
 

@@ -23,10 +23,7 @@ from continuation.arguments.checks import complain
 
 
 class ArchiveError(OSError):
-    """A file that cannot be read, written or resumed; the message is one line.
-
-    Unprintable characters become "?", since a file may supply the text.
-    """
+    """A file that cannot be read, written or resumed. Unprintable characters of the message become "?"."""
 
     def __init__(self, message: str) -> None:
         super().__init__("".join(c if c.isprintable() else "?" for c in message))
@@ -60,7 +57,7 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name in one step; `replace` keeps the old file's mode and, if allowed, owner.
+    """Rename a complete file; `replace` keeps the old file's mode and, if allowed, owner.
 
     Raises `ArchiveExistsError` if the name is taken.
     """
@@ -95,7 +92,7 @@ def as_file(argument: str, value: Any) -> File:
 
 
 def new_file(argument: str, value: Any) -> File:
-    """The path of a file that can be made."""
+    """The path of a file that does not exist."""
     file = as_file(argument, value)
     check_new(file)
     return file
@@ -136,7 +133,8 @@ def short(error: BaseException) -> str:
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
 
 
-# Open file description locks (Linux): HDF5 uses flock; a POSIX lock ends when the process closes any descriptor.
+# HDF5 uses flock, and POSIX locks end when the process closes any descriptor: Linux's open file description locks
+# remain.
 _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
@@ -179,7 +177,7 @@ def is_held(file: File) -> bool:
 
 
 def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """The right to replace a file, read as `descriptor` and last written by process `writer`.
+    """Lock a file, read as `descriptor` and last written by process `writer`, to replace it.
 
     `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """

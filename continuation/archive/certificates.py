@@ -1,4 +1,4 @@
-"""Proofs of paths, in the group `/certificate`: untrusted numbers until `recheck` has tested every condition."""
+"""Proofs of paths, in the group `/certificate`; `recheck` tests every condition."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:
-    """The cells of a stored proof, or None."""
+    """Cells of a stored proof, or None."""
     try:
         root = archive.contents.root
         if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
@@ -92,7 +92,7 @@ def _check(columns: dict[str, Any]) -> None:
 
 
 _MOST_SLABS = 64
-"""Our files hold fewer; more would take long to check."""
+"""Our files hold fewer; more take long to check."""
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:
@@ -109,7 +109,7 @@ def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[
     Returns
     -------
     list of Proof
-        One for each path; without a certificate, a gap.
+        For each path; a gap without a certificate.
 
     Raises
     ------

@@ -32,7 +32,7 @@ _INLINE_BYTES = 1 << 16
 
 @frozen(eq=False)
 class Checkpoint:
-    """A point from which a path continues exactly, after `rows` rows.
+    """A point after `rows` rows, from which a path continues exactly.
 
     `counts`, `seconds`: work so far. `run`: options, homotopy, index in a sweep.
     """
@@ -47,13 +47,12 @@ class Checkpoint:
 
 
 def major(version: str) -> str:
-    """The part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
+    """Part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
     return first if first != "0" else f"0.{second}"
 
 
 def _fetched(raw: bytes) -> Callable[[Any], Any]:
-    """Arrays by number, each one object."""
     made: list[np.ndarray[Any, Any]] = []
 
     def fetch(place: Any) -> Any:
@@ -76,7 +75,7 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
 
 
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Options and homotopy as JSON, or the reasons why they are "unstorable".
+    """Options and homotopy as JSON, or why they are "unstorable".
 
     `homotopy`: its description if the problem group holds it.
     """
@@ -111,7 +110,7 @@ def whole(place: Any) -> Any:
 
 
 def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
-    """Head, JSON, run, arrays; `run` is JSON of ``checkpoint.run``, if already made."""
+    """Head, JSON, run (JSON of ``checkpoint.run``, if already made), arrays."""
     arrays: dict[int, np.ndarray[Any, Any]] = {}
 
     def place(name: str, array: Any) -> Any:
@@ -139,10 +138,7 @@ def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint; None if it is missing, torn or of another major version.
-
-    Nothing that the bytes name is created.
-    """
+    """The checkpoint; None if missing, torn or of another major version; creates no named object."""
     try:
         sequence, length, crc = HEAD.unpack_from(raw)
         body = raw[HEAD.size : HEAD.size + length]

@@ -1,6 +1,6 @@
 """Checksums of blocks of rows, and the records of commits.
 
-A block is one commit's rows. Its row in ``/checks`` holds its end and one checksum for each column, sorted by name.
+A block is one commit's rows. Its row in ``/checks`` holds its end and a checksum for each column, by name.
 
 A commit writes two records, *intent* and *commit*, each alternating between two places. A kill tears at most one; the
 other three determine it.
@@ -23,10 +23,10 @@ PLACES = 2
 RECORD_BYTES = 7 * 8 + 4
 _BOUNDS = struct.Struct("<QQ")
 STOP = 2
-"""Words of a row that hold the end of its block."""
+"""Words of a row for the end of its block."""
 
 _LARGE = 1 << 16
-"""Bytes from which a matrix is checked by sums of its rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
+"""Bytes from which a matrix is checked by sums of rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
 
 Array = np.ndarray[Any, Any]
 
@@ -37,7 +37,7 @@ class DamageError(ValueError):
 
 @frozen
 class Committed:
-    """The valid part of a file: counts and sequence numbers."""
+    """The valid part of a file."""
 
     sequence: int = 0
     points: int = 0
@@ -54,7 +54,7 @@ class Committed:
 
 
 def blank() -> Array:
-    """The records of a new file, shape (4, bytes): intents, then commits."""
+    """Records of a new file, shape (4, bytes): intents, then commits."""
     return np.array([Committed(sequence=k % PLACES).pack() for k in range(2 * PLACES)])
 
 
@@ -91,7 +91,7 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
 
 
 class Ledger:
-    """The checksums of a table of `size` rows, one row (`seal`) for each block.
+    """Checksums of a table of `size` rows, by block.
 
     For `size` None (file cut off), blocks end at the first invalid one.
     """

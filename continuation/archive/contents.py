@@ -1,4 +1,4 @@
-"""The open file, read piece by piece and checked."""
+"""The open file, read in pieces and checked."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
 FAULTS = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError, ArithmeticError)
-"""Exceptions that h5py, and what a damaged file holds, may raise."""
+"""Exceptions of h5py and of a damaged file's contents."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
@@ -61,12 +61,11 @@ TABLES = ("point", "path")
 class Contents:
     """An open file; any fault raises `ArchiveError`.
 
-    `limit`: bytes of memory (`Allowance`). `salvage`: accept damage outside rows. `checked`: the file has checksums.
+    `limit`: bytes of memory. `salvage`: accept damage outside rows. `checked`: the file has checksums.
     `flaws`: accepted damage. `cut_off`: committed rows without checksums, by table.
     """
 
     root: Any = None
-    """The root group."""
     closed_by_writer = True
     _image: Image | None = None
 
@@ -86,7 +85,7 @@ class Contents:
         self.root = self._image = None
 
     def guarded(self, read: Callable[[], _T]) -> _T:
-        """The result of `read`, retried under a live writer; `ArchiveError` for what makes no sense."""
+        """The result of `read`, retried under a live writer; faults become `ArchiveError`."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -152,12 +151,12 @@ class Contents:
 
     @cached_property
     def attributes(self) -> dict[str, Any]:
-        """The root attributes, checked."""
+        """Root attributes, checked."""
         return self.guarded(self._read_attributes)
 
     @cached_property
     def event_names(self) -> tuple[str, ...]:
-        """The names that `event_index` numbers, checked."""
+        """Names that `event_index` numbers, checked."""
         return self.guarded(self._read_names)
 
     def _read_attributes(self) -> dict[str, Any]:
@@ -182,7 +181,6 @@ class Contents:
         return Committed(points=points, paths=paths)
 
     def _ledger(self, table: str) -> Ledger | None:
-        """The checksums of a table, read once, before its memory is counted; None in a file without."""
         if table in self._ledgers:
             return self._ledgers[table]
         columns, rows, ledger = list(self._columns[table]), getattr(self.committed, f"{table}s"), None
@@ -199,7 +197,7 @@ class Contents:
         return ledger
 
     def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
-        """The first rows of a dataset, as far as HDF5 finds its chunks."""
+        """First rows of a dataset, as far as HDF5 finds chunks."""
         found = dataset(group, name, kind, shape, self.allowance, count)
         step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
         parts: list[Array | None] = [np.empty((0, *found.shape[1:]), found.dtype)]
@@ -256,7 +254,7 @@ class Contents:
         return [block for some in doubtful for block in some if not is_sound(*block)]
 
     def slots(self) -> list[bytes]:
-        """The stored checkpoints, perhaps torn."""
+        """Stored checkpoints, perhaps torn."""
 
         def read() -> list[bytes]:
             found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
@@ -276,7 +274,7 @@ class Contents:
 
 
 _BLOCKS = 64
-"""Blocks (at most 4 MiB each) checked together, since most are sound."""
+"""Blocks (up to 4 MiB each) checked together."""
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:

@@ -24,8 +24,8 @@ from continuation.path import Path
 class Share:
     """Some paths and their points.
 
-    `paths`: rows of the path table. `points`, `rows`: a point table and their rows in it. `names`: event names.
-    `first`: first number in `path_index`. `origin`: the open file.
+    `points`, `rows`: a point table and their rows in it. `names`: event names. `first`: first number in `path_index`.
+    `origin`: the open file.
     """
 
     layout: Layout
@@ -43,7 +43,7 @@ class Share:
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
-    """Paths `first` to `last` - 1 of an archive (default: all) with their first `points` points (default: all)."""
+    """Paths `first` to `last` - 1 of an archive with their first `points` points; by default all."""
     stop, contents = len(archive) if last is None else last, archive.contents
     about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
     # Time, process and name replace a missing identifier.
@@ -57,7 +57,7 @@ def share_of(archive: Archive, first: int = 0, last: int | None = None, points: 
 def share_of_path(
     path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
 ) -> Share:
-    """A finished path; `pieces` adds switches and rays of kinks."""
+    """A finished path; `pieces` adds switches and rays."""
     first = path.steps[0] if path.steps else None
     tangents = first is not None and bool(np.isfinite(first.tangent).all())
     unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
@@ -71,7 +71,7 @@ def share_of_path(
 
 
 def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
-    """The share with missing homotopies and sources filled in."""
+    """The share with missing homotopies and sources."""
     count, begin = len(share.paths["path"]), share.first if first is None else first
     said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
     paths = dict(share.paths)
@@ -90,7 +90,7 @@ def leading(shares: Sequence[Share]) -> Contents:
 
 
 def append(store: Store, share: Share, file: str) -> int:
-    """Append a finished path of `file` in one commit; its number in the store."""
+    """Append a finished path of `file` in one commit; returns its number."""
     number = store.committed.paths
     own = sourced(share, store.identifier, file, first=number)
     store.commit(_numbered(own, store, own.rows, number) if own.size else None, _rows(own, store, number))
@@ -106,7 +106,7 @@ def write_copy(
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
-    """Concatenate shares of open files into a new file, which stays open.
+    """Concatenate shares into a new file, which stays open.
 
     It keeps the attributes of the first point's archive; `what` extends the history.
     """
@@ -134,7 +134,6 @@ def write_copy(
 
 
 def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
-    """The points in blocks of similar size."""
     waiting: list[Block] = []
     held = path = 0
     for share in shares:
@@ -152,7 +151,6 @@ def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
 
 
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
-    """Points in the store's numbering, paths from `path`."""
     numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
     block = share.points.block(rows)
     block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
@@ -170,7 +168,7 @@ def _rows(share: Share, store: Store, path: int) -> Block:
 
 
 def filled(block: Mapping[str, Any], layout: Layout, table: str, rows: int) -> Block:
-    """All columns of the layout, filled with `Column.missing`."""
+    """All columns of the layout; missing ones are filled."""
     whole = {}
     for column in layout.columns(table):
         values, shape = block.get(column.name), (rows, *layout.width(column))

@@ -49,7 +49,7 @@ def dataframe_of(path: Path) -> Any:
 
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
-    """Write paths of one homotopy, with equal observed scalars, to a new archive."""
+    """Write paths of one homotopy to a new archive."""
     target = new_file("file", file)
     pieces = any(event.switches for path in many for event in path.events)
     shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
@@ -77,7 +77,7 @@ class Growing:
     _store: Store | None = None
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
-        """The paths of an existing file, whole and as kept; then a growing copy replaces it."""
+        """The paths of an existing file, whole and as kept; a growing copy then replaces it."""
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
@@ -95,7 +95,7 @@ class Growing:
             self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:
-        """Append a path, in a new file if necessary, and return it as kept."""
+        """Append a path and return it as kept."""
         share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
         if self._store is None:
             about = _attributes(path, self.title)

@@ -1,4 +1,4 @@
-"""Untrusted HDF5 files: a file driver (`Image`), and datasets of checked type, storage and size.
+"""A file driver for untrusted HDF5 files, and datasets of checked type, storage and size.
 
 HDF5 itself hangs at FIFOs and at checksums that SWMR omits. Links, external storage and foreign filters are refused.
 """
@@ -27,7 +27,7 @@ _HEAP = b"GCOL"
 
 
 class Image:
-    """A file opened for reading, as if its writer had closed it.
+    """A file opened for reading, as if closed by its writer.
 
     `missing`: bytes cut off, read as zeros. `failure`: the disk's error. Raises `ArchiveError` unless it is a readable
     HDF5 file.
@@ -78,7 +78,7 @@ class Image:
         return self.at
 
     def read(self, size: int) -> bytes:
-        """Read bytes; h5py requires this method, but uses `readinto`."""
+        """Read bytes; h5py requires this method."""
         buffer = bytearray(size)
         self.readinto(buffer)
         return bytes(buffer)
@@ -109,12 +109,12 @@ class Image:
 
 
 def stated_length(head: bytes) -> int:
-    """The file's length according to its superblock."""
+    """Length of the file according to its superblock."""
     return int(struct.unpack_from("<Q", head, _LENGTH)[0])
 
 
 def _check_heap(heap: memoryview) -> None:
-    """Raise `OSError` unless the objects fill the global heap: HDF5 loops forever in a heap of zeros."""
+    """Raise `OSError` unless objects fill the global heap: HDF5 loops forever in a heap of zeros."""
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16
     while size <= len(heap) and size - at >= 16:
@@ -126,7 +126,7 @@ def _check_heap(heap: memoryview) -> None:
 
 
 def lookup3(head: bytes) -> int:
-    """HDF5's checksum of 44 bytes of metadata: Jenkins' lookup3, `hashlittle` (burtleburtle.net/bob/c/lookup3.c)."""
+    """HDF5's checksum of 44 bytes: Jenkins' lookup3, `hashlittle` (burtleburtle.net/bob/c/lookup3.c)."""
     words = struct.unpack("<12I", head.ljust(48, b"\0"))
     a = b = c = 0xDEADBEEF + 44
     for k in (0, 3, 6, 9):
@@ -144,18 +144,18 @@ def _turned(x: int, k: int) -> int:
 
 
 LEAST_BYTES = 1 << 27
-"""Bytes that any file may take. Copying takes three times as much; half of it would refuse a compressed path of 50,000
+"""Bytes that any file may take: copying takes three times as much; half would refuse a compressed path of 50,000
 points."""
 
 UNFOLDING = 32
-"""Memory that a larger file may take, relative to its size. A point of two unknowns takes 120 bytes, its `Step` 1.5 KiB
-(13 times), twice that if compressed; gzip shrinks zeros to a thousandth."""
+"""Memory of a larger file, relative to its size: a point of two unknowns takes 120 bytes, its `Step` 1.5 KiB, twice
+that if compressed; gzip shrinks zeros to a thousandth."""
 
 COLUMN_BYTES = 1 << 14
-"""Bytes of HDF5's chunk cache for a dataset: tables are read sequentially."""
+"""Bytes of a dataset's chunk cache: tables are read sequentially."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
-"""Filters of h5py itself; others would load a library."""
+"""h5py's own filters; others would load a library."""
 
 
 class StructureError(ValueError):
@@ -167,7 +167,7 @@ class LimitError(StructureError):
 
 
 class Allowance:
-    """The bytes of memory that one file may take.
+    """Memory that one file may take.
 
     `limit`: default `UNFOLDING` times `size`, at least `LEAST_BYTES`.
     """
@@ -196,7 +196,7 @@ def member(group: Any, name: str) -> Any:
 
 
 def names(group: Any) -> set[str]:
-    """What a group holds; h5py's own way takes several times longer."""
+    """Names in a group, several times faster than h5py."""
     raw = list[bytes]()
     group.id.links.iterate(raw.append)
     return {name.decode(errors="surrogateescape") for name in raw}
@@ -218,7 +218,7 @@ def dataset(
     allowance: Allowance,
     rows: int | None = None,
 ) -> Any:
-    """A dataset of checked type, shape and storage; `rows` rows (default: all) count in the allowance.
+    """A checked dataset; `rows` rows (default: all) count in the allowance.
 
     `kind` None admits any numbers, a length None any length.
     """

@@ -18,7 +18,7 @@ from continuation.status import Status
 
 UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED, _LISTED, _SHOWN, _WIDTH, _LINES = 3, 12, 4, 92, 5
-"""Limits: paths with a section, listed events or paths, components, columns, lines."""
+"""Limits of paths with a section, events or paths, components, columns, lines."""
 _SOFTWARE = {
     "continuation": "library", "Python": "python", "numpy": "numpy", "scipy": "scipy", "h5py": "h5py", "HDF5": "hdf5",
 }  # fmt: skip
@@ -34,8 +34,6 @@ def describe(archive: Archive) -> str:
 
     Raises
     ------
-    TypeError
-        For anything else.
     ArchiveError
         If the file is damaged.
     """

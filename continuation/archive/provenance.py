@@ -37,14 +37,14 @@ def now() -> str:
 
 
 def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
-    """CF's `history` with a new line."""
+    """`history` with a new line (CF)."""
     line = f"{now()} {what} (continuation {__version__})"
     return {"history": "\n".join(filter(None, (attributes.get("history", ""), line)))}
 
 
 @lru_cache
 def software() -> dict[str, str]:
-    """Versions; BLAS and its threads decide the last bits."""
+    """Versions; BLAS and threads decide the last bits."""
     blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
     given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
     return {
@@ -64,7 +64,7 @@ def software() -> dict[str, str]:
 
 @lru_cache
 def _distribution(path: str) -> str:
-    """Distribution and version of a class; empty for a script."""
+    """Distribution and version of a class, if any."""
     point, top = _entry_point(path), path.partition(":")[0].partition(".")[0]
     if point is not None and point.dist is not None:
         return f"{point.dist.name} {point.dist.version}"
@@ -90,7 +90,7 @@ def class_path(thing: Any) -> str:
 
 
 def parameters(homotopy: Any) -> dict[str, Any]:
-    """The homotopy's parameters: public fields or attributes."""
+    """Public fields or attributes of the homotopy."""
     cls = type(homotopy)
     if attrs.has(cls):
         names = [a.name for a in attrs.fields(cls)]
@@ -114,7 +114,7 @@ def scalars(homotopy: Any) -> dict[str, float]:
 
 
 def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """The archive's parameters except large arrays."""
+    """The archive's parameters without large arrays."""
     found = {}
     with suppress(ValueError, AttributeError):
         tree = json.loads(str(attributes.get("parameters", "{}")))
@@ -133,7 +133,7 @@ def readable(value: Any) -> Any:
 
 
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
-    """The attributes of a new archive.
+    """Attributes of a new archive.
 
     `made_with`: parameters that the homotopy's attributes lack.
     """

@@ -27,11 +27,11 @@ from continuation.plot.html import archive_page
 from continuation.status import Status
 
 _STEP_BYTES, _COPIES = 1400, 6
-"""Bytes of a step's objects, and copies of its vectors."""
+"""Bytes of a step's objects; copies of its vectors."""
 
 
 class Archive(Sequence[Path]):
-    """An archive open for reading: a sequence of paths, and two tables. Use it in a ``with`` statement.
+    """An archive open for reading: a sequence of paths, and two tables.
 
     It shows committed rows; the file may still grow. An unfinished path comes last, with the status TRACING.
 
@@ -62,7 +62,7 @@ class Archive(Sequence[Path]):
 
     @cached_property
     def paths(self) -> Table:
-        """The path table; an unfinished path is its last row."""
+        """The path table, with a row for an unfinished path."""
         if len(self) == self._ended.size:
             return self._ended
         rest = self.rows(self._ended.size)
@@ -72,7 +72,7 @@ class Archive(Sequence[Path]):
 
     @cached_property
     def _first_rows(self) -> Any:
-        """The first row of each path, and the number of rows."""
+        """First row of each path, and the number of rows."""
         lengths = self._ended["n_points"]
         first = np.concatenate(([0], np.cumsum(lengths))).astype(int)
         if self.points.size < first[-1] or np.any(lengths < 0):
@@ -103,7 +103,7 @@ class Archive(Sequence[Path]):
         index : int
             May be negative.
         keep : str
-            "all" steps in memory, or the "ends", with others read on demand.
+            Keep "all" steps in memory, or the "ends".
 
         Raises
         ------
@@ -194,7 +194,7 @@ class Archive(Sequence[Path]):
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """The first homotopy's description (JSON) and arrays."""
+        """Description (JSON) and arrays of the first homotopy."""
         return self.contents.problem()
 
     def close(self) -> None:
@@ -210,7 +210,6 @@ class Archive(Sequence[Path]):
         self.close()
 
     def _unended(self, rows: int) -> dict[str, Any]:
-        """A row for the unfinished path, from its checkpoint."""
         number = self._ended.size
         member = int(self._ended["member"][-1]) + 1 if number else 0
         # Counts of an older checkpoint are out of date.
@@ -227,7 +226,7 @@ class Archive(Sequence[Path]):
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
-    """Open an archive for reading, even while it grows or after a kill.
+    """Open an archive, even while it grows or after a kill.
 
     Nothing in the file is executed; each block of rows is checked.
 
@@ -235,7 +234,7 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
     ----------
     file : path
     limit : int, optional
-        Bytes of memory, including Python objects. Default: 32 times the file's size, at least 128 MiB.
+        Bytes of memory; default: 32 times the file's size, at least 128 MiB.
 
     Raises
     ------
@@ -246,11 +245,11 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
 
 
 _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
-"""Step fields that every file holds."""
+"""Step fields in every file."""
 
 
 class StoredSteps(Sequence[Step]):
-    """The steps of a path: ends (and uncommitted steps) in memory, others in the file.
+    """Steps of a path: ends (and uncommitted ones) in memory, others in the file.
 
     Segments need stored tangents.
     """
@@ -267,7 +266,7 @@ class StoredSteps(Sequence[Step]):
         self._count += 1
 
     def committed(self) -> None:
-        """Keep only the ends in memory, since the file holds all."""
+        """Keep only the ends in memory."""
         self._last = self._last[-1:]
 
     def __len__(self) -> int:
@@ -292,7 +291,7 @@ class StoredSteps(Sequence[Step]):
         return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
 
     def column(self, name: str) -> Any:
-        """``u``, ``tangent`` or ``arclength`` of all steps, as an array."""
+        """All steps' ``u``, ``tangent`` or ``arclength`` as an array."""
         fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
         if not fields or not begin:
             return np.array([getattr(step, name) for step in self])
@@ -317,7 +316,6 @@ class StoredSteps(Sequence[Step]):
 
 
 def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps `start` to `stop` - 1, and their events."""
     rows = archive.rows(path)
     accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
     begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))

@@ -55,10 +55,10 @@ def resume(
     keep: str = "all",
     **options: Unpack[Options],
 ) -> Path:
-    """Continue the last path of an archive; later points are bit for bit those of an uninterrupted trace.
+    """Continue the last path of an archive, bit for bit like an uninterrupted trace.
 
-    A copy up to the last checkpoint replaces the file, so a kill leaves a file to resume. Given options replace the
-    file's. A budget's seconds count from now.
+    A copy up to the last checkpoint replaces the file. Given options replace the file's. A budget's seconds count from
+    now.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def resume(
         A new file; default: `file`.
     observers : tuple of Observer
     trust : sequence of class or function
-        Objects that the file may make, besides the library's parts and registered homotopies.
+        Objects the file may make, besides the library's and registered homotopies.
     keep : str
         As for `PathLog`.
     {options}
@@ -206,20 +206,7 @@ def _options(
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
-    """Check that the homotopy has the stored residual at a point.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    u : ndarray, shape (N + 1,)
-    stored : float
-        Its largest component.
-
-    Raises
-    ------
-    ValueError
-        If it is another homotopy.
-    """
+    """Raise `ValueError` unless the homotopy's largest residual at u is the stored one."""
     unknowns = Evaluator(homotopy, Counts()).start().size - 1
     if unknowns != u.size - 1:
         raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")

@@ -43,9 +43,7 @@ Record = dict[str, Any]
 
 @frozen
 class Row:
-    """A row to write: a step, perhaps with its event; an event between steps; or a switching function or ray of the
-    kink before.
-    """
+    """A row to write: a step, perhaps with its event; an event between steps; a switch or ray of the kink before."""
 
     point: Step | LocatedEvent
     event: LocatedEvent | None
@@ -55,7 +53,7 @@ class Row:
 
 
 def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
-    """Rows of a step and its events; an event at the step shares its row, and a kink adds rows of switches and rays."""
+    """Rows of a step and its events; an event at the step shares its row, a kink adds switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
@@ -120,7 +118,6 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
 
 
 def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
-    """Last components and others, both contiguous for HDF5."""
     whole = np.array(vectors)
     return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
 
@@ -128,7 +125,7 @@ def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
 def from_columns(
     block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str], first: int = 0
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps, numbered from `first`, and events of one path; missing tangents are NaN."""
+    """Steps, numbered from `first`, and events of one path."""
     points = np.column_stack((block["y"], block["parameter"]))
     held = "tangent_y" in block
     tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"])) if held else np.full_like(points, _NAN)

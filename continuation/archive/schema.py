@@ -1,4 +1,4 @@
-"""The schema `continuation-path-2`: columns with types, units and meanings, and their datasets."""
+"""The schema `continuation-path-2`: columns with types, units and meanings."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ UNCHECKED = "continuation-path-1"
 """The schema without checksums."""
 
 TEXT = 240
-"""Bytes (UTF-8) of a path's message."""
+"""Bytes of a path's message."""
 
 NAME = 64
-"""Bytes (UTF-8) of an event's name."""
+"""Bytes of an event's name."""
 
 ACCEPTED, LOCATED, KINK_PART = 0, 1, 2
-"""Roles of a row: accepted step, event between steps, part of the kink before."""
+"""Rows: accepted step, event between steps, part of the kink before."""
 
 NO_EVENT = -1
 CONTROLLER_STATE = 4
@@ -116,7 +116,7 @@ TANGENT_COLUMNS = (
 KINK_COLUMNS = (
     Column("switch", "i4", "1", "number of a switching function that vanishes at the kink; -1 where there is none"),
 )
-"""For piecewise homotopies; tangents of rows `kink_part` are rays."""
+"""For piecewise homotopies; `kink_part` rows have rays as tangents."""
 
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
@@ -157,7 +157,7 @@ COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component"
 
 OPTIONAL = (*TANGENT_COLUMNS, *KINK_COLUMNS, *ORIGIN_COLUMNS)
 OBSERVED, PARAMETER = "observed_", "homotopy_"
-"""Prefixes of the homotopy's columns: scalars of points, parameters of paths."""
+"""Prefixes of scalars of points, and of parameters of paths."""
 
 
 def _names(columns: Iterable[Column]) -> frozenset[str]:
@@ -231,7 +231,7 @@ LIBVER = ("v110", "v110")
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
 _CHUNKS = {"point": 64, "path": 8, "event": 16}
 _CHUNK_BYTES = 1 << 13
-"""Size of a chunk, which its first row allocates: with 512 KiB eight points of 100 unknowns take 600 KB."""
+"""Bytes of a chunk, which its first row allocates: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
 
 @lru_cache(maxsize=16)

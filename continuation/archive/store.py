@@ -1,7 +1,7 @@
 """The file being written.
 
-A commit writes data and intent, flushes, writes its record, flushes: a kill leaves complete rows. SWMR keeps the
-structure readable.
+A commit writes data and intent, flushes, then writes its record: a kill leaves complete rows. SWMR keeps files
+readable.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
 
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
-    """Write a new file beside `target`, then rename it: a kill leaves the old file, none, or the new one.
+    """Write a new file beside `target`, then rename it.
 
     `write`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open; otherwise it is synced
     first.
@@ -54,7 +54,7 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written: readable while it grows, safe from kills, locked until closed.
+    """A file being written, locked until closed.
 
     `problem`: result of `problem_data`. `compression`: gzip's level. `durable`: wait for the disk at each commit.
     """
@@ -104,7 +104,7 @@ class Store:
     def commit(
         self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
     ) -> None:
-        """Write rows and checkpoints (by slot), and only then make them valid; repetition is harmless."""
+        """Write rows and checkpoints (by slot), then make them valid; repetition is harmless."""
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
         before, raw = self.committed, dict(checkpoints or {})
@@ -154,7 +154,7 @@ class Store:
         )
 
     def name_event(self, name: str) -> int:
-        """The number of an event name, new ones included."""
+        """The number of an event name, perhaps new."""
         name = text(name, NAME).decode()
         if name not in self.events:
             count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)
@@ -190,11 +190,11 @@ class Store:
 
     @property
     def ours(self) -> bool:
-        """Whether this process opened it; forked children never write."""
+        """Whether this process opened it."""
         return self._process == os.getpid()
 
     def abandon(self, *, ends: bool = True) -> None:
-        """Redirect HDF5's pending writes to nowhere: a write that fails during close ends the process.
+        """Discard HDF5's pending writes: one that fails during close ends the process.
 
         `ends`: leave the file as a kill would; a forked child leaves it alone.
         """
@@ -216,7 +216,7 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 
 
 def _in_child() -> None:
-    """A forked child would write to inherited stores at its end, and keep their locks."""
+    """A forked child must not write to inherited stores, or keep their locks."""
     for store in list(_LIVE):
         store.abandon(ends=False)
         store._lock.close()
@@ -233,11 +233,11 @@ def _spaces(extent: tuple[int, ...], place: tuple[int, ...], shape: tuple[int, .
 
 
 _type = lru_cache(maxsize=64)(h5t.py_create)
-"""HDF5's type of numbers, which h5py would make for each write, in half of its time."""
+"""HDF5's type of numbers; making it takes h5py half the time of a write."""
 
 
 def _write(dataset: Any, extent: tuple[int, ...], place: tuple[int, ...], values: np.ndarray[Any, Any]) -> None:
-    """Write values; h5py's slicing costs several times as much."""
+    """Write values several times faster than h5py's slices."""
     kind = dataset.get_type() if values.dtype.kind == "S" else _type(values.dtype)
     dataset.write(*_spaces(extent, place, values.shape), values, kind)
 

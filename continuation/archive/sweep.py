@@ -1,4 +1,4 @@
-"""`trace_many`: many paths, one after another or over any executor.
+"""`trace_many`: many paths, over any executor.
 
 Only this process writes; if it is killed, finished paths remain in part files.
 """
@@ -46,7 +46,7 @@ Result = Path | Share | BaseException
 """A path or exception."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""Exceptions that cost only their path; Ctrl-C ends the sweep."""
+"""Exceptions that cost one path; Ctrl-C ends the sweep."""
 
 
 @frozen(eq=False)
@@ -62,7 +62,7 @@ class Task:
 
 @frozen(eq=False)
 class Stopping:
-    """An observer that ends a path in a thread, which Ctrl-C does not reach."""
+    """An observer that ends paths in threads, which Ctrl-C does not reach."""
 
     stop: Event
 
@@ -89,8 +89,8 @@ def trace_many(
 ) -> Sequence[Path]:
     """Trace many homotopies, in order.
 
-    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled costs only its own path, which
-    becomes RAISED with the exception as message. Ctrl-C keeps finished paths.
+    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled costs one path, which becomes
+    RAISED with a message.
 
     Parameters
     ----------
@@ -99,8 +99,7 @@ def trace_many(
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; default: this process.
     archive : path, optional
-        One file for all paths. Until all are finished, they are in ``name.sweep-xxxxxxxx.1.h5`` (one file for each
-        number of unknowns); a kill leaves these.
+        One file for all paths; until they are finished, ``name.sweep-xxxxxxxx.1.h5`` (by number of unknowns).
     progress : callable, optional
         ``progress(done, total)``, such as `continuation.step.progress.SweepProgress`.
     timeout : float, optional
@@ -187,7 +186,7 @@ class _Kept:
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
     numbers: list[int] = field(factory=list)
-    """Of the paths in the parts, in the order in which they came back."""
+    """Numbers of paths in the parts, in order of arrival."""
 
     def add(self, number: int, found: Result) -> None:
         """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
@@ -207,7 +206,7 @@ class _Kept:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
-        """Make the archive: of one part in order, or by sorting several."""
+        """Make the archive from its parts."""
         files, stores = [store.file for store in self.parts.values()], [*self.parts.values()]
         if self.target is None or not files:
             return
@@ -221,7 +220,7 @@ class _Kept:
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
-        # With points, a tracer has been made before without failure.
+        # A path with points had a tracer, so making one succeeds.
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
@@ -235,7 +234,7 @@ class _Kept:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all tasks and wait, then repeat those lost with a worker, each in its own process."""
+    """Submit all tasks; repeat those lost with a worker, each in its own process."""
     lost: dict[int, BaseException] = {}
     for task in tasks:
         try:
@@ -275,7 +274,6 @@ def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
 
 
 def _end_processes(executor: Executor | None) -> None:
-    """Kill a pool's processes; threads end at their next step."""
     if isinstance(executor, ProcessPoolExecutor):
         for process in list((executor._processes or {}).values()):
             process.kill()
@@ -283,7 +281,7 @@ def _end_processes(executor: Executor | None) -> None:
 
 
 def traced(task: Task) -> Path | Share:
-    """The path of a homotopy, whatever it raises."""
+    """Trace a homotopy, whatever it raises."""
     path, controller = Path(), tuple[float, ...]()
     try:
         observers = () if task.stop is None else (Stopping(task.stop),)

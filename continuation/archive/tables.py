@@ -17,7 +17,7 @@ Block = dict[str, Any]
 """Rows of a table, by column."""
 
 ROWS_AT_ONCE, BYTES_AT_ONCE = 4096, 1 << 22
-"""Rows and bytes of one read: many short reads cost much more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
+"""Rows and bytes of one read: short reads cost more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
 
 
 class Table(Mapping[str, "np.ndarray[Any, Any]"]):
@@ -79,7 +79,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         return {name: self.some(name, rows) for name in self.columns}
 
     def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        """Some rows of one column; further rows are read ahead and cached.
+        """Rows of one column, with further rows read ahead.
 
         Parameters
         ----------

@@ -35,7 +35,7 @@ from continuation.status import Kind, Status
 def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> File:
     """Concatenate archives and renumber their paths.
 
-    Each path keeps its homotopy and source; settings and problem are the first file's. The result cannot be resumed.
+    Paths keep homotopy and source; settings and problem are the first file's. The result cannot be resumed.
 
     Parameters
     ----------
@@ -66,7 +66,6 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
 
 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
-    """A path in two files would count twice."""
     known: dict[bytes, str] = {}
     for archive, share in zip(archives, shares):
         for k, source in enumerate(share.paths["source"]):
@@ -78,7 +77,7 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 
 
 def gather(files: Sequence[File], target: File) -> None:
-    """Merge the parts of a sweep in member order; paths of another size lose their points."""
+    """Merge parts of a sweep in member order; paths of another size lose their points."""
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
@@ -107,7 +106,7 @@ def _of_size(share: Share, unknowns: int, target: File) -> Share:
 def export(file: str | PathLike[str], target: str | PathLike[str], *, compression: int = 4) -> list[File]:
     """Write an archive in another format.
 
-    The suffix of `target` decides: ``.nc``, ``.nc4``, ``.h5`` for netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
+    The suffix decides: ``.nc``, ``.nc4``, ``.h5`` for netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
     ``name.csv`` (points) and ``name.paths.csv``.
 
     Parameters
@@ -166,7 +165,7 @@ def _write_text(part: File, table: Table, compressed: bool) -> None:
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
-    """Replace a killed writer's file by a copy of its committed rows.
+    """Replace a killed writer's file by its committed rows.
 
     An unfinished path becomes INTERRUPTED and can be resumed. Sound, closed files stay. In a damaged file, each path
     ends before its first damaged row; the original becomes ``NAME.damaged``.
@@ -221,7 +220,6 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 
 
 def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]]) -> list[Share]:
-    """The sound rows of each path from its first point, or one empty share; `lost` holds damaged blocks."""
     committed, layout = contents.committed, contents.layout
     points, paths = contents.table("point"), contents.table("path")
     sound = {"point": np.ones(committed.points, dtype=bool), "path": np.ones(committed.paths, dtype=bool)}
@@ -243,7 +241,6 @@ def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]])
 
 
 def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
-    """Number and rows of each path up to its first damaged block."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1"))).reshape(-1, 2)
     for start, stop in edges.tolist():
         paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))
@@ -255,7 +252,6 @@ def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
 
 
 def _keep_aside(file: File) -> None:
-    """Keep the damaged file under another name."""
     aside = file.with_name(f"{file.name}.damaged")
     try:
         os.link(file, aside)

@@ -1,4 +1,4 @@
-"""From JSON to objects of trusted classes; nothing else that a file names is imported, called or made.
+"""Objects from JSON, of trusted classes only.
 
 Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`),
 classes in annotations of their fields, and the caller's `trust`; functions need the latter.
@@ -36,7 +36,7 @@ class UnknownError(LookupError):
 
 
 def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
-    """Objects that may be made, by path; `TypeError` if `trust` holds others than importable classes and functions."""
+    """Objects that may be made, by path; `TypeError` for other than importable classes and functions."""
     parts = [thing for module in _MODULES for thing in vars(module).values()]
     found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
     for thing in trust:
@@ -51,7 +51,6 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
 @lru_cache
 def _registered(path: str) -> type | None:
-    """The registered homotopy or its metric."""
     points = metadata.entry_points(group=ENTRY_POINTS)
     for point in sorted(points, key=lambda point: point.value != path):
         try:
@@ -71,7 +70,7 @@ def _path(cls: type) -> str:
 
 
 def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
-    """The value that `continuation.archive.codec.encode` described.
+    """The value described by `continuation.archive.codec.encode`.
 
     `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
     may be made. Raises `UnknownError` if a class is not trusted or a value has another type.
@@ -83,7 +82,6 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
 
 
 def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any, name: str) -> Any:
-    """`name`: the field, for messages."""
     value: Any
     match tree:
         case None | bool() | int() | float() | str():
@@ -154,7 +152,6 @@ def _items(hint: Any, count: int) -> tuple[Any, ...]:
 
 
 def _options(hint: Any) -> tuple[Any, ...]:
-    """The members of a union, or the type itself."""
     union = typing.get_origin(hint) in (typing.Union, types.UnionType)
     return tuple(o for a in typing.get_args(hint) for o in _options(a)) if union else (hint,)
 

@@ -1,4 +1,4 @@
-"""`PathLog`: the observer that writes paths to a file during a trace."""
+"""`PathLog`: the observer that writes paths to a file."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from continuation.step.state import State
 from continuation.step.tracer import Tracer
 
 Mark = tuple[State, tuple[int, ...], int]
-"""A point to resume from: state, counters, earlier rows of the path."""
+"""A point to resume from: state, counters, earlier rows."""
 
 
 @frozen
 class Limits:
-    """Rows, bytes or seconds after which buffered rows are committed."""
+    """Rows, bytes or seconds until a commit."""
 
     rows: int = field(default=256, validator=integer(1))
     nbytes: int = field(default=4 << 20, validator=integer(1))
@@ -60,8 +60,8 @@ class OpenPath:
 class PathLog:
     """An observer that writes paths to an HDF5 file.
 
-    By default rows are committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses later rows.
-    As a context manager, a log holds many paths; otherwise the end of the first closes the file.
+    Rows are committed at 256 rows, 4 MiB or one second by default, and at a path's end. In a ``with`` statement a log
+    holds many paths; otherwise the first one's end closes the file.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class PathLog:
         Parameters for `continuation resume` that the homotopies' attributes lack.
     limits : Limits
     keep : str
-        Steps in memory: ``"all"``, or the ``"ends"`` with others read on demand.
+        Steps in memory: ``"all"``, or the ``"ends"``.
     save_every : int
         Write every so many steps, and the first, the last and all events.
 
@@ -96,16 +96,16 @@ class PathLog:
     file: File
     member: int | None = None
     _rows: tuple[int, list[Row]]
-    """Number of the first uncommitted row, and these rows."""
+    """Number of the first uncommitted row; these rows."""
     _ended: dict[int, Record]
-    """Uncommitted rows of ended paths, by number."""
+    """Uncommitted rows of ended paths."""
     _many = _closed = False
     _store: Store | None = None
     _open: OpenPath | None = None
     _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
     _about: tuple[str, Mapping[str, Any]] = ("", {})
     _known: tuple[Any, Any] = (None, None)
-    """The file's first homotopy and its description in checkpoints."""
+    """The file's first homotopy and its description."""
     _commit_at = 0.0
 
     def __init__(
@@ -185,7 +185,7 @@ class PathLog:
         self._add(Row(event, event, LOCATED, event.tangent))
 
     def end(self, tracer: Tracer) -> None:
-        """See `continuation.Observer`; commits the path and, without context manager, closes the file."""
+        """See `continuation.Observer`; commits, and closes the file without ``with``."""
         if self._open is not None and (self._closed or (self._store is not None and not self._store.ours)):
             # The disk is full, or this process is a forked child.
             return
@@ -245,7 +245,6 @@ class PathLog:
         self._rows[1].append(row)
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> Store:
-        """Make the file and write the paths without points."""
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()

@@ -19,7 +19,6 @@ Validator = Callable[[Any, "Attribute[Any]", Any], None]
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
     """The exception about an argument."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    # One short line, whatever the repr.
     found = " ".join(repr(value).split())
     shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
     return error(f"{name}: expected {expected}, found {shown}{kind}")
@@ -33,17 +32,7 @@ def is_number(value: Any) -> bool:
 def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> Validator:
     """An attrs validator for real numbers.
 
-    Parameters
-    ----------
-    expected : str
-        Allowed numbers, for messages.
-    allowed : callable
-        False for NaN.
-
-    Returns
-    -------
-    callable
-        Raises TypeError or ValueError.
+    `expected`: allowed numbers, for messages. `allowed`: False for NaN.
     """
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
@@ -117,7 +106,7 @@ FACTOR = number("a finite number above 1", lambda x: 1.0 < x < math.inf)
 
 
 def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:
-    """TypeError unless `value` is an object with the attributes, not a class."""
+    """Raise TypeError unless `value` is an object with the attributes, not a class."""
     if isinstance(value, type):
         raise TypeError(f"{name}: expected {expected}, found the class {value.__name__}; {value.__name__}() is one")
     missing = [attribute for attribute in attributes if not hasattr(value, attribute)]
@@ -128,7 +117,7 @@ def instance_with(name: str, value: Any, attributes: Sequence[str], expected: st
 def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """A copy of `value` as an array of floats.
 
-    Raises `ValueError` for complex or masked entries, which would silently lose imaginary parts or masks.
+    Raises `ValueError` for complex or masked entries.
     """
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")

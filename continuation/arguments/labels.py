@@ -1,4 +1,4 @@
-"""Names and units of a homotopy's parameter and unknowns."""
+"""Names and units of parameter and unknowns."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ ATTRIBUTES = ("parameter_name", "names", "units")
 """Attributes of homotopies and archive roots."""
 
 _LONGEST = 100
-"""Longest name read from a file: 100 characters of TeX hold 14 nested roots; at 30, matplotlib exhausts Python's
-stack."""
+"""Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 exhaust Python's stack in matplotlib."""
 
 
 @frozen

@@ -6,7 +6,7 @@ In the ``pyproject.toml`` of a package::
     truss = "snapthrough:VonMisesTruss"
 
 The object is a class or function that returns a homotopy; its parameters are the options. The docstring's first line is
-its summary; the attributes `problem_class` and `references` give purpose and sources. Imports wait until needed.
+its summary; the attributes `problem_class` and `references` give purpose and sources. Imports wait.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ COMMANDS = "continuation.commands"
 _KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
-"""From options to homotopy."""
 
 
 class PluginError(LookupError):
@@ -40,7 +39,7 @@ class PluginError(LookupError):
 class Option:
     """A parameter of a plug-in.
 
-    `default`: None if required, `attrs.NOTHING` if computed from other options. `annotation`: type as written.
+    `default`: None if required, `attrs.NOTHING` if computed.
     """
 
     name: str
@@ -62,7 +61,7 @@ class Plugin:
     ----------
     name : str
     points : tuple of EntryPoint
-        Several if several packages register the name.
+        Several if packages share the name.
     kind : str
         "homotopy", "scene", "study" or "command".
     """
@@ -82,7 +81,7 @@ class Plugin:
         Raises
         ------
         PluginError
-            If packages share the name, the import fails, or the object is not callable.
+            If packages share the name, or the import fails.
         """
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
@@ -145,7 +144,7 @@ def find(name: str, group: str = GROUP) -> Factory:
 
 
 def describe(factory: Factory) -> Description:
-    """The description; a function's attributes are those of its result, if it needs no arguments."""
+    """The description; attributes come from the result of a function without arguments."""
     found = options(factory)
     source: Any = factory
     if not isinstance(factory, type) and not any(option.required for option in found):
@@ -163,7 +162,7 @@ def describe(factory: Factory) -> Description:
 
 
 def options(factory: Factory) -> tuple[Option, ...]:
-    """Parameters with names."""
+    """Named parameters."""
     named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     return tuple(
         Option(p.name, p.default is p.empty, None if p.default is p.empty else p.default, _written(p.annotation))

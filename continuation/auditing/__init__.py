@@ -1,4 +1,4 @@
-"""Checks of a traced path with its homotopy: retrace, refined points, length."""
+"""Retraces, refined points and length of a path."""
 
 from continuation.auditing.length import arclength
 from continuation.auditing.retrace import Audit, audit, refine

@@ -1,4 +1,4 @@
-"""The length of a traced path, by quadrature on its points."""
+"""The length of a path, by quadrature."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
-"""Weights of the interpolatory rule, of degree 5, on the inner Gauss nodes and the ends."""
+"""Weights of the rule of degree 5 on the inner Gauss nodes and the ends."""
 
 _AGREEMENT = 1e-8
-"""Relative difference of the two rules; Gauss's (degree 9) is then far more accurate."""
+"""Relative difference of the two rules; Gauss's (degree 9) is far more accurate."""
 
 _DIVISIONS = 20
 
@@ -75,7 +75,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
 
 
 def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
-    """The length from a to b in the metric `measure`; planes use that of a."""
+    """The length from a to b in the metric `measure`."""
     chord = norm(a.weights, b.u - a.u)
     if chord <= 1e-14 * norm(a.weights, a.u):
         return norm(measure, b.u - a.u)

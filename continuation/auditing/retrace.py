@@ -30,15 +30,15 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
 BEFORE = 0.1
-"""The retrace begins this part of the last step before a branch point: nearer, the matrix is almost singular."""
+"""Part of the last step before a branch point at which the retrace begins: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
 class Audit:
     """The result of a retrace.
 
-    `same`: Whether it passes every point in order and direction, with equal numbers of turning points and branch
-    points. `sentence`: The finding. `first`: First step missed, or None. `retraced`: The retrace.
+    `same`: whether it passes every point in order and direction, with as many turning points and branch points.
+    `first`: first missed step, or None.
     """
 
     same: bool
@@ -52,7 +52,7 @@ class Audit:
 
 @frozen(eq=False)
 class Halved:
-    """A controller that takes at most half of another trace's steps; its state is the arclength."""
+    """A controller with at most half of another trace's steps; its state is the arclength."""
 
     knots: Array
     max_angle: float = 0.3
@@ -68,7 +68,7 @@ class Halved:
         return (0.0,)
 
     def update(self, state: tuple[float, ...], attempt: StepMeasures) -> Decision:
-        """Half the other trace's step after success, half the attempt's after failure."""
+        """Half the other trace's step after success, else half the attempt's."""
         # A correction as long as the step leads to another path.
         if not attempt.converged or attempt.angle > self.max_angle or attempt.distance > 0.3 * attempt.h:
             return Decision(False, 0.5 * attempt.h, state)
@@ -88,8 +88,8 @@ def audit(
 ) -> Audit:
     """Check that the tracer stayed on one path: a retrace with half the steps must pass the same points.
 
-    After a jump to another path, or over a loop, the retrace misses the next point. It takes about twice the time of
-    the trace, and four times its factorisations.
+    After a jump to another path, or over a loop, the retrace misses the next point. It takes about twice the trace's
+    time.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Me
 
 
 def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
-    """The number of knots met in order before the trace ends or misses one."""
+    """Number of knots met in order before the trace ends or misses one."""
     solver = PathSolver(Evaluator(tracer.homotopy, Counts()), tolerance)
     met, met_at = 1, 0.0
     before: Linearization | None = None
@@ -176,7 +176,6 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
         assert tracer.state is not None
         weights = tracer.state.weights
         here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
-        # Branch points are met where the retrace locates them.
         located = [event for event in tracer.path.branch_points if event.step == step.index]
         while (
             before is not None
@@ -207,7 +206,6 @@ def _same(weights: Array, point: Linearization | LocatedEvent, knot: Knot, toler
 
 
 def _passed(tracer: Tracer, events: list[LocatedEvent], end: Knot, tolerance: Tolerance) -> int:
-    """The number of events up to the end."""
     assert tracer.state is not None
     last, weights = len(tracer.path) - 1, tracer.state.weights
     return sum(

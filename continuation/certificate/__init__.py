@@ -1,7 +1,7 @@
 """Proofs that a traced path is one curve, in interval arithmetic.
 
-Krawczyk's test (`certificate.krawczyk`) gives tubes around the cubics between points, each with exactly one curve of
-zeros. Tests at single parameters link tubes, prove points and events, and join the arcs of kinked paths. Signs along
+Krawczyk's test gives tubes around the cubics between points, each with exactly one curve of zeros. Tests at single
+parameters link tubes, prove points and events, and join the arcs of kinked paths. Signs along
 the curve count turning points and kinks.
 """
 

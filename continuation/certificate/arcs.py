@@ -27,7 +27,7 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
-"""Distances from an arc's end, in lengths of the last cell, at which the signs of a switch are tried."""
+"""Distances from an arc's end, in lengths of the last cell, at which a switch's sign is tried."""
 
 ARC_PARTS = 4
 """Parts of a slab: a switch that vanishes at both ends has a sign in between."""
@@ -40,7 +40,7 @@ Prove = Callable[[Any, Path, Cells | None, Look], tuple[Proof, Engine, list[list
 
 @frozen(eq=False)
 class SmoothPart:
-    """An arc between two kinks, with the signs of the switches."""
+    """An arc between two kinks, with its switches' signs."""
 
     signs: Array
     proof: Proof
@@ -48,7 +48,7 @@ class SmoothPart:
 
 
 def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
-    """Prove a path in pieces, or check `cells`; `prove` does so for one arc."""
+    """Prove a path in pieces, or check `cells`; `prove` proves one arc."""
     switches = ByIntervals(homotopy.switches, path.u.shape[1] - 1)
     kinks, gaps = _listed(path)
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
@@ -121,13 +121,13 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
 def _signs(
     homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
 ) -> tuple[tuple[float, float], Array | None]:
-    """The last step examined, and the signs of the switches (None: not on one piece)."""
+    """The last step examined, and the switches' signs, None off one piece."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
         found = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
     if before is not None:
-        # A switch zero at both ends of a step is zero in the middle of its chord.
+        # A switch that is zero at both ends of a step is zero in its chord's middle.
         crossed = [j for j in ends[0] if 0 <= j < len(found)]
         found[crossed] = -before[crossed]
     for row, end in zip((0, -1), ends):
@@ -139,18 +139,17 @@ def _signs(
 
 
 def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
-    """The points of an arc, with a kink's outgoing tangent."""
     if kink is None:
         return steps
     away = np.full_like(kink.u, np.nan) if kink.rays is None or len(kink.rays) < 2 else kink.rays[1]
     return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
-# --- the switches along an arc ---
+# The switches along an arc
 
 
 def _look_at(switches: ByIntervals) -> Look:
-    """Look at the parameter's rate, at switches, and at their derivatives along the curve."""
+    """Return a function that observes the parameter's rate, switches, and their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
         owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
@@ -165,7 +164,6 @@ def _look_at(switches: ByIntervals) -> Look:
 
 
 def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[Piece], list[Piece]]:
-    """Signs of each switch at the ends of an arc."""
     s, sides = np.array([0.0, 1.0]), cells.take([0, -1])
     radius = nodes(engine, sides, s).radius
     radius = np.where((radius <= sides.radius).all(axis=1, keepdims=True), radius, np.nan)
@@ -175,13 +173,12 @@ def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[
 
 
 def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
-    """Signs of the switches within radii of slab middles."""
     box = slabs.cubic[:, 0] + Ends(-radius, radius)
     return signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
 
 
 def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
-    """Why a switch is not proved to keep its sign on an arc. `at`: whether it should vanish at either end."""
+    """Why a switch may change its sign on an arc. `at`: whether it should vanish at either end."""
     begin, *inner, end = found
     # A switch that should vanish at an end is round-off there.
     found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
@@ -197,13 +194,13 @@ def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> s
     return NO_KINK if (len(first), len(last)) != at else ""
 
 
-# --- from one arc to the next ---
+# From one arc to the next
 
 
 def _joined(
     homotopy: Any, before: SmoothPart | None, after: SmoothPart | None, kink: LocatedEvent
 ) -> tuple[float, float] | str:
-    """A range of arclength that holds the kink, or why the arcs are not joined."""
+    """A range of arclength with the kink, or why the arcs are not joined."""
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else NO_KINK
     (j,), s = kink.switches, kink.arclength
@@ -239,6 +236,5 @@ def _joined(
 
 
 def _rate(engine: Engine, cell: Cells, s: float, off: Array) -> int:
-    """Sign of the parameter's rate within `off` of a node."""
     t = engine.judge(at_node(cell, np.array([s])), off).tangent(off, off)
     return int(signs(t[0, -1]))

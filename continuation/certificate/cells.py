@@ -1,4 +1,4 @@
-"""Cells: pieces of a path with a cubic, a chart across it, and the radii of a tube."""
+"""Cells: pieces of a path with a cubic, a chart, and a tube."""
 
 from __future__ import annotations
 
@@ -15,27 +15,16 @@ from continuation.numbers.ends import EPS, Ends, bilinear, thin
 Index = NDArray[np.intp]
 
 OVERHANG = 1e-3
-"""Share of its length by which a tube overlaps its neighbours."""
+"""Overlap of a tube with its neighbours, relative to its length."""
 
 
 @frozen(eq=False)
 class Cells:
     """Consecutive pieces of a path; arrays of shape (cells, N + 1) unless stated.
 
-    Attributes
-    ----------
-    begin, end : ndarray
-        Nodes p(0), p(1) of the Hermite cubic p.
-    slope_begin, slope_end : ndarray
-        p'(0), p'(1).
-    chart : ndarray
-        The vector c: u has the parameter s with c . (u - p(s)) = 0.
-    radius : ndarray
-        Tube: |u - p(s)| <= radius by component.
-    slabs : ndarray of int, shape (cells,)
-        Equal parts in the test.
-    place : ndarray, shape (cells, 2)
-        Arclengths of the ends.
+    `begin`, `end`: nodes p(0), p(1) of the Hermite cubic p. `slope_begin`, `slope_end`: p'(0), p'(1). `chart`: the
+    vector c; u has the parameter s with c . (u - p(s)) = 0. `radius`: the tube is |u - p(s)| <= radius by component.
+    `slabs`, shape (cells,): equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
     """
 
     begin: Array
@@ -90,11 +79,11 @@ def between(
 def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
     """Extent by component, at least 1e-6 of the chord in the metric.
 
-    `still`: unit lengths where components stand still.
+    `still`: unit lengths of components that stand still.
     """
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
-        # sqrt(chord / chart) is a unit length: chart = weights * chord up to a factor.
+        # The chart is weights * chord up to a factor, so sqrt(chord / chart) is a unit length.
         unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
         if still is not None:
             unit = np.where(np.isfinite(unit), unit, still)
@@ -107,7 +96,7 @@ def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
 
 @frozen(eq=False, slots=False)
 class Slabs:
-    """Parameter ranges within `half` of `middle`, and their cells."""
+    """Parameter ranges within `half` of `middle`, by cell."""
 
     owner: Index
     middle: Array
@@ -130,7 +119,7 @@ class Slabs:
     def cubic(self) -> Ends:
         """Coefficients q of p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
 
-        Expanded from the nearer end: a node has no round-off from the other.
+        The nearer end is the origin: a node has no round-off from the other.
         """
         cells, later = self.cells, self.middle[:, None] > 0.5
         sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]
@@ -168,7 +157,7 @@ class Slabs:
         steps = (2.0 * np.arange(parts) + 1.0) / parts - 1.0
         middle = (self.middle[:, None] + self.half[:, None] * steps).ravel()
         index = np.repeat(np.arange(len(self)), parts)
-        # Slightly longer: rounding must not uncover the slab.
+        # Rounding must not uncover the slab.
         half = np.repeat(self.half / parts, parts) * (1.0 + 1e-9)
         return Slabs(self.owner[index], middle, half, self.cells.take(index))
 
@@ -189,7 +178,7 @@ def at_node(cells: Cells, s: Array) -> Slabs:
 
 
 def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
-    """Ranges of p, p', p''/2 for cubics (slabs, 4, m) and offsets (slabs, 1)."""
+    """Ranges of p, p', p''/2 for cubics (slabs, 4, m) at offsets (slabs, 1)."""
     q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
     by_last = x * q3
     second = q2 + by_last + by_last + by_last

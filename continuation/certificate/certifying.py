@@ -33,17 +33,17 @@ from continuation.point.projection import PathSolver
 from continuation.tolerance import Tolerance
 
 CELL_HALVINGS = 8
-"""Halvings of a cell; its fourth-order error is then below round-off."""
+"""Halvings of a cell: its fourth-order error is then round-off."""
 
 TAIL_NODES = 60
-"""Most points added next to a singular end; ten suffice if the parameter falls like the distance."""
+"""Most points added next to a singular end; ten suffice if parameter and distance fall alike."""
 
 NEARER = 0.25
 """Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
 boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
 
 LARGE_NUMBERS = 4_000_000
-"""Length of a 32 MB array, the largest with the effect described below."""
+"""Length of a 32 MB array, the largest with the effect below."""
 
 
 @frozen(eq=False)
@@ -58,18 +58,18 @@ class Node:
 
 @one_thread
 def certify(path: Path, homotopy: Any) -> Proof:
-    """Prove that a traced path is one curve; parts without a proof are returned as gaps.
+    """Prove that a traced path is one curve; unproved parts become gaps.
 
-    If Krawczyk's test holds around the cubic between two points, the tube there holds exactly one curve, perhaps with
-    folds. Cells that fail are halved. Turning points are compared with the path's, and the end is joined to the target.
+    If Krawczyk's test holds around the cubic between two points, this tube holds exactly one curve, perhaps with folds.
+    Failing cells are halved. Turning points are compared, and the end is joined to the target.
 
     Parameters
     ----------
     path : Path
         Traced, or read from an archive.
     homotopy : Homotopy
-        The homotopy that was traced. Its residual must run on interval arrays, unless it has bounds of its own
-        (`SupportsProofEngine`), as LCP homotopies have.
+        The traced homotopy. Its residual must run on interval arrays, unless it has its own bounds
+        (`SupportsProofEngine`), like LCP homotopies.
 
     Returns
     -------
@@ -104,8 +104,8 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
-    """A proof, its engine, and pieces of each observed number, first the parameter's rate."""
-    # glibc keeps freed memory after a large array was freed; otherwise requesting pages takes a third of a proof.
+    """A proof, its engine, and pieces of each observed number, beginning with the parameter's rate."""
+    # Once a large array was freed, glibc keeps freed memory; requesting pages otherwise takes a third of a proof.
     np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
@@ -130,7 +130,7 @@ def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
 
 @frozen(eq=False)
 class TubeSearch:
-    """The search for cells and tubes; `look` observes numbers."""
+    """The search for cells and tubes."""
 
     engine: Engine
     homotopy: Any
@@ -142,7 +142,7 @@ class TubeSearch:
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         end, own = nodes[-1], getattr(self.homotopy, "metric", None) is not None
-        # A path is proved up to here from a singular end; farther cells are cut without limit.
+        # A path is proved up to this distance from a singular end; farther cells are cut without limit.
         near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(self.path.steps[-1]) else np.inf
         pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
         done: list[Tubes] = []
@@ -190,10 +190,10 @@ class TubeSearch:
 
 
 def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
-    """A point of the path between two nodes, at a share of their distance from b, or why there is none.
+    """A point of the path between two nodes, or why there is none; `share`: of their distance, from b.
 
-    The midpoint guess uses slopes as long as the chord: if a tangent is nearly orthogonal to the chord, its slope in
-    the chart is huge. Next to a singular end a parabola gives the guess.
+    The midpoint guess uses slopes as long as the chord, as those in the chart may be huge. Next to a singular end a
+    parabola gives the guess.
     """
     cell, x = _cell(a, b), 1.0 - share
     first, last = (v[0] / (norm(a.weights, v[0]) or 1.0) for v in (cell.slope_begin, cell.slope_end))
@@ -213,7 +213,7 @@ def _cell(a: Node, b: Node) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """Weights of the next step if stored, else the rule's."""
+    """Weights of the next step, stored or by the rule."""
     rule, out = metric_of(homotopy, path), list[Array]()
     for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)

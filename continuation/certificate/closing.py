@@ -22,24 +22,15 @@ LIMIT = "the end is the limit of a series, of which nothing is proved"
 
 @runtime_checkable
 class SupportsEndCertificate(Protocol):
-    """A homotopy that proves its ends to be solutions in another way."""
+    """A homotopy that proves in another way that its ends are solutions."""
 
     def certify_end(self, y: Array) -> str:
-        """A sentence on the end that is proved; empty if nothing is.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N,)
-
-        Returns
-        -------
-        str
-        """
+        """A sentence on the end y, shape (N,), if it is proved; else empty."""
         ...
 
 
 def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> tuple[str, Array | None, str]:
-    """The proved sentence on the end, the curve's distance from the end, and the missing condition."""
+    """The proved sentence on the end, the curve's distance from it, and the missing condition."""
     end, last = path.steps[-1], float(cells.end[-1, -1])
     if path.status is not Status.REACHED_TARGET:
         return ("The end is a point of the curve.", None, "") if at.proved[-1] else ("", None, NO_CURVE)
@@ -59,5 +50,5 @@ def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> t
 
 
 def made(step: Step) -> bool:
-    """Whether an end was found without a step; its tangent is a chord."""
+    """Whether an end was found without a step, so with a chord as tangent."""
     return step.index > 0 and step.segment is None and step.corrector_iterations == 0

@@ -66,7 +66,7 @@ class Engine(Protocol):
 
     @property
     def most(self) -> int:
-        """Most slabs of a cell; then a new point costs less."""
+        """Most slabs of a cell; beyond, a new point costs less."""
         ...
 
     def together(self, m: int) -> int:

@@ -1,4 +1,4 @@
-"""Zeros of numbers along a proved curve, from signs of numbers and derivatives."""
+"""Zeros of numbers along a proved curve, from signs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RANGE = 0.25
 """Largest range, in cells, that locates a turning point."""
 
 SIGN_PLACES = 32
-"""At so many places in a range with a turning point the sign is asked, twice: a thousandth of it is left."""
+"""Places in a range at which the sign is tried, twice: a thousandth of it is left."""
 
 Look = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
 """Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
@@ -25,7 +25,7 @@ slabs, shape (slabs, parts)."""
 
 @frozen(eq=False)
 class Piece:
-    """A parameter range, within a cell or in cells (index + parameter).
+    """A parameter range, in a cell or in cells (index + parameter).
 
     `sign`: of a number; `bend`: of its derivative; 0 if unknown.
     """
@@ -38,7 +38,7 @@ class Piece:
 
 @frozen(eq=False)
 class Turn:
-    """A range, in cells, with exactly one zero and a derivative of sign `bend`; if not `certain`, the zero may lie
+    """A range, in cells, with exactly one zero and a derivative of sign `bend`; not `certain` if the zero may lie
     beyond the path's end.
     """
 
@@ -54,13 +54,13 @@ def signs(x: Ends) -> Index:
 
 
 def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
-    """Look at the parameter's rate, zero at turning points."""
+    """Observe the parameter's rate, zero at turning points."""
     slope, bend = judged.pace(radius, radius)
     return [(signs(slope), signs(bend))]
 
 
 def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
-    """Pieces of `count` cells for each number, one for a slab with one sign, else one for each part."""
+    """Pieces of `count` cells for each number: a slab with one sign, else its parts."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]
     for j, (sign, bend) in enumerate(numbers):
@@ -76,8 +76,7 @@ def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) 
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
     """Zeros in order, and ranges with an unknown number of zeros.
 
-    A run of pieces without a sign holds exactly one zero if the derivative has one sign and the signs around the run
-    differ.
+    A run of pieces without sign holds exactly one zero if the derivative has one sign and the signs around differ.
     """
     out: list[Turn] = []
     unknown: list[tuple[float, float]] = []
@@ -99,10 +98,7 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
 
 
 def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
-    """Shorten the turning points' ranges above `RANGE`, by signs of the monotone number.
-
-    Away from nodes parameters have the curve's order.
-    """
+    """Shorten the turning points' ranges above `RANGE`, by signs of the monotone number."""
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]
     for _ in range(2 if wide else 0):

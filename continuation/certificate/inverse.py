@@ -16,7 +16,7 @@ def times(matrix: Array, x: Array) -> Array:
 
 
 def inverses(matrices: Array) -> Array:
-    """Approximate inverses of a stack; nan for a singular one."""
+    """Approximate inverses; nan for singular matrices."""
     try:
         return np.asarray(np.linalg.inv(matrices), dtype=float)
     except np.linalg.LinAlgError:

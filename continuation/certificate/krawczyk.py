@@ -28,17 +28,17 @@ from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, mo
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
-"""Size of one array: 4 MB, or 64 MB if slabs are cut into `most`."""
+"""Numbers in one array: 4 MB, or 64 MB if slabs are cut into `most`."""
 
 DIRECTIONS_THAT_PAY = 16
-"""Second derivatives pay up to this many unknowns: they save nine boxes of ten with 10 (exponential-cosine), none with
-30 (Bratu), where the proof takes eight times as long."""
+"""Unknowns up to which second derivatives pay: they save nine boxes of ten with 10 (exponential-cosine), none with 30
+(Bratu), where the proof takes eight times as long."""
 
 TUBE_STRETCHES = 8
-"""Into so many parts a slab is cut where the parameter may turn."""
+"""Parts of a slab where the parameter may turn."""
 
 MISFIT_PARTS = 4
-"""Parts of a slab to bound H on the cubic; Taylor's remainder is of third order."""
+"""Parts of a slab to bound H on the cubic: Taylor's remainder is of third order."""
 
 
 @frozen(eq=False)
@@ -60,7 +60,7 @@ class ByIntervals:
         return 8 if self.moving else 16
 
     def image(self, u: Interval) -> Any:
-        """H on an interval array, shape (N + 1,); nan where a comparison is undecided."""
+        """H on an interval array, shape (N + 1,); nan if undecided."""
         whole: Any = u
         try:
             return u.lifted(self.residual(whole[:-1], whole[-1]))
@@ -80,9 +80,9 @@ class ByIntervals:
     def judge(self, slabs: Slabs, radius: Array) -> Bounded:
         """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W, x = s - m.
 
-        G_0 is the range of G' over the box at the middle m, W that of H''(p'(s), .) over the whole. With R = I - Y_0
-        G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). At kinks, or with many unknowns, E = D
-        = 0 and G_0 is over the whole box.
+        G_0 is the range of G' over the box at the middle m, W that of H''(p'(s), .) over the whole. With
+        R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D). At kinks, or with many
+        unknowns, E = D = 0 and G_0 is over the whole box.
         """
         m, x, whole = radius.shape[1], slabs.offset[:, None, None], slabs.box(radius)
         W = thin(np.full((len(slabs), m - 1, m), np.nan))
@@ -121,12 +121,12 @@ class ByIntervals:
             width = Ends(lo, hi).radius(middle)
             size_Y = np.abs(Y)
             off = np.abs(np.eye(m) - np.matmul(Y, full))
-            # Rounding of product and subtraction, then the derivative's width.
+            # Bound the rounding of product and subtraction, then the derivative's width.
             off = up_by(off + accumulated(m) * (np.matmul(size_Y, np.abs(full)) + np.eye(m)), 2)
             return Y, off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
 
     def _change(self, box: Ends, velocity: Ends, unit: Array) -> Ends:
-        """Range of H''(p', e_j), shape (slabs, N, m), from H'' along p' + e_j and p' - e_j; e_j has the cell's size."""
+        """Range of H''(p', e_j), shape (slabs, N, m), from H'' along p' + e_j and p' - e_j."""
         count, m = unit.shape
         step: Array = np.exp2(np.round(np.log2(unit)))
         along = np.zeros((2, m, count, m))
@@ -159,13 +159,7 @@ class ByIntervals:
 
 
 def engine_of(homotopy: Any) -> Engine:
-    """The homotopy's own engine, else interval arithmetic.
-
-    Raises
-    ------
-    TypeError
-        If the residual does not run on interval arrays; the message names the operation.
-    """
+    """The homotopy's own engine, else interval arithmetic; TypeError names an operation that intervals lack."""
     if isinstance(homotopy, SupportsProofEngine):
         return homotopy.proof_engine()
     y, lam = homotopy.start()
@@ -209,10 +203,7 @@ class Bounded:
         return self._solved(thin(self.Y[:, :, -1]), radius, tube)
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
-        """See `Judged.pace`, with c . t = 1.
-
-        Slabs without a sign are cut; on parts the image of a wide box is a tenth of it.
-        """
+        """See `Judged.pace`, with c . t = 1. Slabs without a sign are cut: images of wide boxes become a tenth."""
         slope = self.tangent(radius, tube)[:, -1:]
         ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], TUBE_STRETCHES, axis=3)
         with np.errstate(all="ignore"):
@@ -233,7 +224,6 @@ class Bounded:
         return Ends(*ends[0]), Ends(*ends[1])
 
     def _image(self, radius: Array) -> Array:
-        """Upper bound of the curve's distance from the cubic."""
         with np.errstate(all="ignore"):
             return (self.misfit + self.spread(radius, radius)) * (1.0 + 4.0 * EPS)
 
@@ -250,7 +240,7 @@ class Bounded:
         return t[:, -1], -self._solved(applied(self.Y, second), radius, radius)[:, -1]
 
     def _solved(self, v: Ends, radius: Array, tube: Array) -> Ends:
-        """Range of G'^{-1} b within `radius` of the cubic, for v that holds Y_0 b.
+        """Range of G'^{-1} b within `radius` of the cubic; v holds Y_0 b.
 
         With F = I - Y(s) G' and w = (I - x E) v it is (I - F)^{-1} w, off w by the sum of F^k |w|: two terms and a
         geometric series, as F^3 |w| <= theta r, F r <= kappa r.
@@ -267,7 +257,7 @@ class Bounded:
             return v + Ends(-room, room)
 
     def spread(self, x: Array, radius: Array) -> Array:
-        """As in `Judged`; nan beyond the largest radii."""
+        """See `Judged`; nan beyond the largest radii."""
         bound = up_by(times(self.off, x), x.shape[1])
         known = (radius <= self.largest).all(axis=1, keepdims=True)
         return np.where(known, bound, np.nan)

@@ -1,4 +1,4 @@
-"""Paths with further unknowns, for residuals that are plain arithmetic only with these."""
+"""Paths with further unknowns, with which the residual is plain arithmetic."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class SupportsWrittenOut(Protocol):
     """A homotopy that eliminates unknowns by factorisations."""
 
     def written_out(self, points: Array) -> Any:
-        """The homotopy with all unknowns; None if nothing is eliminated.
+        """The homotopy with all unknowns, or None.
 
-        Its `lifted(u, before)` puts the further unknowns, near those of `before`, in front of u.
+        Its `lifted(u, before)` puts the further unknowns in front of u, near those of `before`.
 
         Parameters
         ----------
@@ -31,9 +31,9 @@ class SupportsWrittenOut(Protocol):
 
 
 def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
-    """The homotopy and path to prove, with further unknowns if needed, or an empty proof with a reason.
+    """The homotopy and path to prove, perhaps with further unknowns, or an empty proof with a reason.
 
-    Nodes of `cells` give the further unknowns of points that they share with the path.
+    Nodes of `cells` give those of the points that they share.
     """
     points = path.u
     width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))

@@ -20,13 +20,13 @@ RADII = 12
 """Radii tried with one test's bounds."""
 
 INFLATION = 1.1
-"""Factor from image to next radii, as a fixed point is approached from above."""
+"""Factor from image to next radii: fixed points are approached from above."""
 
 LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
-"""In radii of the tube: least box, first box for derivatives."""
+"""Least box, and first box for derivatives, in radii of the tube."""
 
 NODE_ULPS = 32.0
-"""Units in the last place of the least box."""
+"""Least box, in ulps."""
 
 
 @frozen(eq=False)
@@ -57,7 +57,7 @@ class Nodes:
 
 
 def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
-    """A point of the curve near an end of each cell, or the curve within `half` of s, shape (cells,)."""
+    """Points of the curve near an end of each cell, or the curve within `half` of s, shape (cells,)."""
     parts = together(engine, cells)
     return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
 
@@ -76,7 +76,7 @@ def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
 
 
 def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple[Array, Array, Mask]:
-    """By cell: radii slightly above the test's image, the contraction bound, whether the test holds.
+    """For each cell: radii slightly above the test's image, the contraction bound, whether the test holds.
 
     `least`, `bounded`: smallest radii, largest with valid bounds.
     """
@@ -95,7 +95,7 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array) -> tuple
 
 
 def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
-    """Largest value over each cell's slabs, or nan."""
+    """Largest value by cell, or nan."""
     if len(values) == count:
         return values
     out = np.zeros((count, values.shape[1]))

@@ -43,7 +43,7 @@ def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
 
 
 SHOWN = 4
-"""Gaps listed in a sentence; the others are counted."""
+"""Gaps listed in a sentence."""
 
 
 @frozen(eq=False, repr=False)
@@ -51,8 +51,7 @@ class Proof:
     """A proof that a traced path is one curve, or the proved parts.
 
     If complete, the tubes hold one smooth curve of zeros of the residual, round-off included. It passes the boxes of
-    all points in order and in one direction, without branch points, and turns exactly where the path says. Other curves
-    may exist outside the tubes.
+    all points in order, without branch points, and turns exactly where the path says. Other curves may exist outside.
 
     Attributes
     ----------
@@ -67,7 +66,7 @@ class Proof:
     end_radius : ndarray or None
         Largest distance of the curve from the stored end, if proved exactly at the target.
     kinks : tuple of tuple of float
-        Ranges of arclength with exactly one zero of a switch each; no switch vanishes elsewhere.
+        Ranges of arclength with exactly one zero of a switch; there are no others.
     width : int
         N + 1 of the path; cells may have further unknowns in front.
     """

@@ -17,7 +17,7 @@ TRACES = 4
 
 @one_thread
 def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
-    """Options with which the path, or its longest part, is proved, and the proof (None below two points).
+    """Options with which the path, or its longest part, is proved, and the proof, if any.
 
     The recorded trace is the proved one: traces with the same number of threads are equal.
     """

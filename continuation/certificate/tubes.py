@@ -13,23 +13,23 @@ from continuation.certificate.links import INFLATION, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
-"""Least radius, in sizes of the cell: a tube thinner than round-off misses its neighbour's curve."""
+"""Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
 
 STILL_ULPS = 1024.0
-"""Least radius of components that stand still, in units in the last place."""
+"""Least radius of components that stand still, in ulps."""
 
 FIRST_RADII = 0.05
-"""First radii, in lengths of a slab; derivatives widen in proportion."""
+"""First radii, in slab lengths; derivatives widen in proportion."""
 
 CELL_TESTS = 6
 """Most tests of a cell."""
 
 CONTRACTING = 0.6
-"""Above this bound of |I - Y G'| slabs are halved: it falls with their length."""
+"""Bound of |I - Y G'| above which slabs are halved: it falls with their length."""
 
 
 def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
-    """Whether the test holds, slab by slab; all proofs rest on this."""
+    """Whether the test holds, by slab; all proofs rest on this."""
     with np.errstate(all="ignore"):
         total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
         # Charts must advance: the cubic crosses each once.
@@ -40,12 +40,8 @@ def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
 class Tubes:
     """Cells with test results.
 
-    Attributes
-    ----------
-    undefined : ndarray of bool, shape (cells,)
-        Whether the residual is undefined or undecided in the last box.
-    pieces : list of list of list of Piece
-        By proved cell and observed number.
+    `undefined`, shape (cells,): whether the residual is undefined or undecided in the last box. `pieces`: by cell and
+    observed number.
     """
 
     cells: Cells
@@ -64,7 +60,7 @@ class Tubes:
         )
 
     def take(self, index: Index) -> Tubes:
-        """Select."""
+        """Select cells."""
         return Tubes(self.cells.take(index), self.proved[index], self.undefined[index], [self.pieces[k] for k in index])
 
     def numbers(self) -> list[list[Piece]]:
@@ -92,7 +88,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
-        # Other bounds hold only up to their radii.
+        # Other bounds hold up to their radii.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
         wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
@@ -125,7 +121,7 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
 
 
 def check(engine: Engine, cells: Cells, look: Look) -> Tubes:
-    """Test cells with their own radii and slabs."""
+    """Test cells with their own tubes."""
     found = []
     for place in together(engine, cells):
         some = cells.take(place)

@@ -1,4 +1,4 @@
-"""Conditions under which cells prove a path: tubes, links, order, turning points, events, end."""
+"""Conditions under which cells prove a path."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
-    """Nodes at the ends of cells, links to the next, and nodes at the start and (chart: the parameter) the end."""
+    """Nodes at the cells' ends, links to the next, and nodes at start and end, where the chart is the parameter."""
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
@@ -74,7 +74,6 @@ def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
-    """Check the order of points, gaps between cells, and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
     places = cells.place.ravel().tolist()
@@ -101,7 +100,7 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 
 
 def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
-    """Check that the curve is near each node: wide tubes also hold a start that was moved.
+    """Check that the curve is near each node: wide tubes hold moved starts too.
 
     Nodes of sound paths are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
@@ -114,15 +113,15 @@ def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
     step = np.clip(np.searchsorted(path.arclength, arclength), 1, len(path) - 1)
     size = np.maximum(cell_sizes(own), np.abs(path.u[step] - path.u[step - 1]))
-    # A component that stands still has no size but the tube's.
+    # The tube is the only size of a component that stands still.
     return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 
 
-# --- turning points and events ---
+# Turning points and events
 
 
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
-    """Add signs at first and last point; zeros beyond do not count."""
+    """Add signs at first and last point."""
     signs = []
     for node, k in ((start, 0), (at, -1)):
         lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
@@ -183,7 +182,7 @@ def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
 
 
 def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
-    """Cell index + parameter of an event in the tube; arclength tells only the step."""
+    """Cell index + parameter of an event; arclength tells only the step."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
     begin, end = path.arclength[step - 1 : step + 1]
     for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
@@ -206,7 +205,6 @@ def _parameter(cell: Cells, u: Array) -> Array:
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
-    """Check that events lie in the tube in order, none a branch point."""
     gaps, last = [], -np.inf
     for event, place in zip(path.events, places):
         s = event.arclength

@@ -1,6 +1,6 @@
-"""Speed against accuracy: studies of problems x methods x a ladder, with tables and three kinds of picture.
+"""Speed against accuracy: studies of problems x methods x a ladder, with tables and pictures.
 
-A plug-in author charts a homotopy of their own in ten lines::
+A study of a homotopy in ten lines::
 
     from continuation import chart
     from continuation.predictors import Hermite, Tangent

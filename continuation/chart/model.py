@@ -23,7 +23,7 @@ class Rung:
     Attributes
     ----------
     name : str
-        An option of `continuation.trace`, or what the study's methods know by it.
+        An option of `continuation.trace`, or of the study's methods.
     value : float
         Positive.
     """
@@ -81,7 +81,7 @@ class Truth:
 
 
 REFERENCE_TOLERANCE = 1e-11
-"""Last Newton increment of a reference; the next point is exact to round-off."""
+"""Last Newton increment of a reference; the next is round-off."""
 
 
 def reference(homotopy: Any, **options: Any) -> Truth:
@@ -111,7 +111,7 @@ class Problem:
     Attributes
     ----------
     name, family : str
-        Problems of a family differ in size or seed.
+        A family's problems differ in size or seed.
     subject : Any
         Homotopy, or other input of methods.
     truth : Truth
@@ -165,9 +165,9 @@ class Method:
     ----------
     name : str
     run : callable
-        Maps (problem, rung) to an Answer; may raise.
+        Maps (problem, rung) to an Answer.
     applies : callable
-        Whether it solves a given problem.
+        Whether it fits a problem.
     outside : bool
         Whether others provide the method.
     """

@@ -1,4 +1,4 @@
-"""Panels, colours, ticks and names of study pictures."""
+"""Parts of study pictures."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Axes = Any
 Figure = Any
 
 Mark = tuple[float, dict[str, Any]]
-"""Place on a row, style."""
+"""Place and style."""
 
 
 def _look(k: int, outside: bool) -> dict[str, Any]:
@@ -39,13 +39,13 @@ def _look(k: int, outside: bool) -> dict[str, Any]:
 
 
 def looks_of(results: Results, methods: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Styles by method; ours and outside methods count separately."""
+    """Styles by method, outside methods apart."""
     outside = {row.method: row.outside for row in results.rows}
     return {m: _look([o for o in methods if outside[o] == outside[m]].index(m), outside[m]) for m in methods}
 
 
 def panels(count: int, across: int, title: str, height: float = 3.0, width: float = 7.4) -> tuple[Figure, list[Axes]]:
-    """A page-wide figure with `count` panels, `across` per row."""
+    """A figure with `count` panels, `across` a row."""
     require_matplotlib()
     from matplotlib.figure import Figure as Canvas
 
@@ -60,7 +60,7 @@ def panels(count: int, across: int, title: str, height: float = 3.0, width: floa
 
 
 def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) -> tuple[Figure, Axes]:
-    """One row per line (name, marks, remark), the marks joined; a logarithmic axis."""
+    """A row of joined marks for each line (name, marks, remark), with a logarithmic axis."""
     figure, (axes,) = panels(1, 1, title, height=1.2 + 1.35 * LINE * len(lines), width=9.0)
     for k, (_, marks, said) in enumerate(lines):
         axes.plot([x for x, _ in marks], [-k] * len(marks), color="0.8", linewidth=2.0, zorder=1)
@@ -96,7 +96,7 @@ def plain_ticks(axis: Any) -> None:
 
 
 def to_round_off(axes: Axes) -> None:
-    """Let errors fall to the right; draw round-off if near."""
+    """Let errors fall to the right."""
     least, largest = axes.get_xlim()
     axes.set_xlim(max(largest, 1e3 * least), least)
     if least < 1e3 * ERROR_FLOOR:
@@ -118,7 +118,6 @@ def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None
     places = isotonic_regression(heights - apart).x + apart
     places = np.minimum(np.maximum(places, apart), max(1.0, apart[-1]) - apart[::-1])
     for place, (x, y, text, colour) in zip(places, ends):
-        # Tie the middle of the name's left side.
         tie = {"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 4.0, "relpos": (0, 0.5)}
         where: dict[str, Any] = {"textcoords": "axes fraction", "va": "center", "annotation_clip": False}
         axes.annotate(text, (x, y), (1.05, place), fontsize="small", color=colour, arrowprops=tie, **where)

@@ -1,4 +1,4 @@
-"""Pictures of a study: lines of work, and rows of methods or of problems. Names stand where they belong: no legends."""
+"""Pictures of a study."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def _names(value: str | Sequence[str]) -> tuple[str, ...]:
 class Lines:
     """Work against an error or the size ``"n"``, both logarithmic: lower is better.
 
-    Errors fall to the right. A panel shows a problem and kind of work, with numbers of failures; for n, a family.
-    Ours have colours, outside methods are grey.
+    Errors fall to the right. A panel shows a problem (for n, a family) and kind of work, with failures. Outside methods
+    are grey.
 
     Attributes
     ----------
@@ -112,9 +112,9 @@ class Lines:
 
 @frozen
 class Profile:
-    """A row per method: the `excess` of every run that it solved, their median, and the percentage solved.
+    """A row for each method: the `excess` of every solved run, the median, and the percentage solved.
 
-    Those that solve most stand above, of these the quicker ones. Ours are blue, outside methods grey.
+    Methods that solve most stand above, quicker ones first. Outside methods are grey.
 
     Attributes
     ----------
@@ -160,14 +160,14 @@ ACCURACY = (
     ("1e-3", 1e-3, "#fdae6b"),
     ("more", math.inf, "#d94801"),
 )
-"""Error classes of three digits each (readers tell five colours apart), and colours."""
+"""Error classes of three digits (readers tell five colours apart)."""
 
 
 @frozen
 class Dumbbell:
-    """Best outside method against ours, one row per problem, sorted by ratio; colours show errors.
+    """Best outside method against ours, a row for each problem, sorted by ratio; colours show errors.
 
-    Best: quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
+    The best is the quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
 
     Attributes
     ----------
@@ -201,7 +201,6 @@ class Dumbbell:
         figure, axes = rows_of_marks(results.title, marked)
         axes.set_xlabel(WORK[self.work])
         if not self.every:
-            # Room for names on both sides.
             axes.margins(x=0.35)
             for k, (_, rows, _) in enumerate(lines):
                 for row in rows[1:]:
@@ -221,7 +220,6 @@ class Dumbbell:
         return row.work(self.work), {"marker": "o" if row.outside else "D", **look}
 
     def _best(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        """(problem, ours and best outside, verdict), sorted by ratio."""
         found = []
         for problem in problems:
             rows = [row for row in results.of(problem=problem) if not row.failed]
@@ -236,7 +234,6 @@ class Dumbbell:
         return [line for _, line in sorted(found, key=lambda pair: pair[0])]
 
     def _all_methods(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        """Methods per problem, quickest first; the first one's name follows the problem's."""
         lines: list[Rows] = []
         for problem in problems:
             whole = sorted(results.of(problem=problem), key=lambda row: (row.failed, row.work(self.work)))

@@ -15,7 +15,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 
 ERROR_FLOOR = 1e-13
-"""Errors below this are round-off and count as equal."""
+"""Errors below this are round-off, and equal."""
 
 
 @frozen
@@ -57,7 +57,7 @@ class Row:
         return bool(self.failure)
 
     def work(self, name: str) -> float:
-        """Work, positive for logarithms and ratios.
+        """Work, positive.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class Row:
     def placed(self, error: str, work: str) -> tuple[float, float] | None:
         """(error, work), or None for a failure or without error.
 
-        Errors have three digits, since a fourth makes no run better, and are at least `ERROR_FLOOR`.
+        Errors have three digits and are at least `ERROR_FLOOR`.
 
         Parameters
         ----------
@@ -89,11 +89,11 @@ WORK: Mapping[str, str] = {
     "accepted": "accepted steps",
     "seconds": "processor time (s)",
 }
-"""Labels of what is counted of a run, and of its time."""
+"""Labels of a run's work."""
 
 
 def some(kind: str, wanted: Sequence[str] | None, known: Iterable[str]) -> Sequence[str]:
-    """Return wanted or all names; ValueError for unknown ones."""
+    """Wanted or all names; ValueError for unknown ones."""
     if wanted is None:
         return list(known)
     if isinstance(wanted, str) or not wanted or not set(wanted) <= set(known):
@@ -187,7 +187,7 @@ def read(file: str | PathLike[str]) -> Results:
 
 
 def excess(results: Results, error: str, work: str) -> Array:
-    """Each row's work over the least work of equally or more accurate runs of its problem; infinite for failures.
+    """Each row's work over the least work of runs at least as accurate; infinite for failures.
 
     Parameters
     ----------
@@ -210,6 +210,6 @@ def excess(results: Results, error: str, work: str) -> Array:
 
 
 def by_size(rows: Sequence[Row], work: str) -> list[tuple[float, float]]:
-    """(n, mean work of successes), by n."""
+    """Pairs (n, mean work of successes), by n."""
     sizes = sorted({row.n for row in rows if not row.failed})
     return [(n, float(np.mean([row.work(work) for row in rows if row.n == n and not row.failed]))) for n in sizes]

@@ -23,8 +23,8 @@ Watch = Callable[[int, int, Row], None]
 def run(study: Study, watch: Watch | None = None) -> Results:
     """Run a study.
 
-    The first run warms up and is judged; the time is the least processor time of later ones, with one BLAS thread
-    unless the environment says otherwise. Exceptions become failures.
+    The first run is judged; the time is the least processor time of later ones, with one BLAS thread by default.
+    Exceptions become failures.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung) -> Row:
 
 
 def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]:
-    # Processor time with one BLAS thread is independent of other load.
+    # Processor time is then independent of other load.
     begin = time.process_time()
     try:
         answer = method.run(problem, rung)
@@ -88,7 +88,7 @@ def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]
 
 
 def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
-    """(failure, message); a right end with wrong turning points means a jump or a missed loop."""
+    """The pair (failure, message); a right end with wrong turning points means a jump or a missed loop."""
     path, truth = answer.path, problem.truth
     if answer.failure:
         return answer.failure, answer.message
@@ -106,7 +106,7 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
 
 
 def tables(results: Results) -> dict[str, Table]:
-    """Tables by title: summary, families if there are several, failures."""
+    """Tables by title."""
     found = {"Median excess": summary(results), "Families": solved(results), "Failures": failures(results)}
     return {title: table for title, table in found.items() if len(table.head) > 2 and table.rows}
 
@@ -114,7 +114,7 @@ def tables(results: Results) -> dict[str, Table]:
 def report(study: Study, results: Results, folder: File) -> list[File]:
     """Write ``NAME.json`` and ``NAME-1.png``, ... to an existing folder; return the files.
 
-    They replace existing ones; without matplotlib there are no figures.
+    They replace existing ones; figures need matplotlib.
     """
     files = [write(results, folder / f"{study.name}.json")]
     for k, figure in enumerate(study.figures, start=1):

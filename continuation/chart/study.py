@@ -22,11 +22,11 @@ from continuation.tolerance import Tolerance
 
 Size = Literal["smoke", "moderate", "full"]
 """Size of a ready study: for tests, for minutes on two cores, for reports. A ready study maps (size, compare) to
-studies; `compare` adds installed outside solvers."""
+studies; `compare` adds outside solvers."""
 
 
 WRONG = 1e-2
-"""An answer that is off by more, relatively, is another one: what arrives is far nearer, what jumped farther."""
+"""Relative error of a wrong answer: right ones are far nearer."""
 
 
 @frozen
@@ -57,11 +57,9 @@ def _end_point(problem: Problem, answer: Answer) -> float:
 
 
 BETWEEN = (0.25, 0.5, 0.75)
-"""Step fractions at which dense output is compared."""
 
 
 def _curve_distance(problem: Problem, answer: Answer) -> float:
-    """Largest distance of dense output from the curve, by Newton along the normal, else NaN."""
     path = answer.path
     if path is None or len(path) < 2:
         return math.nan
@@ -79,7 +77,7 @@ def _curve_distance(problem: Problem, answer: Answer) -> float:
 
 
 def observed(name: str, label: str) -> Error:
-    """An observed scalar that vanishes at solutions, as error.
+    """An observed scalar that vanishes at solutions.
 
     Parameters
     ----------
@@ -127,7 +125,7 @@ class Study:
     Raises
     ------
     ValueError
-        For missing or equally named problems, methods, errors, or unknown work.
+        For missing or repeated names, or unknown work.
     """
 
     name: str

@@ -72,7 +72,7 @@ def failures(results: Results) -> Table:
 
 
 def summary(results: Results) -> Table:
-    """One line per method: successes, failures, and for each work the median `excess` of successful runs.
+    """Successes, failures, and median `excess` of successful runs for each method.
 
     Parameters
     ----------

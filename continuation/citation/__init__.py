@@ -18,7 +18,7 @@ _MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
 
 @runtime_checkable
 class Traced(Protocol):
-    """A traced path: attributes that show its methods."""
+    """A traced path."""
 
     winding_number: int | None
     events: list[Any]
@@ -67,7 +67,7 @@ def entries(text: str) -> tuple[str, ...]:
 
 
 def unique(found: tuple[str, ...]) -> tuple[str, ...]:
-    """The first entry of each key."""
+    """First entry of each key."""
     by_key = {key(entry): entry for entry in reversed(found)}
     return tuple(by_key[name] for name in dict.fromkeys(map(key, found)))
 

@@ -1,4 +1,4 @@
-"""BibTeX entries of the engine's methods, collected by `continuation.cite`."""
+"""BibTeX entries of the engine's methods."""
 
 from __future__ import annotations
 

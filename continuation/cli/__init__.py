@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("continuation: stdout: is closed, expected a place for what the command says", file=sys.stderr)
         return BAD_INPUT
     if isinstance(sys.stdout, TextIOWrapper):
-        # File names that are no UTF-8 stay as they were read.
+        # Keep file names that are no UTF-8.
         sys.stdout.reconfigure(errors="surrogateescape")
     parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
     parser.add_argument("--version", action="version", version=f"continuation {__version__}")
@@ -57,7 +57,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
-    """Status and message after an exception."""
     if isinstance(error, UsageError):
         return error.status, str(error)
     if isinstance(error, BrokenPipeError):
@@ -77,7 +76,7 @@ def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
 
 
 def _let_go() -> None:
-    """Redirect a closed stdout, so that Python's shutdown does not complain."""
+    """Redirect a closed stdout, about which Python would complain."""
     try:
         sys.stdout.flush()
     except OSError:

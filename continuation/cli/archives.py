@@ -112,7 +112,6 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _given(arguments: argparse.Namespace) -> Any:
-    """The homotopy of --homotopy, with the file's parameters, then KEY=VALUE ..."""
     from continuation.archive import open_archive
     from continuation.archive.provenance import stored_parameters
     from continuation.arguments import plugins
@@ -129,7 +128,6 @@ def _given(arguments: argparse.Namespace) -> Any:
 
 
 def _named(path: str) -> Any:
-    """The class or function ``module:name``; naming it means trust."""
     module, _, name = path.partition(":")
     from continuation.archive.trust import registry
     from continuation.cli.making import importable
@@ -183,12 +181,12 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 
 PARAMETERS = {"target": "TARGET", "compression": "--compression"}
-"""Arguments of functions, by the name that begins a complaint, as they are typed."""
+"""Argument names as typed, by the name that begins a complaint."""
 
 
 @contextmanager
 def complaints(file: str, new: str = "FILE", names: Mapping[str, str] = PARAMETERS) -> Iterator[None]:
-    """Turn archive errors into usage errors about `file`, or about `new` if it exists, others by `names`."""
+    """Turn archive errors into usage errors about `file`, or `new` if it exists, others by `names`."""
     from continuation.archive import ArchiveError, ArchiveExistsError
 
     try:

@@ -63,7 +63,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _watch(name: str) -> Watch | None:
-    """A progress line, on a terminal only."""
     if not sys.stderr.isatty():
         return None
 

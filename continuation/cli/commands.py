@@ -12,8 +12,8 @@ from continuation.cli.parser import Subparsers, UsageError
 def register(subparsers: Subparsers) -> None:
     """Add every command, the engine's own last.
 
-    An entry point of the group `continuation.commands` is a function that takes the subparsers and adds its command. If
-    it cannot be loaded, its command gives the reason.
+    An entry point of the group `continuation.commands` takes the subparsers and adds a command. If it cannot be loaded,
+    its command gives the reason.
     """
     for name, plugin in plugins.available(plugins.COMMANDS).items():
         try:

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def check_picture(option: str, file: str) -> None:
-    """Raise `UsageError` early if `file`, the argument `option`, cannot be written."""
+    """Raise `UsageError` early if `file`, from `option`, cannot be written."""
     from continuation.plot import require_matplotlib
 
     path = Path(file)
@@ -71,7 +71,7 @@ def check_picture(option: str, file: str) -> None:
     if not path.parent.is_dir():
         raise UsageError(option, f"expected a file in an existing directory, found {file!r}")
     try:
-        # By trying: permissions do not show full or read-only disks.
+        # Permissions do not show full or read-only disks.
         with TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
@@ -83,7 +83,7 @@ def check_picture(option: str, file: str) -> None:
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
-    """Save the axes that `draw` fills, above step sizes if a path is given, whole or not at all."""
+    """Save the axes that `draw` fills, above step sizes if a path is given."""
     from matplotlib.figure import Figure
 
     from continuation.archive.atomic import beside, publish

@@ -194,7 +194,6 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _number_or_none(text: str) -> float:
-    """A number; NaN means no target, unlike an absent option."""
     if text.lower() == "none":
         return math.nan
     return parsed(text, float, math.isfinite, "a finite number or none")

@@ -14,14 +14,13 @@ from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 T = TypeVar("T")
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
-"""Exit statuses: done or solved; not solved; bad input."""
+"""Exit statuses."""
 
 Run = Callable[[argparse.Namespace], int]
-"""A command, from parsed arguments to exit status (``parser.set_defaults(run=...)``)."""
+"""A command, from parsed arguments to exit status."""
 
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
-"""Names and options for `add_argument`."""
 
 
 class UsageError(ValueError):
@@ -93,7 +92,7 @@ def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argumen
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
-    """The text, green or red on a terminal unless NO_COLOR is set (https://no-color.org)."""
+    """The text, green or red on a terminal unless NO_COLOR is set (no-color.org)."""
     stream = sys.stdout if stream is None else stream
     if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return text

@@ -1,4 +1,4 @@
-"""Step controllers: accept a step, choose the next length."""
+"""Step controllers."""
 
 from continuation.controllers.base import Bounds, Controller, Decision, StepMeasures
 from continuation.controllers.rules import AllgowerGeorg, Fixed, SeriesRange

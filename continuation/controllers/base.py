@@ -1,4 +1,4 @@
-"""The controller protocol; its state is floats, for archives."""
+"""The controller protocol."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Bounds:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
     def cap(self, h: float) -> float:
-        """Return the step, at most the maximum.
+        """The step, at most the maximum.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class Bounds:
         return min(h, self.maximum)
 
     def beginning_with(self, usual: float) -> Bounds:
-        """Return bounds with a first step.
+        """Bounds with a first step.
 
         Parameters
         ----------
@@ -117,7 +117,7 @@ class Bounds:
 
 
 def checked_bounds(value: Any) -> Bounds:
-    """Return the bounds; raise TypeError for anything else."""
+    """Check that bounds are `Bounds`."""
     if not isinstance(value, Bounds):
         raise complain(TypeError, "bounds", "Bounds(minimum, maximum, initial)", value)
     return value
@@ -132,11 +132,11 @@ class Controller(Protocol):
         ...
 
     def init(self) -> State:
-        """Return the state before the first step."""
+        """The state before the first step."""
         ...
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Judge an attempt; pure, so that resumed runs decide alike.
+        """Judge an attempt, by state and measures only.
 
         Parameters
         ----------

@@ -12,8 +12,8 @@ from continuation.citation.bibliography import ALLGOWER_GEORG
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
-"""Least shrink factor of a rejected step, where asymptotics do not hold yet: with `deceleration` here FAST takes
-12 % more residuals on Freudenstein and Roth's path."""
+"""Least shrink factor of a rejected step: with `deceleration` FAST takes 12 % more residuals on Freudenstein and Roth's
+path."""
 
 
 def _of_fixed(bounds: Any) -> Bounds:
@@ -36,7 +36,7 @@ class Fixed:
     ratio: float = field(default=0.5, validator=FRACTION)
 
     def init(self) -> State:
-        """Return no state."""
+        """No state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -50,8 +50,8 @@ class Fixed:
 class AllgowerGeorg:
     """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
 
-    Contraction and distance behave like h^(p + 1) for predictor order p, the angle like h; the worst measure over its
-    goal scales the step.
+    Contraction and distance are like h^(p + 1) for predictor order p, the angle like h; the worst measure scales the
+    step.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class AllgowerGeorg:
     bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
-        """Return no state."""
+        """No state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
@@ -83,7 +83,7 @@ class AllgowerGeorg:
         distance = attempt.distance / (self.distance * attempt.h)
         angle = attempt.angle / self.angle
         factor = max(contraction**root, distance**root, angle)
-        # Measures, not roots: at high order a root accepts corrections of half a step, and paths jump.
+        # Roots would accept corrections of half a step at high order, and paths jump.
         if max(contraction, distance, angle) > self.deceleration:
             return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
@@ -104,7 +104,7 @@ class SeriesRange:
     bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:
-        """Return no state."""
+        """No state."""
         return ()
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:

@@ -1,4 +1,4 @@
-"""Correctors: from a predicted point back to the path."""
+"""Correctors lead back to the path."""
 
 from continuation.correctors.base import Correction, Corrector
 from continuation.correctors.newton import BorderedNewton, MoorePenrose, NaturalParameter

@@ -1,4 +1,4 @@
-"""The corrector protocol and the common loop."""
+"""The corrector protocol and common loop."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Correction:
         return self.rejection is None
 
     def rejected(self, h: float) -> Rejected | None:
-        """Return the failure of a step of length h, or None.
+        """The failure of a step of length h, or None.
 
         Parameters
         ----------
@@ -91,26 +91,26 @@ class Corrector(Protocol):
 
 
 POLISHING = Contraction()
-"""Enough halving chord steps from the tolerance to round-off, and rounds: near a pole Newton begins slowly."""
+"""Enough halving chord steps from the tolerance to round-off."""
 
 RESIDUAL_NOISE = 32.0
-"""Largest round-off residual, in units of `Evaluator.round_off`: one sample, but H sums many terms."""
+"""Largest round-off residual, in units of `Evaluator.round_off`: H sums many terms."""
 
 
 FAR_FROM_ROUND_OFF = RESIDUAL_NOISE * RESIDUAL_NOISE
-"""Such a residual after polishing deserves a factorisation."""
+"""Such a residual deserves a factorisation."""
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
-    """Return whether a residual at u is far above round-off."""
+    """Whether a residual is far above round-off."""
     r = evaluator.residual(u)
     return largest(r / np.maximum(evaluator.round_off(u, r), INVERTIBLE**2)) > FAR_FROM_ROUND_OFF
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
-    """Return whether H vanishes where Newton's increment is small.
+    """Whether H vanishes where Newton's increment is small.
 
-    The residual is round-off, or noise with a valid increment, which leaves half of it at most.
+    The residual may be round-off, or noise with an increment that halves it.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -148,7 +148,7 @@ class _Terms:
 
 
 Direction = Callable[[int, Array, Array, float], Array]
-"""(iteration, u, residual, contraction so far) -> increment."""
+"""Increment from iteration, u, residual and contraction so far."""
 
 
 def iterate(
@@ -163,8 +163,8 @@ def iterate(
 ) -> Correction:
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
-    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
-    where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
+    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance
+    round-off spoils ratios, so the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False
@@ -183,7 +183,7 @@ def iterate(
         # Newton's error is the increment squared: tolerances below its root demand residuals at round-off.
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
             # Polish by the residual: an increment may be large for a small component. A residual that stays is
-            # round-off of constant terms. Later rounds refactor, as the component may have changed.
+            # round-off of constant terms.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING.iterations):
                 u = iteration.x

@@ -22,8 +22,8 @@ from continuation.tolerance import Tolerance
 def updated(increments: list[Array], z: Array, weights: Array) -> Array:
     """Apply Broyden's good update to a chord increment z; append it to `increments`.
 
-    All increments since the factorisation define the update (Kelley, Iterative Methods for Linear and Nonlinear
-    Equations, Section 7.3).
+    All increments since the factorisation define it (Kelley, Iterative Methods for Linear and Nonlinear Equations,
+    Section 7.3).
     """
     for before, after in pairwise(increments):
         z = z + (inner(weights, before, z) / inner(weights, before, before)) * after
@@ -54,9 +54,9 @@ class BorderedNewton:
 
     References
     ----------
-    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; Deuflhard's monotonicity
-    test (Newton Methods for Nonlinear Problems, Section 2.1); Broyden's good update (C. T. Kelley, Iterative Methods
-    for Linear and Nonlinear Equations, Section 7.3).
+    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; Deuflhard, Newton Methods
+    for Nonlinear Problems, Section 2.1; Broyden's good update (C. T. Kelley, Iterative Methods for Linear and Nonlinear
+    Equations, Section 7.3).
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)

@@ -1,4 +1,4 @@
-"""Curves of events in a second parameter: homotopies made from families."""
+"""Curves of events in a second parameter."""
 
 from continuation.curves.curve import Curve
 from continuation.curves.family import Family

@@ -22,14 +22,14 @@ BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """Kinds that define a condition."""
 
 NEAREST = 40
-"""Eigenvalues searched for a Hopf pair, nearest to zero: others are far on the stable side."""
+"""Eigenvalues nearest to zero searched for a Hopf pair: others are far on the stable side."""
 
 NEAR_AXIS = 0.1
 """Largest real part of a pair, relative to its modulus, for Newton's method."""
 
 
 def as_event(value: Any) -> Any:
-    """The kind of an event if that defines the condition, else the event."""
+    """An event's kind, if it defines the condition, else the event."""
     kind = getattr(value, "kind", value)
     if isinstance(value, LocatedEvent):
         if kind == Kind.TURNING_POINT and value.name != "turning point":
@@ -55,7 +55,7 @@ def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
 
 
 def as_size(size: Any, at: Any, u: Array) -> Array:
-    """Scales of components: given, else from the event's metric, else the point's size."""
+    """Scales of components: given, from the event's metric, or the point's size."""
     if size is None:
         weights = getattr(at, "weights", None)
         return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))
@@ -66,7 +66,7 @@ def as_size(size: Any, at: Any, u: Array) -> Array:
 
 
 def corrected(homotopy: Any, u: Array) -> Array:
-    """The unknowns after Newton's method at fixed parameter; the guess if that fails."""
+    """Unknowns after Newton's method at fixed parameter; the guess if it fails."""
     try:
         with np.errstate(all="ignore"):
             return at_parameter(PathSolver(Evaluator(homotopy, Counts()), Tolerance()), u)[:-1]
@@ -75,7 +75,7 @@ def corrected(homotopy: Any, u: Array) -> Array:
 
 
 def frequency_at(H_y: Matrix) -> float:
-    """Imaginary part of the pair nearest to the axis; ValueError if none is near."""
+    """Imaginary part of the pair nearest to the axis; ValueError without one."""
     values = nearest_zero(H_y, NEAREST)
     pairs = values[values.imag > 0.0]
     off = np.abs(pairs.real) / np.abs(pairs)

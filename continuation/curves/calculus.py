@@ -24,15 +24,14 @@ from continuation.linear.system import Solver
 from continuation.numbers.derivatives import BLOCK
 
 Member = Callable[[Any], Any]
-"""From mu to the homotopy."""
 
 
 @frozen(eq=False, slots=False)
 class Calculus:
     """How a family is differentiated, decided at a point.
 
-    `derivative`: of members without their own. `jets`: whether jets give second derivatives and those by mu. `u0`: (y,
-    lam, mu). `extent`: scales of (y, lam). `reach`, `bend`: relative difference steps in mu for H and H' v.
+    `derivative`: of members without one. `jets`: whether jets give second derivatives and those by mu. `u0`: (y, lam,
+    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H and H' v.
     """
 
     family: Member
@@ -60,7 +59,7 @@ class Calculus:
         return row_sizes(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))
 
     def scaled(self, matrix: Matrix) -> Matrix:
-        """The matrix times extents, divided by row sizes."""
+        """The matrix times extents over row sizes."""
         extent = self.extent[:-1]
         if sp.issparse(matrix):
             return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(extent))
@@ -76,7 +75,7 @@ class Calculus:
         return b / np.linalg.norm(b), c / np.linalg.norm(c)
 
     def unscaled(self, factors: Bordered) -> BorderedSystem:
-        """Factors of a scaled bordered matrix, for the unscaled one."""
+        """Factors of the unscaled bordered matrix, from the scaled one's."""
 
         def solve(r: Array, rho: float) -> Array:
             x = factors.solve(np.append(r / self.rows, rho))
@@ -123,7 +122,7 @@ class Calculus:
 
 
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
-    """How to differentiate a family, tried at a point."""
+    """Try at a point how to differentiate a family."""
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
     derivative = None if own else from_residual(homotopy.residual, (u[:-1], float(u[-1])))

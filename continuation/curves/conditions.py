@@ -22,12 +22,11 @@ class Eigenvalue:
     """H_y is singular (fold), has an eigenvalue i omega (Hopf point), or H' loses a rank (branch point).
 
     The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1), with omega = 0 for folds (Griewank and
-    Reddien, SIAM J. Numer. Anal. 21, 1984), and an unknown omega for Hopf points (Griewank and Reddien, IMA J. Numer.
-    Anal. 3, 1983).
+    Reddien, SIAM J. Numer. Anal. 21, 1984), and unknown for Hopf points (IMA J. Numer. Anal. 3, 1983).
 
     Branch points also satisfy w'H_lam = 0, with the left null vector w. H + (w'H_lam) b = 0 and s = 0 are regular at
-    simple branch points with transversal branches, including pitchforks; w'H_lam stays zero if the family keeps its
-    branch points. (Moore, SIAM J. Numer. Anal. 17, 1980, makes it an unknown.)
+    simple branch points with transversal branches; w'H_lam stays zero if the family keeps its branch points. (Moore,
+    SIAM J. Numer. Anal. 17, 1980, makes it an unknown.)
     """
 
     calculus: Calculus
@@ -38,7 +37,7 @@ class Eigenvalue:
 
     @classmethod
     def at_start(cls, calculus: Calculus, kind: Kind, frequency: float) -> Eigenvalue:
-        """With borders made at the start."""
+        """Make borders at the start."""
         tangential = Tangential.at_start(calculus) if kind == Kind.HOPF else None
         found = cls(calculus, kind, tangential, np.empty(0), np.empty(0))
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
@@ -64,7 +63,7 @@ class Eigenvalue:
         return null_vectors(self.matrix(full, omega), self.b, self.c)
 
     def null_vector(self, u: Array) -> Array:
-        """The null vector, of length one in the start's extents."""
+        """The null vector, of unit length in extents."""
         member, beside = np.split(u[:-1], [self.calculus.extent.size])
         full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
         right = self.near(full, float(beside.sum())).right

@@ -26,10 +26,10 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Cached points and members, which correctors and events ask for repeatedly."""
+"""Cached points and members, which are needed repeatedly."""
 
 PERSISTS = 1e-6
-"""Largest relative effect of mu on H along the left null vector at persistent branch points: about the square root of
+"""Largest relative effect of mu on H along the left null vector at persistent branch points: about the root of
 round-off."""
 
 
@@ -51,18 +51,18 @@ class Curve:
     ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
-    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; if only mu turns, two branches of the
-    member cross or a closed one shrinks to a point. Hopf curves end at frequency zero, a Bogdanov-Takens point, and
-    locate singular H_y, "zero-Hopf" points.
+    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; if only mu turns, two branches cross or
+    a closed one shrinks to a point. Hopf curves end at Bogdanov-Takens points and locate "zero-Hopf" points, where H_y
+    is singular.
 
-    Elimination uses the family's factorisation, or one of H_y with a border, and stays sparse. Second derivatives come
-    from jets (up to 128 unknowns) or two Jacobians.
+    Factorisations are the family's, or those of H_y with a border, and stay sparse. Second derivatives come from jets
+    (up to 128 unknowns) or two Jacobians.
 
     Parameters
     ----------
     family : callable
-        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Given a jet, it returns
-        a homotopy whose residual accepts jets, or raises TypeError or ValueError.
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. For a jet it may raise TypeError
+        or ValueError.
     event : LocatedEvent, Kind or Event
         A point on a member's path, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a monitor.
     at : LocatedEvent, Step or (y, lam), optional
@@ -147,7 +147,7 @@ class Curve:
 
     @property
     def extents(self) -> Array:
-        """Scales of unknowns and mu."""
+        """Scales of the unknowns and mu."""
         beside = [abs(self._frequency) or 1.0] if self.event == Kind.HOPF else []
         return np.array([*self.size, *beside, abs(self.mu) or 1.0])
 
@@ -192,7 +192,6 @@ class Curve:
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
-        """The condition, of one vector or jet (y, lam, mu); None if it needs the tangent."""
         k = self._switch
         if k is not None:
             return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
@@ -233,37 +232,15 @@ class Curve:
         return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Derivatives by the unknowns and by mu.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        """
+        """Derivatives by the unknowns and by mu."""
         return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """The derivative times a direction.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        v : ndarray
-            One longer than y.
-        """
+        """The derivative times a direction."""
         return self._at(y, lam).times(v)
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The bordered derivative, factored by elimination.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        border : ndarray
-            One longer than y.
-        """
+        """The bordered derivative, factored by elimination."""
         return self._at(y, lam).bordered(border)
 
     def _at(self, y: Array, lam: float) -> Here:
@@ -280,7 +257,7 @@ class Curve:
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Degenerate points: cusps, Bogdanov-Takens and zero-Hopf points, and zeros of other switches."""
+        """Degenerate points: cusps, Bogdanov-Takens and zero-Hopf points, zeros of other switches."""
         names = {Kind.HOPF: ("zero-Hopf",), Kind.TURNING_POINT: ("cusp", "Bogdanov-Takens")}.get(self.event, ())
         found: list[Event] = [Monitor(_frequency, "Bogdanov-Takens", 1)] if self.event == Kind.HOPF else []
         found += [Monitor(partial(self._sign, name), name) for name in names]
@@ -297,24 +274,24 @@ class Curve:
 
     @property
     def parameter_name(self) -> str:
-        """The family's parameter name."""
+        """Parameter name of the family."""
         return getattr(self.family, "parameter_name", None) or "mu"
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of unknowns, if the member has any."""
+        """Names of the unknowns, if any."""
         labels = Labels.of(self.family(self.mu))
         beside = (labels.parameter_name or "lambda", *self._condition.beside)
         return (*labels.names, *beside) if labels.names else ()
 
     @property
     def units(self) -> Mapping[str, str]:
-        """The member's."""
+        """The member's units."""
         return Labels.of(self.family(self.mu)).units
 
     @property
     def references(self) -> tuple[str, ...]:
-        """The member's, and the method's."""
+        """References of member and method."""
         return (*getattr(self.family(self.mu), "references", ()), GOVAERTS)
 
     def _observed(self, y: Array, lam: float) -> dict[str, float]:

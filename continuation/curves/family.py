@@ -15,11 +15,10 @@ from continuation.arguments.checks import complain
 class Family:
     """The homotopies that differ from a given one in one attribute.
 
-    ``Family(homotopy, "eps")`` maps a number mu to a homotopy, as functions do, but has a name and a start value, and
-    can be archived.
+    ``Family(homotopy, "eps")`` maps mu to a homotopy, has a name and a start value, and can be archived.
 
-    attrs objects are rebuilt, so derived values follow; others are copied shallowly. If the residual is plain numpy and
-    the class accepts jets, these give derivatives by mu; else differences do.
+    attrs objects are rebuilt with derived values; others are copied shallowly. Jets give derivatives by mu if the
+    residual is plain numpy and the class accepts jets; else differences do.
 
     Parameters
     ----------

@@ -23,11 +23,11 @@ from continuation.linear.system import Solver
 
 @frozen(eq=False, slots=False)
 class Here:
-    """Values and derivatives of a curve at a point `u` = (y, lam), computed on demand.
+    """Values and derivatives of a curve at a point `u` = (y, lam).
 
     `gradients` makes the `rows` of the k conditions in `values`, `factored` the `base`, factors of [[H_y, b], [c', d]].
-    `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it by
-    the others. `signs`: functions of this that change sign at degenerate points.
+    `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it.
+    `signs`: functions that change sign at degenerate points.
     """
 
     calculus: Calculus
@@ -42,7 +42,7 @@ class Here:
 
     @cached_property
     def rows(self) -> Array:
-        """Gradients over (y, lam), the additional unknown, and mu, shape (k, N + 1 + k)."""
+        """Gradients over (y, lam), additional unknown, and mu, shape (k, N + 1 + k)."""
         return self.gradients()
 
     @cached_property
@@ -57,7 +57,7 @@ class Here:
 
     @cached_property
     def apply(self) -> Callable[[Array], Array]:
-        """The map v -> H' v; EvaluationError if a member that factors itself has no `differential`."""
+        """The map v -> H' v, or EvaluationError without `differential`."""
         apply = self.evaluator.differential(self.u)
         if apply is None:
             raise EvaluationError("the family has a factorisation of its own and no `differential`")
@@ -103,7 +103,7 @@ class Here:
     def bordered(self, border: Array) -> BorderedSystem:
         """The bordered derivative, by elimination of y.
 
-        The member's factors are of F = [[H_y, b], [c', d]]. With a new unknown sigma the equations are F (y, s) = (r,
+        With the member's factors of F = [[H_y, b], [c', d]] and a new unknown sigma, the equations are F (y, s) = (r,
         sigma), s = 0, conditions and border.
         """
         base, n, hidden = self.base, self.u.size, self.hidden is not None

@@ -1,4 +1,4 @@
-"""Factorisations along a curve, scaled by the start's extents."""
+"""Factorisations along a curve, in extents."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Tangential:
 
     @classmethod
     def at_start(cls, calculus: Calculus) -> Tangential:
-        """With the kernel at the start as border."""
+        """Take the kernel at the start as border."""
         first = cls(calculus, generic_vector(calculus.u0.size - 1) / calculus.extent)
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])
         t = first.factored(u, mu)[1] / calculus.extent

@@ -24,8 +24,8 @@ from continuation.linear.nullspace import Bordered
 class Vanishing:
     """A function vanishes: a target value, a switch, or a monitor.
 
-    It takes (y, lam, mu), or (y, lam, tangent) if `along`. The tangent t has M dt = -H''[t, .], with M = [H_y, H_lam]
-    bordered: one solve with M' gives the derivative.
+    It takes (y, lam, mu), or (y, lam, tangent) if `along`. As M dt = -H''[t, .] for the tangent t, with M = [H_y,
+    H_lam] bordered, one solve with M' gives the derivative.
     """
 
     calculus: Calculus
@@ -37,14 +37,14 @@ class Vanishing:
 
     @classmethod
     def at_start(cls, calculus: Calculus, function: Callable[[Any], Any], along: bool) -> Vanishing:
-        """With a gradient tried at the start."""
+        """Try a gradient at the start."""
         tangential, x = Tangential.at_start(calculus), calculus.u0
         if along:
             x = np.append(x[:-1], tangential.factored(x[:-1], float(x[-1]))[1])
         return cls(calculus, tangential, function, gradient_of(function, x), along)
 
     def null_vector(self, u: Array) -> Array:
-        """The member's tangent, in the start's extents."""
+        """The member's tangent, in extents."""
         return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.calculus.extent
 
     def at(self, u: Array, beside: float, mu: float) -> Here:
@@ -79,14 +79,14 @@ def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
 
 
 def plainly(event: Any) -> Callable[[Any, Any], Any]:
-    """The function behind a monitor, which also takes jets and intervals."""
+    """A monitor's function, which also takes jets and intervals."""
     if isinstance(event, TurningPoint):
         return lambda u, v: v[event.component]
     return event.function if isinstance(event, Monitor) else event.monitor
 
 
 def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:
-    """The gradient of a function, by jets or by differences."""
+    """The gradient by jets or differences."""
     from continuation import jets
 
     def at(x: Array, last: float) -> Array:

@@ -1,12 +1,12 @@
-"""Equations of curves without factorisations, with the null vector among the unknowns.
+"""Equations of curves with the null vector among the unknowns, without factorisations.
 
     H(y, lam; mu) = 0,   H_y v = 0,             |v| = 1                     (folds)
     H(y, lam; mu) = 0,   H_y v = i omega v,     c* v = 1,   v complex       (Hopf points)
     H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
 
-These are plain arithmetic, and regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J.
-Numer. Anal. 3 (1983)). Dual numbers give derivatives along v. If a tube contains one curve of this system, its
-projection on (y, lam, omega, mu) is the traced curve.
+These are regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J. Numer. Anal. 3
+(1983)). Dual numbers give derivatives along v. The projection of a proved curve on (y, lam, omega, mu) is the traced
+curve.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
 DECIMALS = 6
-"""Decimals of c: machines differ in later digits of an eigenvector."""
+"""Decimals of c: machines differ in later digits."""
 
 
 @frozen(eq=False)
 class WrittenOut:
-    """The system, a homotopy in mu; its unknowns are the vector, in the start's extents, then the curve's.
+    """The system, a homotopy in mu; its unknowns are the vector, in extents, then the curve's.
 
     `c`: complex, shape (N,), for Hopf points. `metric`: by the start's extents.
     """
@@ -58,7 +58,7 @@ class WrittenOut:
         return u[:-1], float(u[-1])
 
     def lifted(self, u: Array, before: Array | None) -> Array:
-        """A curve point with its vector in front; `before` decides the sign."""
+        """A curve point with its vector in front, oriented like `before`."""
         v = self.condition.null_vector(u)
         if self.c is not None:
             v = v / np.vdot(self.c, v)

@@ -1,4 +1,4 @@
-"""Diagrams: all connected branches, each once, and by deflation disconnected ones."""
+"""Diagrams of connected branches, and by deflation disconnected ones."""
 
 from continuation.diagrams.asking import diagram
 from continuation.diagrams.branches import Branch, Diagram, Special

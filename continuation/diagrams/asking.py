@@ -1,4 +1,4 @@
-"""`diagram`: checks its arguments and searches under an archive."""
+"""`diagram`: checks arguments and searches."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def diagram(
     branches : int, default 100
         Largest number of branches.
     generations : int, optional
-        Largest number of branch points between a branch and the start; 0 for the start's own branch.
+        Largest number of branch points between a branch and the start.
     deflate : sequence of float, default ()
         Parameter values at which deflation (`Deflated`) seeks disconnected solutions.
     step : float, default 1e-2
@@ -72,7 +72,7 @@ def diagram(
     resume : bool, default False
         Continue the archive, if it exists, with the same arguments.
     keep : str, default "all"
-        "ends": points between ends of a branch are read from the archive on demand, which saves memory.
+        "ends": points between ends of a branch stay in the archive.
     {options}
 
     Returns
@@ -85,7 +85,7 @@ def diagram(
     TypeError, ValueError
         For bad input, no box, or a start outside of it.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with the finished branches, ``interrupt.diagram``, and the unfinished path,
+        After Ctrl-C: a KeyboardInterrupt with finished branches, ``interrupt.diagram``, and the unfinished path,
         ``interrupt.path``.
     """
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})

@@ -1,4 +1,4 @@
-"""The result of a search: branches, their special points, and plots."""
+"""Branches, their special points, and plots."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LABELS = {
     Kind.HOPF: "HB",
     Kind.KINK: "KP",
 }
-"""As in AUTO (limit point, branch point, Hopf bifurcation); KP is a kink."""
+"""Labels as in AUTO (limit point, branch point, Hopf bifurcation); KP is a kink."""
 
 
 @frozen(eq=False)
@@ -78,7 +78,7 @@ class Diagram:
     complete : bool
         Whether all branches were followed to the box, to infinity or back to themselves.
     message : str
-        That, or the reason.
+        Reason.
     counts : Counts
         Of all traces, discarded ones included.
     """
@@ -159,7 +159,7 @@ class Diagram:
 
 
 def from_point(event: LocatedEvent, ray: Array, path: Path, weights: Array) -> Path:
-    """Extend a path to the branch point beside which it starts, along `ray`."""
+    """Extend a path along `ray` to the branch point beside which it starts."""
     first = path.steps[0]
     chord = first.u - event.u
     length = norm(weights, chord)

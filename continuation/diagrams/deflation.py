@@ -18,10 +18,10 @@ from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
-"""Largest ratio of the Newton increments of H and M H; at it half of the digits cancel."""
+"""Largest ratio of the Newton increments of H and M H, where half of the digits cancel."""
 
 SAME_SOLUTION_DISTANCE = 1e-6
-"""Relative distance of equal solutions; double ones are found to the square root of round-off."""
+"""Relative distance of equal solutions; double ones have half of the digits."""
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
@@ -119,7 +119,7 @@ class Deflated:
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """The homotopy's bordered matrix, factored, with a rank-one change (Sherman and Morrison).
 
-        If more than half of the digits cancel, the whole matrix is factored.
+        If half of the digits cancel, the whole matrix is factored.
         """
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)

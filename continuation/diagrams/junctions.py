@@ -16,7 +16,7 @@ from continuation.status import Kind
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
 
 RAY_COSINE = 0.99
-"""Least cosine between a ray and a branch along it; of rays within eight degrees the nearest is taken."""
+"""Least cosine between a ray and a branch along it: eight degrees."""
 
 STRAIGHT_ON = -1.0 + 1e-3
 """Largest cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
@@ -26,9 +26,8 @@ STRAIGHT_ON = -1.0 + 1e-3
 class Junction:
     """A point where branches meet.
 
-    `rays`, (k, N + 1): directions away from it, two of them of the path that found it; `starts`: for the others;
-    `used`: those followed. `label`: empty until a finished branch contains it; `number`, `generation`: of the label and
-    branch. `failed`: why rays are unknown.
+    `rays`, (k, N + 1): outward directions, two of them of the path that found it; `starts`: for the others; `used`:
+    those followed. `label`: empty until a finished branch contains it. `failed`: why rays are unknown.
     """
 
     event: LocatedEvent
@@ -62,7 +61,6 @@ class Junction:
             self.used.add(int(np.argmax(along)))
 
     def _cosines(self, direction: Array) -> list[float]:
-        """Cosines of the angles with the rays."""
         size = norm(self.weights, direction)
         return [inner(self.weights, ray, direction) / (norm(self.weights, ray) * size) for ray in self.rays]
 
@@ -80,13 +78,13 @@ class Junction:
 
 
 def meetings(path: Path) -> list[LocatedEvent]:
-    """The path's events where branches may leave."""
+    """Events of a path where branches may leave."""
     several = (event for event in path.events if event.kind in MEETING)
     return [e for e in several if e.kind != Kind.KINK or (e.rays is not None and len(e.rays) > 2)]
 
 
 def directions_of(event: LocatedEvent, path: Path) -> list[Array]:
-    """Directions, away from an event, in which a path leaves it."""
+    """Directions in which a path leaves an event."""
     ends = event.ends_step and event.step == path.steps[-1].index
     begins = np.array_equal(event.u, path.steps[0].u)
     at_kink = event.kind == Kind.KINK and event.rays is not None

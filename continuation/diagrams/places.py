@@ -13,7 +13,7 @@ from continuation.metric import norm
 from continuation.numbers.ends import accumulated
 
 SAME_PLACE = 1e-6
-"""Largest distance between locations of one point, in extents of the path; they are polished to 1e-10."""
+"""Distance of one point's locations, in extents of the path; they are polished to 1e-10."""
 
 Item = TypeVar("Item")
 
@@ -22,8 +22,7 @@ Item = TypeVar("Item")
 class PointIndex(Generic[Item]):
     """Items at points, each with its metric.
 
-    Items are sorted by a . u with a generic vector a; Cauchy-Schwarz bounds it by the distance, so bisection finds
-    candidates.
+    Items are sorted by a . u with a generic vector a, which the distance bounds: bisection finds candidates.
     """
 
     _axis: Array = field(factory=lambda: np.empty(0))
@@ -38,7 +37,7 @@ class PointIndex(Generic[Item]):
         insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
 
     def near(self, u: Array) -> list[Item]:
-        """The items within `SAME_PLACE` of a point, in order of addition."""
+        """Items within `SAME_PLACE` of a point, in order."""
         if not self._sorted:
             return []
         number = float(self._axis @ u)

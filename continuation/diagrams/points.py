@@ -1,4 +1,4 @@
-"""The special points of a diagram."""
+"""Special points of a diagram."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.path import LocatedEvent
 
 
 def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
-    """Junctions, turning points, Hopf points and kinks, each once, in branch order."""
+    """Junctions, turning points, Hopf points and kinks, in branch order."""
     labels: Counter[str] = Counter()
     found: list[tuple[str, LocatedEvent, list[int]]] = []
     places: PointIndex[tuple[str, list[int]]] = PointIndex()

@@ -35,14 +35,14 @@ LEAVES = 0.1
 """Distance of guesses from known solutions, relative to their spread."""
 
 PATHS_AHEAD = 64
-"""Largest number of submitted paths, which bounds memory."""
+"""Largest number of submitted paths."""
 
 
 @frozen(eq=False)
 class Task:
     """A path to trace.
 
-    `weights`, `used`, `ray`: its junction's metric and used rays, and its own ray.
+    `weights`, `used`: its junction's metric and used rays.
     """
 
     start: Any
@@ -53,7 +53,6 @@ class Task:
 
 
 def _path(homotopy: Any, start: Any, direction: int, options: Options, before: Array | None) -> Path:
-    """Trace one path; `before` is the metric where it leaves another."""
     asked = options.copy()
     asked["direction"] = direction
     if start is not None:
@@ -110,7 +109,6 @@ class BranchSearch:
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
     def _recall(self, path: Path, kept: Path) -> None:
-        """Add an archived branch; mark its rays as used."""
         self.counts = self.counts + path.counts
         self._meet(path)
         points = enumerate(path.u)
@@ -126,7 +124,6 @@ class BranchSearch:
         self._add(kept, junction.label, junction.generation + 1, held=True)
 
     def _begin(self, start: Any) -> None:
-        """Trace a start both ways and everything connected, unless known."""
         u = np.append(*self.homotopy.start()) if start is None else guessed(start)
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
@@ -146,7 +143,6 @@ class BranchSearch:
         return is_inside(self.options.get("box"), Labels.of(self.homotopy), u)
 
     def _known(self, u: Array) -> bool:
-        """Whether Newton's method from a branch reaches the point."""
         known = self._solutions(float(u[-1]))
         (y,) = self._polished(float(u[-1]), [u[:-1]])
         return any(same_solution(y, other) for other in known)
@@ -165,7 +161,6 @@ class BranchSearch:
         return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
-        """Paths of tasks in order; None if the ray is used."""
         ready: deque[Future[Path] | None] = deque()
         following = iter(tasks if self.executor is not None else ())
         try:
@@ -191,7 +186,6 @@ class BranchSearch:
         return self.homotopy, task.start, task.direction, self.options, task.weights
 
     def _meet(self, path: Path) -> None:
-        """Mark junctions and rays of a path."""
         if not len(path):
             self.missing.append(path.message)
         for event in meetings(path):
@@ -209,7 +203,6 @@ class BranchSearch:
         return junction
 
     def _add(self, path: Path, origin: str, generation: int, held: bool = False) -> None:
-        """Label the junctions of a finished branch, and write it unless `held`."""
         if path.status not in WHOLE:
             self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
         for event in meetings(path):
@@ -263,7 +256,6 @@ class BranchSearch:
     def _put_together(
         self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
     ) -> None:
-        """Make branches from paths along both rays."""
         while paths:
             number, ray = next(iter(paths))
             junction = paths[number, ray][0]
@@ -278,6 +270,5 @@ class BranchSearch:
 
 
 def _through(behind: Path, ahead: Path) -> Path:
-    """Join two paths; keep the status of an incomplete end."""
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)

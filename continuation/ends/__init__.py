@@ -1,1 +1,1 @@
-"""Ends of a path: target, singular limit, start, infinity."""
+"""Ends of a path."""

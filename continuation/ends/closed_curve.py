@@ -1,4 +1,4 @@
-"""Whether a path has returned to its start: a closed curve."""
+"""Whether a path has returned to its start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
 SAME_POINT = ROUND_OFF_LEFT
-"""Distance, in tolerances, of equal points: their planes and metrics differ, and condition numbers of a thousand are
+"""Distance, in tolerances, of equal points: planes and metrics differ, and condition numbers of a thousand are
 ordinary."""
 
 
@@ -29,7 +29,7 @@ def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes the start in the start's direction.
 
     It must cross the plane orthogonal to the start's tangent from behind, and the corrected crossing must be the start.
-    The metric is the arc's: in the start's own a path crosses once more near a turning point.
+    In the start's own metric a path crosses once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

@@ -1,8 +1,8 @@
-"""Whether a path goes to infinity while the parameter stops, by a model that must predict the path.
+"""Whether a path goes to infinity while the parameter stops.
 
 On a pole y ~ (limit - lam)^-p, or a logarithm (p = 0), slopes grow like (limit - lam)^-(p + 1); three points give p and
-the limit. Fast growth is no proof: a pitchfork with an imperfection of 1e-14 resembles a pole down to 1e-9 of the
-parameter's way.
+the limit. The model must predict the path, since fast growth is no proof: a pitchfork with an imperfection of 1e-14
+resembles a pole down to 1e-9 of the parameter's way.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
-"""Least growth of the slope between marks. A prediction may err by the inverse part of the change, and the model is
-tried further once the distance to the limit fell by two decades with all predictions met."""
+"""Least growth of the slope between marks. A prediction may err by the inverse part of the change; the model is tried
+further once the distance to the limit fell by two decades."""
 
 ARRIVED = 1e-11
-"""The model is followed to this distance from the limit, relative to the parameter's way, or to twice its round-off.
-Pitchforks turn off at the power 2/3 of their imperfection: only below 1e-16 they come so near."""
+"""The model is followed to this distance from the limit, relative to the parameter's way, or to twice its round-off:
+only pitchforks with imperfections below 1e-16 come so near."""
 
 QUADRATIC_STEPS = 4
-"""From an error of a tenth, four quadratic steps give all digits."""
+"""Quadratic steps: from an error of a tenth, four give all digits."""
 
 LARGER = 2.0
-"""Least growth of the largest unknown on a pole; smaller unknowns may be bounded."""
+"""Least growth of the largest unknown on a pole."""
 
 HORIZON = 1e100
-"""Largest number on a path: norms square it."""
+"""Largest number on a path, whose square is finite."""
 
 HIGHEST_POLE = 12.0
-"""No pole has a higher order p, nor its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
+"""Largest order p of a pole, and of its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
 p + 1 is at most 1/2.)"""
 
 Monitor = tuple[float, ...]
@@ -46,10 +46,10 @@ Monitor = tuple[float, ...]
 def divergence(
     monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator, stops: Sequence[tuple[int, float]]
 ) -> tuple[Monitor, str]:
-    """Update the monitor with a point; also the sentence that names the infinity, if any.
+    """Update the monitor with a point; also return the sentence that names the infinity, or "".
 
     `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
-    parameter and slope at three marks at most. `stops`: ends (component, value) of the path; one on the way excludes
+    parameter and slope at up to three marks. `stops`: the path's ends (component, value); one on the way excludes
     infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
@@ -57,7 +57,7 @@ def divergence(
     way = max(way, abs(lam - float(origin.u[-1])))
     slope = largest(point.tangent[:-1]) / abs(moves) if moves else math.inf
     if marks and (slope < marks[-1] or (len(marks) > 2 and (lam - marks[-2]) * (marks[-2] - marks[-4]) < 0.0)):
-        # Slower or backwards: forget the model.
+        # The path is slower or goes back: forget the model.
         return (way, 0.0), ""
     if not 0.0 < slope < math.inf or (marks and slope < DECADE * marks[-1]):
         return (way, began, *marks), ""
@@ -83,13 +83,13 @@ def _met_further(
     way: float,
     stops: Sequence[tuple[int, float]],
 ) -> bool:
-    """Whether Newton's method finds the path at the model's predictions, decade by decade, up to the limit."""
+    """Whether Newton's method confirms the model's predictions, decade by decade."""
     enough = ARRIVED * way + 2.0 * POINT_ULPS * float(np.spacing(abs(limit)))
     power, at = order - 1.0, point
     try:
         while (left := limit - at.lam) and abs(left) > enough:
             nearer = left / DECADE
-            # Integral of a slope proportional to the power -(p + 1) of the distance.
+            # The slope is proportional to the power -(p + 1) of the distance.
             grown = math.expm1(power * math.log(DECADE)) / power if power else math.log(DECADE)
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
@@ -105,7 +105,7 @@ def _met_further(
 
 
 def beyond_horizon(u: Array) -> str:
-    """The number size that a point has reached, as text."""
+    """The size of a point, as text."""
     return f"numbers of {largest(u):.0e}" if largest(u) >= HORIZON else ""
 
 
@@ -118,7 +118,6 @@ def words(monitor: Monitor) -> str:
     if model is None:
         return ""
     limit, order = model
-    # Nine digits of the parameter's way.
     lam = f"{round(limit, 9 - math.floor(math.log10(way or 1.0))) + 0.0:.9g}"
     p = order - 1.0
     if order <= 1.0 + 1.0 / HIGHEST_POLE:

@@ -1,7 +1,7 @@
 """The limit of a path at a singular target: y ~ y* + c1 t + c2 t^2 + ..., t = |lam - target|^(1/w).
 
 A power-series endgame (Morgan, Sommese and Wampler, Numerische Mathematik 63, 1992): parameter values approach the
-target geometrically, and for each winding number w the Hermite polynomial in t is evaluated at t = 0.
+target geometrically, and Hermite polynomials in t for each winding number w are evaluated at t = 0.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from continuation.point.projection import PathSolver, arc_on_path
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
-"""Ratio of distances to the target: few points, each within Newton's reach."""
+"""Ratio of distances to the target: few points, within Newton's reach."""
 
 RELATIVE_FLOOR = 1e-13
-"""Relative error that stops the sampling: the change by the last sample."""
+"""Change by the last sample that stops the sampling, relative."""
 
 RESIDUAL_RATIO = 1e-3
 """Largest residual at the limit, relative to the first sample moved to the target."""
 
 ULPS = 8.0
-"""Perturbation, in units in the last place, that shows round-off."""
+"""Perturbation, in ulps, that shows round-off."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
@@ -44,25 +44,25 @@ ROUND_OFF_SPREAD = 10.0
 """Allowed growth of round-off in H from the last sample to the limit."""
 
 SAMPLE_TOLERANCE = 1e-3
-"""Accuracy of samples, in tolerances; the extrapolation multiplies their errors."""
+"""Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
 
 AMPLIFICATION = 0.3, 10.0
 """The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
-weights' magnitudes at t = 0, nodes in ratio RATIO^(1/w)."""
+weights at t = 0."""
 
 EQUALLY_GOOD = 10.0
-"""The smallest winding number within this factor of the best error wins: multiples fit as well, later."""
+"""Factor of the best error within which the smallest winding number wins: multiples fit later."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
-"""Newton's method converges linearly near a singular end."""
+"""Newton's method is linear near a singular end."""
 
 
 @frozen(eq=False)
 class SingularLimit:
     """A limit u, shape (N + 1,), exactly at the target.
 
-    `error`: largest error of a component; `length`: the error's in the metric. `winding_number`: 1 if analytic, 2 for a
-    square root, ...
+    `error`: largest error of a component; `length`: that in the metric. `winding_number`: 1 if analytic, 2 for a square
+    root.
     """
 
     u: Array
@@ -73,7 +73,7 @@ class SingularLimit:
 
 @frozen(eq=False)
 class Sample:
-    """A point, dy/dlam, and noise by component."""
+    """A point, dy/dlam, and noise."""
 
     u: Array
     slope: Array
@@ -123,8 +123,7 @@ class Endgame:
         """Whether two samples lie on one branch, as far as known.
 
         Orientation is constant along a path, and differs on the other of two branches that nearly meet (Allgower and
-        Georg, Section 8.1). If unknown, the path between is examined, which detects five of six such ends (seeds in
-        test_endgame.py).
+        Georg, Section 8.1). If it is unknown, the path between is examined, which detects five of six such ends.
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
@@ -132,7 +131,6 @@ class Endgame:
         return arc_on_path(self.solver, arc, arc.length) is not None
 
     def _keeps_orientation(self, end: SingularLimit, last: Linearization) -> bool:
-        """Whether a regular limit has the last sample's orientation."""
         if end.winding_number > 1 or last.orientation == 0:
             return True
         try:
@@ -149,14 +147,12 @@ class Endgame:
         residual_norm = self.solver.evaluator.residual_norm
         residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
         moved = residual_norm(np.append(taken[0].u[:-1], self.target))
-        # False if one is nan.
         return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, and its noise.
 
-        If round-off prevents an accurate point and `noisy` allows it, an increment below the tolerance is accepted as
-        the noise.
+        If `noisy`, an increment below the tolerance is accepted as noise.
         """
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
@@ -194,7 +190,7 @@ def _sample(point: Linearization, noise: Array) -> Sample:
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float], Array]:
-    """The Hermite interpolant in t, with t = 1 at the first sample, in Newton's form."""
+    """The Hermite interpolant in t, by Newton's form; t = 1 at the first sample."""
     gap = taken[0].u[-1] - target
     t = np.array([((sample.u[-1] - target) / gap) ** (1.0 / w) for sample in taken])
     nodes, table = np.repeat(t, 2), np.repeat([sample.u for sample in taken], 2, axis=0)
@@ -216,12 +212,12 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float],
 
 
 def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
-    """The best limit over winding numbers; the error is the change by a sample, and noise."""
+    """The best limit over winding numbers; its error is the change by a sample, and noise."""
     ends = []
     noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)(0.0)
-        # Without the last and the first sample: one small change may be chance.
+        # Leave out the last, then the first sample: one small change may be chance.
         others = [_polynomial(some, target, w)(0.0) for some in (taken[:-1], taken[1:])]
         change = np.max([np.abs(value - other) for other in others], axis=0)
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
@@ -247,7 +243,7 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
-    """How far round-off in H moves the point: H at a few units in the last place, less its linear part."""
+    """Motion of the point by round-off in H: H a few ulps away, less its linear part."""
     apply = evaluator.differential(at.u)
     if apply is None:
         return np.zeros_like(at.u)

@@ -1,4 +1,4 @@
-"""Landing on the target by its own step, or where an arc crosses or touches it."""
+"""Landing on the target by a step, or at a crossing."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
 DISTANCE, ANGLE = 0.3, 1.0
-"""A larger correction, in steps, or angle (radians) means another branch."""
+"""A larger correction, in steps, or angle (radians) shows another branch."""
 
 RETRY, LEAP = 0.3, 10.0
-"""Paths creep towards a boundary: landing is tried from so many steps away, and again when this share of the way is
-left."""
+"""Paths creep towards a boundary: landing is tried so many steps away, and again when this share of the way is left."""
 
 STRETCH = 1.01
-"""A target just beyond the step is landed on: a step of round-off would be left."""
+"""Targets just beyond the step are landed on, since a step of round-off would be left."""
 
 ROOM, EDGE = 0.9, 1e-6
-"""ROOM: least distance to the boundary, in ways to the predicted end. EDGE: tolerance for an end on the boundary."""
+"""ROOM: least distance to the boundary, relative to that of the predicted end. EDGE: tolerance of an end on the
+boundary."""
 
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
-"""It must contract well: at a fixed parameter far solutions look as good."""
+"""Correctors at a fixed parameter must contract well: far solutions look as good."""
 
 
 @frozen(eq=False)
@@ -51,7 +51,7 @@ class Landing:
 
     @property
     def lands_from_afar(self) -> bool:
-        """Whether landing is tried from many steps away: near a boundary steps become short."""
+        """Whether landing is tried from afar: near a boundary steps are short."""
         return self.stepper.solver.max_step is not None
 
     def attempt(
@@ -75,7 +75,6 @@ class Landing:
     def _guess(
         self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> tuple[Array, float] | None:
-        """The predicted point at the target and its step."""
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
@@ -109,7 +108,7 @@ class Landing:
         along = dot(border, correction.u - point.u)
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
-        # The end itself may lie on the boundary.
+        # The end may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
@@ -117,7 +116,7 @@ class Landing:
 
 
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
-    """The first point of an arc with a parameter value that its ends enclose, or that a fold touches."""
+    """The first point of an arc at a parameter value, enclosed or touched by a fold."""
 
     def gap(u: Array, v: Array) -> float:
         return float(u[-1]) - value
@@ -150,8 +149,8 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
     """Whether H' has full rank at a point corrected with the factorisation of `near`.
 
-    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. Refinement of a general right-hand side
-    contracts if H' is near `near`'s; otherwise H' is factored.
+    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. H' is factored unless refinement of a general
+    right-hand side contracts.
     """
     evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
     z = near.solve(r)

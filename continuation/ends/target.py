@@ -1,4 +1,4 @@
-"""Possible ends of a path; `continuation.step.verdict` decides."""
+"""Possible ends of a path."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ ENDGAME = 1e-2
 """Relative distance to the target at which a singular end is sought."""
 
 RETRY_ENDGAME = 0.05
-"""Share of the distance since the last failed endgame that allows another: two samples."""
+"""Share of the distance of the last failed endgame for another: two samples."""
 
 CONDITIONED = 0.1
-"""Ends that round-off may move by this share of the path are rejected: asymptotes satisfy any equation."""
+"""Share of the path by which round-off may move an end: asymptotes satisfy any equation."""
 
 NEAR_ENOUGH = 30.0
-"""Error bound, in tolerances, that needs no limit: noise decides the components' scales."""
+"""Error bound, in tolerances, up to which no limit is needed."""
 
 VANISHING_SHARE = 1e-18
 """Parameter's share of the tangent that is zero, the square of round-off."""
 
 END_CORRECTIONS = 4
-"""Newton's increments at the target, which converge quadratically."""
+"""Newton's increments at the target: they converge quadratically."""
 
 
 class EndsAt(Enum):
@@ -55,7 +55,7 @@ class EndsAt(Enum):
 class ArcEnd:
     """An accepted arc, cut where the path ends.
 
-    `kind`: of its last point. `whole`: not cut. `limit`: of a singular end. `error`: bound of the end's components.
+    `kind`: of the end. `whole`: not cut. `limit`: a singular end. `error`: bound of its components.
     """
 
     arc: Arc
@@ -68,30 +68,29 @@ class ArcEnd:
 
 @frozen(eq=False)
 class Target:
-    """The target of a trace, and ends without a step of their own."""
+    """The target of a trace."""
 
     solver: PathSolver
     target: float | None
 
-    # A homotopy with `max_step` has a domain, its target mostly on the boundary: hence these two and
+    # The target of a homotopy with `max_step` is mostly on the domain's boundary: hence these two and
     # `Landing.lands_from_afar`.
 
     @property
     def expects_singular_end(self) -> bool:
-        """Whether the endgame precedes landing: H' may lose rank on the boundary."""
+        """Whether the endgame precedes landing, as H' may lose rank on the boundary."""
         return self.solver.max_step is not None
 
     @property
     def may_turn_back(self) -> bool:
-        """Whether the start's parameter is an end: beyond it the homotopy has no meaning."""
+        """Whether the start's parameter is an end, beyond which the homotopy has no meaning."""
         return self.solver.max_step is not None
 
-    # -- before a step --
+    # Before a step
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
-        """Whether to seek a singular end: the target is near, and a landing failed or the path is interior.
-
-        After a failure the endgame waits until the target is much nearer.
+        """Whether to seek a singular end: the target is near (much nearer after a failure), and a landing failed or the
+        path is interior.
         """
         if self.target is None or state.index == 0:
             return False
@@ -108,10 +107,10 @@ class Target:
         except EvaluationError:
             return None
 
-    # -- after a step --
+    # After a step
 
     def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
-        """The arc, cut at the path's end if there is one; `landed`: the arc was made to end on the target."""
+        """The arc, cut at the path's end; `landed`: the arc was made to end on the target."""
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
@@ -135,8 +134,7 @@ class Target:
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
         """The end at a parameter value, an error bound, and the limit if singular.
 
-        Newton's method brings points near a fold to round-off (`off_by`); if that exceeds the tolerance, the endgame is
-        tried. `EvaluationError` if both fail.
+        If round-off (`off_by`) exceeds the tolerance, the endgame is tried. `EvaluationError` if both fail.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)
@@ -153,7 +151,6 @@ class Target:
         return u, largest(off), None
 
     def _at_value(self, end: Linearization, value: float) -> Array:
-        """The end after Newton's increments at the value, while the residual falls."""
         evaluator = self.solver.evaluator
         unit = np.zeros_like(end.u)
         unit[-1] = 1.0
@@ -173,7 +170,7 @@ class Target:
         return u
 
     def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
-        """Add to a limit's error that the singular point may lie beside the target, as far as H can tell.
+        """Add the distance of the singular point from the target, as far as H can tell, to a limit's error.
 
         Between `point` and the limit y changes like c |lam - target|^(1/w).
         """
@@ -191,10 +188,10 @@ class Target:
 
 
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
-    """How far components of an end may move while H stays round-off.
+    """Motion of an end's components that leaves H round-off.
 
     The end moves along the tangent, and along two sign samples of round-off through `near`, until H is twice what is
-    allowed. This also holds near folds and at lower ranks.
+    allowed.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

@@ -1,1 +1,1 @@
-"""Evaluates a homotopy: counted, with derivatives from any source."""
+"""Counted evaluations of a homotopy."""

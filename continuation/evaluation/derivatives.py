@@ -1,4 +1,4 @@
-"""Derivatives from a residual alone: dense, or by column groups."""
+"""Derivatives of a residual: dense, or by column groups."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def check_derivative(answer: Any, n: int) -> None:
 class Derivative:
     """(H_y, H_lam) of a residual, by products.
 
-    One more product checks each sparse derivative; if it fails, the pattern lacks an entry and grows.
+    One more product checks each sparse derivative; if it fails, the pattern grows.
     """
 
     residual: Residual
@@ -58,7 +58,7 @@ class Derivative:
     plain: Products = field(init=False)
     """The products without noise."""
     agreement: float = field(init=False)
-    """Tolerance of the check; AGREEMENT if the residual has round-off inside."""
+    """Tolerance of the check, AGREEMENT if the residual has round-off inside."""
 
     @plain.default
     def _without_noise(self) -> Products:
@@ -74,7 +74,7 @@ class Derivative:
             self.products = self.plain.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Return (H_y, H_lam), dense or sparse."""
+        """The pair (H_y, H_lam), dense or sparse."""
         u = np.append(y, lam)
         if self.pattern is not None:
             answer = self._by_groups(u, self.pattern)
@@ -87,7 +87,7 @@ class Derivative:
                 answer = None if self.pattern is None else self._by_groups(u, self.pattern)
                 if answer is not None:
                     return answer
-            # Products that do not add up give no derivative by groups.
+            # Without products that add up, groups are useless.
             self.pattern = None
             self.notes.add("a sparsity pattern that could not be found")
         full = self.products.whole(self.residual, u)
@@ -104,7 +104,7 @@ class Derivative:
         terms, more = entries * weights, column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
-        # Not finite: outside the domain, no fault of the pattern.
+        # Outside the domain the pattern is not at fault.
         allowed = self.agreement * size
         if (gap > allowed).any() and (gap > np.maximum(allowed, self.agreement * float(allowed.max()))).any():
             return None
@@ -164,7 +164,7 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
 
 
 def given_pattern(sparsity: Any, n: int) -> Pattern:
-    """Return the pattern of a homotopy's `sparsity`."""
+    """The pattern of a homotopy's `sparsity`."""
     try:
         places = sp.coo_array(sparsity)
     except (TypeError, ValueError):
@@ -182,10 +182,9 @@ def from_residual(
     notes: set[str] | None = None,
     products: Products | None = None,
 ) -> Derivative:
-    """Return the best derivative: jets, else complex step, else central differences.
+    """The best derivative: jets, else complex step, else central differences.
 
-    `start` of shape (N,). `pattern`: Searched if None and N is large. `notes`: Receives the method. `products`: The
-    homotopy's own.
+    `pattern`: searched for if None and N is large. `notes` receives the method. `products`: the homotopy's own.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

@@ -1,4 +1,4 @@
-"""Errors of evaluations, and their classification."""
+"""Errors of evaluations."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ class NotFiniteError(EvaluationError):
 
 
 class RaisedError(EvaluationError):
-    """The homotopy raises ValueError: its domain ends, or a mistake."""
+    """The homotopy raises ValueError: outside its domain, or by mistake."""
 
     rejection = Rejection.RAISED
 
 
 class SingularPointError(EvaluationError):
-    """The bordered matrix is singular, as at a branch point."""
+    """The bordered matrix is singular."""
 
     rejection = Rejection.SINGULAR
 
 
 MATHS_OWN = ("math domain error", "expected a")
-"""Beginnings of `math`'s domain errors: up to Python 3.13, from 3.14."""
+"""Beginnings of `math`'s domain errors, to Python 3.13 and from 3.14."""
 
 
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """Return a domain error for exceptions of `math`, numpy and scipy, else the author's."""
+    """A domain error for exceptions of `math`, numpy and scipy, else the author's."""
     if isinstance(error, EvaluationError):
-        # Raised by a homotopy inside this one.
+        # A homotopy inside this one raised it.
         return error
     *_, (frame, line) = walk_tb(error.__traceback__)
     module = str(frame.f_globals.get("__name__", "")).partition(".")[0]

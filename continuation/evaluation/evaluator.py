@@ -36,7 +36,7 @@ POINT_ULPS = 4.0
 """Round-off of a point, in ulps."""
 
 DERIVATIVES_KEPT = 4
-"""Derivatives kept for step ends and the search for crossings."""
+"""Derivatives kept, for step ends and crossings."""
 
 
 @frozen(eq=False, slots=False)
@@ -48,7 +48,7 @@ class CountedSystem:
     solve: Callable[[Array, float], Array] = field(init=False)
     """Bordered solve; EvaluationError if not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
-    """Unrefined solve, for iterations that measure their residual."""
+    """Unrefined solve, if iterations measure their residual."""
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
@@ -61,7 +61,7 @@ class CountedSystem:
 
     @cached_property
     def sign(self) -> int:
-        """Determinant's sign; 0 if unknown."""
+        """Sign of the determinant; 0 if unknown."""
         return self.system.sign
 
     @property
@@ -88,8 +88,8 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    `counts`: Receives the counts. `methods`: BibTeX of substitute derivatives. `keeping`: Keep derivatives for
-    `matrix`. `noise`: Beyond round-off of u, shape (N,), or None. `TypeError` or `ValueError` for a bad homotopy.
+    `methods`: BibTeX of substitute derivatives. `keeping`: keep derivatives for `matrix`. `noise`: beyond round-off of
+    u, shape (N,), or None. `TypeError` or `ValueError` for a wrong homotopy.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -105,10 +105,7 @@ class Evaluator:
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
-        """Evaluate this homotopy from now on, such as the next piece.
-
-        `TypeError` if a method is missing.
-        """
+        """Evaluate this homotopy from now on; `TypeError` if a method is missing."""
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
@@ -141,7 +138,7 @@ class Evaluator:
         return u
 
     def start(self) -> Array:
-        """Return the checked start (y0, lam0) as one vector."""
+        """The checked start (y0, lam0) as one vector."""
         u = self._given()
         y0 = u[:-1]
         self._sparsity(y0.size)
@@ -158,21 +155,18 @@ class Evaluator:
         return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
-        """Return the plug-in's residual, counted, also for jets.
-
-        `y` of shape (N,).
-        """
+        """The plug-in's residual, counted, also for jets; `y` of shape (N,)."""
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
-        """Return H(u), shape (N,); EvaluationError if not finite."""
+        """H(u), shape (N,); EvaluationError if not finite."""
         if not silent():
             with Silence():
                 return self.residual(u)
         self.counts.residuals += 1
         try:
-            # A plug-in may reuse its array.
+            # Plug-ins may reuse their arrays.
             r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("residual", error) from error
@@ -181,14 +175,14 @@ class Evaluator:
         return r
 
     def residual_norm(self, u: Array) -> float:
-        """Return the largest component of H(u), or nan."""
+        """The largest component of H(u), or nan."""
         try:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
 
     def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
-        """Return the effect of round-off in u on H, shape (N,), by two perturbations: terms may cancel in one.
+        """The effect of round-off in u on H, shape (N,), by two perturbations: terms may cancel in one.
 
         `residual` is H(u).
         """
@@ -196,7 +190,7 @@ class Evaluator:
         return terms
 
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
-        """Return the estimate from one perturbation; order -1 gives another.
+        """The estimate from one perturbation; order -1 gives another.
 
         `least`: Least resolution of each component.
         """
@@ -207,9 +201,9 @@ class Evaluator:
         return change if self.noise is None else np.maximum(change, self.noise)
 
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
-        """Measure and keep the noise; return it, or the effect of one ulp of u if larger, shape (N,).
+        """Measure and keep the noise; return it, or one ulp's effect if larger, shape (N,).
 
-        `w`, shape (N + 1,): A direction of change. `residual` is H(u).
+        `w`: a direction of change, shape (N + 1,). `residual` is H(u).
         """
         self.noise = None
         terms = self.round_off(u, residual)
@@ -222,14 +216,14 @@ class Evaluator:
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:
-        """Set the noise, shape (N,), for residuals and difference steps; zeros mean round-off alone."""
+        """Set the noise, shape (N,); zeros mean round-off alone."""
         self.noise = noise if noise.any() else None
         if noise.size and isinstance(self._derivative, Derivative):
             self._derivative.know(noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
-        """The plug-in's `jacobian`, else from the residual; chosen at first use."""
+        """The plug-in's `jacobian`, else from the residual."""
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
@@ -242,7 +236,7 @@ class Evaluator:
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
-        """Return v -> H'(u) v, or None if only a structured factorisation exists."""
+        """The map v -> H'(u) v, or None if only a structured factorisation exists."""
         if self._differential is not None:
             apply, y, lam = self._differential, u[:-1], float(u[-1])
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
@@ -250,7 +244,7 @@ class Evaluator:
             return None
         place = u.tobytes()
         if place not in self._products:
-            # Two are kept: an arc's end is needed again after its inside.
+            # Two are kept: an arc's end is needed again.
             self._products = dict([*self._products.items()][-1:])
             self._products[place] = self._product(u)
         return self._products[place]
@@ -281,12 +275,12 @@ class Evaluator:
         if self.keeping:
             while len(self._kept) >= DERIVATIVES_KEPT:
                 del self._kept[next(iter(self._kept))]
-            # A plug-in may reuse its array.
+            # Plug-ins may reuse their arrays.
             self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
 
     def matrix(self, u: Array) -> Matrix:
-        """Return H_y at u, kept or evaluated."""
+        """H_y at u, kept or evaluated."""
         known = self._kept.get(u.tobytes())
         if known is None:
             self.counts.jacobians += 1
@@ -294,7 +288,7 @@ class Evaluator:
         return known
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
-        """Factor [[H_y, H_lam], [border']] at u; EvaluationError if impossible."""
+        """Factor [[H_y, H_lam], [border']] at u, or raise EvaluationError."""
         self.counts.jacobians += 1
         self.counts.factorizations += 1
         # Factorisations may keep views; correctors move points in place.

@@ -18,7 +18,7 @@ def _start_vector(y: object) -> Array:
 
 @frozen(eq=False)
 class FunctionHomotopy:
-    """A homotopy made of a residual; see `from_functions`."""
+    """A homotopy by `from_functions`, without derivative."""
 
     function: Callable[[Any, Any], Any]
     y0: Array = field(converter=_start_vector)
@@ -27,18 +27,18 @@ class FunctionHomotopy:
     sparsity: Matrix | None = None
 
     def start(self) -> tuple[Array, float]:
-        """Return the given start."""
+        """The given start."""
         return self.y0.copy(), self.lam0
 
     def residual(self, y: Array, lam: float) -> Array:
-        """Return the given residual."""
+        """The given residual."""
         value: Array = self.function(y, lam)
         return value
 
 
 @frozen(eq=False)
 class DifferentiableHomotopy:
-    """A homotopy made of a residual and its derivative; see `from_functions`."""
+    """A homotopy by `from_functions`, with derivative."""
 
     plain: FunctionHomotopy
     derivative: Callable[[Any, Any], tuple[Matrix, Array]]
@@ -49,15 +49,15 @@ class DifferentiableHomotopy:
         return self.plain.target
 
     def start(self) -> tuple[Array, float]:
-        """Return the given start."""
+        """The given start."""
         return self.plain.start()
 
     def residual(self, y: Array, lam: float) -> Array:
-        """Return the given residual."""
+        """The given residual."""
         return self.plain.residual(y, lam)
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Return the given derivative."""
+        """The given derivative."""
         return self.derivative(y, lam)
 
 
@@ -78,11 +78,11 @@ def from_functions(
     jacobian : callable, optional
         ``jacobian(y, lam) -> (H_y, H_lam)``; default: from `residual`.
     start : tuple
-        ``(y0, lam0)``, on or near the path.
+        ``(y0, lam0)``, near the path.
     target : float or None
         Final parameter value, if any.
     sparsity : array or sparse array, shape (N, N), optional
-        Nonzero where H_y may be, for large problems without `jacobian`. Default: searched.
+        Nonzero where H_y may be, without `jacobian`. Default: searched.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Checks a plug-in's derivative against its residual."""
+"""Checks of derivatives against residuals."""
 
 from __future__ import annotations
 
@@ -50,9 +50,9 @@ class JacobianReport:
 
 
 def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
-    """Compare a homotopy's derivative with its residual and find a wrong entry.
+    """Compare a homotopy's derivative with its residual.
 
-    Products with random directions cost a few residuals; bisection finds the entry with 2 log2(N) more.
+    Products with random directions cost a few residuals; bisection finds a wrong entry with 2 log2(N) more.
 
     Parameters
     ----------

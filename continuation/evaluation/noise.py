@@ -16,7 +16,7 @@ LOOK = 64.0
 """Least distance of samples, in ulps, whose own rounding is then small."""
 
 NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
-"""Sample parameters. On even places rounding hid the noise of 17 of 150 rings that are zero by symmetry."""
+"""Sample parameters. Even places hid the noise of 17 of 150 rings that are zero by symmetry."""
 
 
 def _divided_differences(places: Array, order: int) -> Array:
@@ -31,19 +31,18 @@ def _divided_differences(places: Array, order: int) -> Array:
 _FOURTH = _divided_differences(NOISE_PLACES, 4)
 
 NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 3
-"""First sample distance, in lengths of a turn; its factor (smooth fourth differences shrink by 1e12); limit of
-distances.
-"""
+"""First sample distance, in lengths of a turn; its factor, by which smooth fourth differences shrink 1e12 times; limit
+of distances."""
 
 NOISE_STEADY = 30.0
 """Agreement of noise at two distances, each the largest of five samples."""
 
 WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
-"""Accuracy factor and limits of the length found by `allowed_along`."""
+"""Accuracy factor and limits of `allowed_along`'s lengths."""
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
-    """Return the noise of each equation, shape (N,): differences along w that do not shrink.
+    """The noise of each equation, shape (N,): differences along w that do not shrink.
 
     Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` of shape (N + 1,).
     `here`, shape (N,): residual(u).
@@ -68,10 +67,9 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
 def allowed_along(
     residual: Callable[[Array], Array], u: Array, way: Array, allowed: Array, begin: float = 1.0
 ) -> float:
-    """Return how far along a direction a residual stays within `allowed`, up to a factor WIDENED.
+    """How far along a direction a residual stays within `allowed`, up to a factor WIDENED.
 
-    0: nowhere; ENDLESS: everywhere. Power laws extrapolate the lengths. `u`, `way` of shape (N + 1,); `allowed` of
-    shape (N,); `begin`: first guess.
+    0: nowhere; ENDLESS: everywhere. Power laws extrapolate lengths. `begin`: first guess.
     """
     low, high, over, power = 0.0, np.inf, np.inf, 2.0
     length, factor, allowed = begin, WIDENED, np.maximum(allowed, np.finfo(float).tiny)

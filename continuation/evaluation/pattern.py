@@ -1,4 +1,4 @@
-"""Sparsity patterns, and groups of columns without common equations."""
+"""Sparsity patterns, and groups of columns."""
 
 from __future__ import annotations
 
@@ -16,15 +16,14 @@ from continuation.linear import Banded
 
 BLOCKS_TELL = 64
 """Blocks that show sparsity: eight random entries a row touch 12 % of 64, nearly half of 16. A matrix whose rows touch
-half is full.
-"""
+half is full."""
 
 Places = NDArray[np.signedinteger[Any]]
 
 
 @lru_cache(maxsize=4)
 def generic(n: int) -> Array:
-    """A vector without equal or tiny components: nothing cancels."""
+    """A vector without equal or tiny components, so that nothing cancels."""
     numbers = generic_vector(n)
     return np.asarray(np.sign(numbers) * (0.5 + 0.5 * np.abs(numbers) / np.abs(numbers).max()))
 
@@ -34,9 +33,9 @@ Touched = Callable[[Places, int], NDArray[np.bool_]]
 
 
 def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
-    """Return groups of columns without common rows (Curtis, Powell and Reid, 1974).
+    """Groups of columns without common rows (Curtis, Powell and Reid, 1974).
 
-    scipy's private routine: the public way takes ten times as long for 1,000 columns.
+    scipy's private routine is ten times as fast as its public one for 1,000 columns.
     """
     from scipy.optimize._group_columns import group_sparse
 
@@ -48,10 +47,7 @@ def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
 
 @frozen(eq=False, slots=False)
 class Pattern:
-    """Entries of a square sparse matrix, column by column.
-
-    `rows`, `columns`: Of the entries. `n`: Order.
-    """
+    """Entries of a square sparse matrix of order `n`, column by column."""
 
     rows: Places
     columns: Places
@@ -87,7 +83,7 @@ class Pattern:
         return np.asarray(self.rows * (self.count + 2) + self.groups[self.columns])
 
     def entries(self, products: Array) -> Array:
-        """Return entries from products with `directions`, shape (n, k)."""
+        """Entries from products with `directions`, shape (n, k)."""
         return products.ravel().take(self._places)
 
     @cached_property
@@ -113,7 +109,7 @@ class Pattern:
         return self.rows.astype(np.int32)
 
     def matrix(self, entries: Array) -> Matrix:
-        """Return the matrix with these entries: `Banded` or csc."""
+        """The matrix with these entries: `Banded` or csc."""
         if not self.banded:
             return sp.csc_array((entries, self._indices, self._starts), shape=(self.n, self.n))
         lower, upper = self._band
@@ -122,23 +118,23 @@ class Pattern:
         return Banded(ab, lower, upper)
 
     def structure(self) -> Matrix:
-        """Return the transposed pattern as csr, with a full last row."""
+        """The transposed pattern as csr, with a full last row."""
         own = sp.csr_array((np.ones(self.rows.size), (self.columns, self.rows)), shape=(self.n, self.n))
         return sp.vstack([own, np.ones((1, self.n))], format="csr")
 
     def joined(self, other: Pattern) -> Pattern:
-        """Return the union of two patterns."""
+        """The union of two patterns."""
         return pattern_of(np.append(self.rows, other.rows), np.append(self.columns, other.columns), self.n)
 
 
 def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
-    """Return the pattern of these entries, sorted, without repetition."""
+    """The pattern of these entries, sorted, without repetition."""
     columns, rows = np.divmod(np.unique(np.asarray(columns, np.intp) * n + np.asarray(rows, np.intp)), n)
     return Pattern(rows, columns, n)
 
 
 def found(touched: Touched, n: int) -> Pattern | None:
-    """Return a matrix' pattern, or None if full or too expensive.
+    """A matrix' pattern, or None if full or too expensive.
 
     Blocks of columns are halved, those without common equations together (Griewank and Mitev, Mathematical Programming
     93, 2002).

@@ -12,10 +12,10 @@ from continuation.arrays import ROOT_OF_ROUND_OFF, Array, largest
 from continuation.evaluation.products import USUAL_STEP, Exact, exact
 
 Signs = tuple[int, ...]
-"""Signs -1 or +1 of all switches: a piece's name."""
+"""Signs -1 or +1 of all switches, which name a piece."""
 
 REMEMBERED = 64
-"""Pieces kept: kinks need the same few again."""
+"""Pieces kept; kinks need the same few again."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
 """Capabilities that the map takes from its pieces."""
@@ -34,7 +34,7 @@ class Pieces:
     _exact: list[Exact | None] = field(factory=list, init=False)
 
     def values(self, u: Array) -> Array:
-        """Return the switches at u, shape (m,).
+        """The switches at u, shape (m,).
 
         `SwitchError` if not finite, `ValueError` unless a real vector.
         """
@@ -50,11 +50,11 @@ class Pieces:
         return np.array(found, dtype=float)
 
     def signs(self, u: Array) -> Signs:
-        """Return the piece of a point; a zero switch counts as positive."""
+        """The signs of a point; a zero switch counts as positive."""
         return tuple(np.where(self.values(u) >= 0.0, 1, -1).tolist())
 
     def piece(self, signs: Signs) -> Any:
-        """Return the smooth homotopy of these signs."""
+        """The smooth homotopy of these signs."""
         if signs not in self._made:
             if len(self._made) >= REMEMBERED:
                 self._made.clear()
@@ -62,7 +62,7 @@ class Pieces:
         return self._made[signs]
 
     def exists(self, signs: Signs) -> bool:
-        """Return whether these signs have a piece."""
+        """Whether these signs have a piece."""
         try:
             self.piece(signs)
         except ValueError:
@@ -70,7 +70,7 @@ class Pieces:
         return True
 
     def along(self, u: Array, v: Array) -> Array:
-        """Return derivatives of the switches at u along v, shape (m,): by jets, else differences, as first decided."""
+        """Derivatives of the switches along v, shape (m,), by jets or differences."""
         switches, size = self.homotopy.switches, (largest(u) or 1.0) / (largest(v) or 1.0)
         if not self._exact:
             self._exact.append(exact(switches, u, size * v))
@@ -81,10 +81,10 @@ class Pieces:
         return change
 
     def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """Return the lower median distance to borders ahead along v.
+        """The lower median distance to borders ahead along v.
 
-        A start this near to a border, half of the digits relative to its direction, is on it, and smaller derivatives
-        are round-off. Without a border: the size of the given direction, else of the point, else 1.
+        A border within half of the digits, relative to `direction`, is the start's own. Without a border: the size of
+        the given direction, else of the point, else 1.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         beside = 0.0 if direction is None else ROOT_OF_ROUND_OFF * np.abs(self.along(u, direction))
@@ -96,7 +96,7 @@ class Pieces:
 
 
 class WholeMap:
-    """All pieces as one homotopy, with the first piece's capabilities, for single points.
+    """All pieces as one homotopy, with the first piece's capabilities.
 
     `u`, shape (N + 1,): Start.
     """

@@ -1,4 +1,4 @@
-"""Products H'(u) w from a residual: by jets, complex step or differences."""
+"""Products H'(u) w, by jets, complex step or differences."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
 
 AGREEMENT = 1e-3
-"""Largest difference between correct derivatives and differences, relative to their terms."""
+"""Largest error of differences, relative to their terms."""
 
 
 @frozen
 class Exact:
     """Products to round-off.
 
-    `function`: Maps residual, u and directions (k, N + 1) to (N, k). `entire`: All of H', if faster. `agreement`:
-    Tolerance of a check, relative to the terms. `scale`, `even`: See `ByDifferences`.
+    `function` maps residual, u and directions (k, N + 1) to (N, k). `entire`: all of H', if faster. `agreement`:
+    tolerance of a check, relative to terms. `scale`, `even`: see `ByDifferences`.
     """
 
     name: str
@@ -37,14 +37,14 @@ class Exact:
     even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> None:
-        """Return None: units do not matter."""
+        """None: units do not matter."""
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """Return H'(u) times each direction."""
+        """H'(u) times each direction."""
         return self.function(residual, u, directions)
 
     def whole(self, residual: Residual, u: Array) -> Array:
-        """Return H'(u)."""
+        """H'(u)."""
         return self(residual, u, np.eye(u.size)) if self.entire is None else self.entire(residual, u)
 
 
@@ -70,14 +70,14 @@ def _by_complex_step(residual: Residual, u: Array, directions: Array) -> Array:
 
 
 BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,), _all_by_jets)
-"""Truncated Taylor arithmetic, `continuation.jets`."""
+"""Truncated Taylor arithmetic."""
 
 BY_COMPLEX_STEP = Exact("complex step", _by_complex_step, (SQUIRE_TRAPP,))
 """One complex residual a direction (Squire and Trapp, SIAM Review 40, 1998)."""
 
 
 def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
-    """Return products by the homotopy's own `differential`."""
+    """Products by the homotopy's own `differential`."""
 
     def function(residual: Residual, u: Array, directions: Array) -> Array:
         y, lam = u[:-1], float(u[-1])
@@ -87,26 +87,26 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
 
 
 USUAL_STEP = float(np.cbrt(EPS))
-"""Step relative to a component's size (or 1) that is usually best, and the accuracy of a difference squared."""
+"""Usual best step, relative to a component's size (or 1); its square is a difference's accuracy."""
 
 DIFFERENCE_STEPS = USUAL_STEP * 100.0 ** np.arange(2, -5, -1)
-"""This and others, since origin and units are arbitrary."""
+"""Further steps, since origin and units are arbitrary."""
 
 
 def sizes(u: Array) -> Array:
-    """Return units of difference steps: sizes of the components, or 1."""
+    """Units of difference steps: sizes of the components, or 1."""
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 
 def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[list[Array], Array]:
-    """Central differences along w at all steps, and their relative changes: (steps - 1, N).
+    """Central differences along w at all steps, and relative changes: (steps - 1, N).
 
-    `rows`, shape (N,): Least size of a change's unit; else noise chooses the step of equations constant along w.
+    `rows`, shape (N,): least unit of a change; else noise decides for equations constant along w.
     """
 
     def at(h: float) -> Array:
         ahead, behind = u + h * w, u - h * w
-        # A residual may reuse its array.
+        # Residuals may reuse their arrays.
         try:
             change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
         except (ArithmeticError, ValueError):
@@ -116,9 +116,9 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
     with np.errstate(all="ignore"):
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
-        # In single precision short steps show no change: such zeros do not agree.
+        # Short steps in single precision show no change: zeros do not agree.
         seen = (np.array(found) != 0.0).any(axis=0)
-        # Closer agreement than the best accuracy of a difference is chance.
+        # Closer agreement than a difference's accuracy is chance.
         changes = []
         for one, other in pairwise(found):
             size = np.maximum(np.abs(one) + np.abs(other), rows)
@@ -130,7 +130,7 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
 
 def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
-    """Return the central difference along w with the least mean change, and its step.
+    """The central difference along w with the least mean change, and its step.
 
     `u`, `w` of shape (N + 1,).
     """
@@ -140,7 +140,6 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
 
 
 def _best(changes: Array) -> Any:
-    """The step after the least change."""
     order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
     return order[np.argmin(changes[..., order], axis=-1)] + 1
 
@@ -149,8 +148,8 @@ def _best(changes: Array) -> Any:
 class ByDifferences:
     """Central differences, eight to ten digits.
 
-    `u0`, shape (N + 1,): Where `steps`, shape (N + 1,), relative to sizes, were chosen. `usual`, shape (N,): Change of
-    each equation as all components move by their sizes.
+    `u0`: where `steps`, relative to sizes, were chosen, both of shape (N + 1,). `usual`, shape (N,): each equation's
+    change as all components move by their sizes.
     """
 
     u0: Array
@@ -161,23 +160,23 @@ class ByDifferences:
     references: tuple[str, ...] = ()
 
     def over(self, noise: Array) -> ByDifferences:
-        """Return differences whose steps balance noise, shape (N,), and curvature."""
+        """Differences whose steps balance noise, shape (N,), and curvature."""
         known = self.usual > 0.0
         least = float(np.cbrt((noise[known] / self.usual[known]).max(initial=0.0)))
         return evolve(self, steps=np.maximum(self.steps, min(least, float(DIFFERENCE_STEPS[0]))))
 
     @property
     def even(self) -> Array:
-        """Factors of `scale` that move all components alike, relative to size: steps differ by orders of magnitude."""
+        """Factors of `scale` that move all components alike, relative to size."""
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
-        """Return the steps at u, rounded: the units of directions, shape (N + 1,)."""
+        """Rounded steps at u: units of directions, shape (N + 1,)."""
         reach = self.steps * np.maximum(sizes(self.u0), np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """Return H'(u) times directions in units of `scale`, (k, N + 1) to (N, k), by two residuals each."""
+        """H'(u) times directions in units of `scale`, (k, N + 1) to (N, k), by two residuals each."""
         found = []
         for w in directions * self.scale(u):
             ahead, behind = u + w, u - w
@@ -186,21 +185,15 @@ class ByDifferences:
         return np.stack(found, axis=1)
 
     def whole(self, residual: Residual, u: Array) -> Array:
-        """Return H'(u), column by column."""
+        """H'(u), column by column."""
         return self(residual, u, np.eye(u.size)) / self.scale(u)
 
 
 def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
-    """Return differences with the best step for each component at `u0`.
+    """Differences with the best step for each component at `u0`.
 
-    Parameters
-    ----------
-    residual : callable
-    u0 : ndarray, shape (N + 1,)
-    groups : ndarray of int, shape (N + 1,), optional
-        Move together. Default: each alone.
-    rows : sparse array, shape (N + 1, N), optional
-        Ones for each component's equations. Default: all.
+    `groups`, shape (N + 1,): components that move together; default: none. `rows`, sparse, shape (N + 1, N): ones for
+    each component's equations; default: all.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     groups = np.arange(u0.size) if groups is None else groups
@@ -211,7 +204,7 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
             changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1].T
             seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
             steps[own] = DIFFERENCE_STEPS[_best(seen)] * (reach / size)[own]
-            # A component that is almost zero says nothing of its unit: longer steps, as long as they agree as well.
+            # A component that is almost zero has no unit: try longer steps that agree as well.
             longer = own & (size < USUAL_STEP) & (reach < 1.0)
             longer[own] &= (seen[:, 0] <= seen.min(axis=1)) | (changes.min() == 1.0)
             if not longer.any():
@@ -221,7 +214,6 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
 
 
 Products: TypeAlias = Exact | ByDifferences
-"""A way to compute H' from the residual."""
 
 
 def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
@@ -235,12 +227,12 @@ def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
     expected = np.array([change for change in _trials(residual, u, w)[0] if np.isfinite(change).all()])
     if not len(expected) or found.shape != expected.shape[1:]:
         return False
-    # Rows have units of their own; one that is zero is measured by the others.
+    # A zero row is measured by the others, though each has its own unit.
     size = AGREEMENT * (np.abs(found) + np.abs(expected))
     least = AGREEMENT * size.max(axis=1, initial=0.0, keepdims=True)
     return bool((np.abs(found - expected) <= np.maximum(size, least)).any(axis=0).all())
 
 
 def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
-    """Return jets, else complex steps, if they `agree` with differences along w, or None."""
+    """Jets, else complex steps, if they `agree` with differences along w, or None."""
     return next((products for products in (BY_JETS, BY_COMPLEX_STEP) if agree(products, residual, u, w)), None)

@@ -1,4 +1,4 @@
-"""Events: zeros of functions along the path, located on corrected points."""
+"""Events: zeros of functions along the path."""
 
 from continuation.events.monitors import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 

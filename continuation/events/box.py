@@ -1,4 +1,4 @@
-"""A box of parameter and unknowns; the path ends on a face, a terminal event."""
+"""A box of parameter and unknowns, whose faces end the path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from continuation.events.monitors import Event, TargetValue
 from continuation.status import Kind
 
 Box = Mapping[str | int, tuple[float | None, float | None]]
-"""Bounds: maps ``"lam"``, ``"y"`` (all unknowns), an index or a name to (low, high); None means open."""
+"""Maps ``"lam"``, ``"y"`` (all unknowns), an index or a name to (low, high); None means open."""
 
 
 @frozen
@@ -43,13 +43,7 @@ class Extreme:
 
 
 def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
-    """One event for each face of a box.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no box, or `start` lies outside.
-    """
+    """One event for each face of a box; TypeError or ValueError if it is no box, or `start` lies outside."""
     events: list[Event] = []
     for key, face in _faces(box, labels, start.size):
         if face.monitor(start, start) * face.direction > 0.0:
@@ -59,7 +53,7 @@ def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
 
 
 def is_inside(box: Any, labels: Labels, u: Array) -> bool:
-    """Whether u, shape (N + 1,), lies in the interior of a box."""
+    """Whether u, shape (N + 1,), lies inside a box."""
     return all(face.monitor(u, u) * face.direction < 0.0 for _, face in _faces(box, labels, u.size))
 
 

@@ -13,7 +13,7 @@ from continuation.status import Kind
 class BranchPoint:
     """Two branches cross: H' loses one rank.
 
-    The tracer always watches for it, to flip its orientation; list it among the events to stop there.
+    The tracer always watches for it; list it among the events to stop there.
     """
 
     terminal: int = field(default=1, validator=integer(0))
@@ -22,5 +22,5 @@ class BranchPoint:
     name: str = field(default="branch point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: the tracer itself watches."""
+        """A constant, since the tracer watches."""
         return 1.0

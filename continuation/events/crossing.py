@@ -1,8 +1,8 @@
-"""Which branches cross an arc, and about where, by one factorisation at its beginning.
+"""Branches that cross an arc, by one factorisation at its beginning.
 
 With bordered matrices M_a and M_c of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C = I
-- M_a^{-1} M_c: a real eigenvalue above one means a crossing. A determinant shows parity only. Places are exact on a
-straight branch if H is affine in the parameter.
+- M_a^{-1} M_c: a real eigenvalue above one means a crossing. The determinant shows parity only. Parameters t are exact
+on a straight branch if H is affine in the parameter.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ PRODUCTS = 40
 """Largest Krylov dimension; two usually suffice."""
 
 EIGENVALUE_ACCURACY = 0.05
-"""Relative, of real and of imaginary parts; Newton's method refines the crossing."""
+"""Relative, of real and imaginary parts; Newton's method refines the crossing."""
 
 OUTSIDE_SPACE = 0.1
 """If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
 Otherwise a tenth of 400 crossings just behind an arc is missed."""
 
 EXHAUSTED = 1e-10
-"""A vector left with a smaller share after orthogonalisation depends on the others."""
+"""Share left after orthogonalisation of a dependent vector."""
 
 ROUNDING = ROOT_OF_ROUND_OFF
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
 Eigenvalue Problem, Section 2.22), as near a pole."""
 
 SAME, INDEPENDENT = 1e-3, 1e-4
-"""Relative distance of equal eigenvalues; singular value of dependent unit vectors (eigenvectors have half the
-eigenvalues' digits)."""
+"""Relative distance of equal eigenvalues; singular value of dependent unit vectors, which have half the eigenvalues'
+digits."""
 
 
 def changes(
@@ -48,12 +48,12 @@ def changes(
     start: Array,
     accuracy: float = EIGENVALUE_ACCURACY,
 ) -> tuple[list[float], Array]:
-    """The real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors in the metric, as
-    columns.
+    """Return the real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors in the metric,
+    as columns.
 
-    By Arnoldi's method. `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent
-    there in the dual metric, so that turns give complex eigenvalues. `start`, shape (N + 1,): first vector;
-    eigenvectors orthogonal to it are not found. `accuracy`: relative.
+    `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent there in the dual metric,
+    so that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to
+    it are not found. `accuracy`: relative.
     """
     values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy)
     order = np.argsort(values)
@@ -61,7 +61,7 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """Ranks lost at a `place` of `changes`: one Krylov space holds one vector of each eigenspace, so several starts
+    """Ranks lost at a `place` of `changes`. One Krylov space holds one vector of each eigenspace, so several starts
     serve.
     """
     found = np.empty((a.u.size, 0))
@@ -79,7 +79,6 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
 
 
 def _unit(vectors: Array, scale: Array) -> Array:
-    """The columns, of unit length in a scale."""
     scaled = scale[:, None] * vectors
     unit: Array = scaled / np.sqrt(np.sum(scaled * scaled, axis=0))
     return unit
@@ -94,10 +93,10 @@ def _eigenvalues(
     start: Array,
     accuracy: float,
 ) -> tuple[Array, Array, Array]:
-    """Eigenvalues; vectors, in units of the unknowns; the scale in which Arnoldi's method measured these.
+    """Eigenvalues; vectors, in units of the unknowns; the scale of Arnoldi's method.
 
-    An unknown whose own unit is small beside what others make of it would be all that is seen of every eigenvector: the
-    first product tells a scale in which it is not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
+    An unknown with too small a unit would dominate every eigenvector: the first product gives a scale in which it does
+    not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
     """
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
@@ -139,7 +138,7 @@ def _eigenvalues(
                 break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
-    # Off the path, where an arc is looked at, the equal eigenvalues of a multiple point may be a complex pair.
+    # Off the path the equal eigenvalues of a multiple point may be a complex pair.
     wanted = [
         j
         for j, (z, e) in enumerate(zip(values, errors))
@@ -151,7 +150,7 @@ def _eigenvalues(
 
 
 def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:
-    """Eigenvalues, residuals, real parts of eigenvectors; five times as fast as `numpy.linalg.eig`."""
+    """Eigenvalues, residuals, real parts of eigenvectors, five times as fast as `numpy.linalg.eig`."""
     real, imaginary, _, vectors, info = dgeev(matrix, 0)
     if info:
         raise EvaluationError("eigenvalues of a small matrix were not found")
@@ -165,7 +164,7 @@ def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], A
 
 
 def _nothing_told(H: Array, right: float, left: float) -> bool:
-    """Whether two dimensions, in closed form, exclude every eigenvalue asked for."""
+    """Whether two dimensions, in closed form, exclude every wanted eigenvalue."""
     a, b, c, d = float(H[0, 0]), float(H[0, 1]), float(H[1, 0]), float(H[1, 1])
     middle, discriminant = 0.5 * (a + d), 0.25 * (a - d) ** 2 + b * c
     root = math.sqrt(abs(discriminant))

@@ -1,8 +1,8 @@
 """Zeros of a function on an accepted arc, for events, targets, faces and switches.
 
-The arc's guide models the function without evaluating H. An arc has no zero if the model keeps the ends' sign and at
-least half of the smaller end value, one zero if the ends differ in sign and the model changes sign once: secants then
-find it on the path. Other arcs are divided.
+The arc's guide models the function without evaluating H. An arc has no zero if the model keeps the ends' sign and half
+of the smaller end value, one zero if the ends differ in sign and the model changes sign once: secants find it on the
+path. Other arcs are divided.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ MONITOR_PLACES = 17
 """Samples of the model; a cubic turns at most twice."""
 
 CONVERGES = 8.0
-"""Of a cubic's error a sixteenth is left at half the length; an eighth is certain. Without it a function that cubics
-between points of the path know badly, as a determinant beside a fold, costs 256 divisions of an arc."""
+"""Least fall of the model's error at half the length; a cubic's falls sixteenfold. Without it functions that cubics
+model badly, as a determinant beside a fold, cost 256 divisions of an arc."""
 
 DIVISIONS, INSIDE_ARC = 8, 1e-6
 """Most divisions of an arc; least relative distance from its ends."""
@@ -48,11 +48,11 @@ SLOPE = 1e-3
 """Step of the difference quotient, in parts: three digits, as the model has."""
 
 TRANSVERSAL = 1e-6
-"""Least tangent component, relative to the largest, along which a point is put exactly on a value."""
+"""Least tangent component, relative to the largest, along which a point is put on a value."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
-    """A zero of a cheap function that changes sign, by `scipy.optimize.brentq`; None for NaN."""
+    """A zero of a cheap function by `scipy.optimize.brentq`; None for NaN."""
     try:
         return float(brentq(function, low, high, disp=False, **options))
     except ValueError:
@@ -60,7 +60,7 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether a function changes sign on an arc, or falls below half of both ends inside."""
+    """Whether a function changes sign on an arc, or falls below half of both ends."""
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign = math.copysign(1.0, ga)
@@ -69,7 +69,7 @@ def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
 
 
 def _least(places: Sequence[float], values: Sequence[float]) -> float:
-    """Least of values and of parabolas through neighbours: exact for a component of a cubic's tangent."""
+    """Least of values and of parabolas through neighbours."""
     least = min(values)
     slopes = [(b - a) / (q - p) for p, q, a, b in zip(places, places[1:], values, values[1:])]
     for p, q, r, a, left, right in zip(places, places[1:], places[2:], values, slopes, slopes[1:]):
@@ -85,8 +85,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 class _Part:
     """A part of an arc, with the function's values and its model from `low` to `high`.
 
-    `error`: of the model of twice the length, where it was divided. `known`: whether errors shrink as a cubic's do, so
-    that this model's is at most an eighth of that.
+    `error`: of the model of twice the length. `known`: whether errors shrink like a cubic's, at least eightfold.
     """
 
     a: Linearization
@@ -101,7 +100,7 @@ class _Part:
     known: bool = False
 
     def divided(self, point: Linearization, g: float, t: float, border: Array, expected: float) -> tuple[_Part, _Part]:
-        """Divide at a point, where the model gave `expected`: a cubic is replaced by two, a series remains."""
+        """Divide at a point, where the model gave `expected`; a cubic becomes two."""
         parts, error = [], abs(g - expected)
         for a, b, ga, gb, low, high in (
             (self.a, point, self.ga, g, self.low, t),
@@ -113,7 +112,7 @@ class _Part:
         return parts[0], parts[1]
 
     def undecided(self, along: Callable[[float], float]) -> float | None:
-        """The place of a division, given the model `along`; None if the ends decide."""
+        """The parameter of a division, or None if the ends decide."""
         sign = math.copysign(1.0, self.ga)
         places = np.linspace(self.low, self.high, MONITOR_PLACES).tolist()
         room = self.error / CONVERGES if self.known and self.ga * self.gb > 0.0 else 0.0
@@ -136,7 +135,7 @@ class _Part:
 def zeros(
     solver: PathSolver, function: Function, arc: Arc, ga: float, gb: float, noise: float = 0.0, direction: int = 0
 ) -> Iterator[Linearization]:
-    """Zeros of a function of (u, v) on the arc, in order, to round-off.
+    """Zeros of a function on the arc, in order, to round-off.
 
     `ga`, `gb`: values at the ends; ga is not zero. `noise`: round-off of values. `direction`: +1 rising only, -1
     falling only.
@@ -185,9 +184,9 @@ def root(
     guess: float | None = None,
     slope: float = math.nan,
 ) -> float | None:
-    """A zero between a and b = (place, value) of different signs; None if the function jumps.
+    """A zero between a and b = (parameter, value); None if the function jumps.
 
-    `enough`: accuracy of places. `guess`, `slope`: a model's zero and slope.
+    `enough`: accuracy. `guess`, `slope`: of a model.
     """
     scale = max(abs(a[1]), abs(b[1]))
     if 0.0 in (a[1], b[1]):
@@ -219,7 +218,7 @@ def root(
 
 
 def on_value(solver: PathSolver, point: Linearization, component: int, value: float) -> Linearization:
-    """Put a component exactly on a value, if the path is transversal to it."""
+    """Put a component exactly on a value, if the path is transversal."""
     if abs(point.tangent[component]) <= TRANSVERSAL * largest(point.tangent):
         return point
     unit, guess = np.zeros_like(point.u), point.u.copy()

@@ -1,4 +1,4 @@
-"""Events: zeros of functions along the path, located on corrected points."""
+"""The interface of events, and common ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from continuation.status import Kind
 
 
 class Event(Protocol):
-    """A monitor and what its zeros do.
+    """A monitor function and what its zeros do.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class Event(Protocol):
     kind : int
         One of `continuation.Kind`.
     terminal : int
-        The trace ends at the k-th occurrence; 0: never.
+        The occurrence that ends the trace; 0: none.
     direction : int
         +1: rising zeros only; -1: falling only; 0: both.
     """
@@ -34,7 +34,7 @@ class Event(Protocol):
 
     @property
     def kind(self) -> int:
-        """Kind of the point."""
+        """Kind."""
         ...
 
     @property
@@ -83,7 +83,7 @@ class TurningPoint:
         return float(v[self.component])
 
     def resolution(self, noise: Array, length: float) -> float:
-        """Tangent component that moves the point by its round-off over the arc.
+        """Tangent component that moves a point by its round-off over the arc.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class TargetValue:
 class KinkPoint:
     """A switching function vanishes; the path continues on another piece.
 
-    The tracer always watches for it; list it among the events to stop there.
+    The tracer always watches for it; list it to stop there.
     """
 
     terminal: int = field(default=1, validator=integer(0))
@@ -129,7 +129,7 @@ class KinkPoint:
     name: str = field(default="kink", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
-        """A constant: the tracer itself watches."""
+        """A constant, since the tracer watches."""
         return 1.0
 
 

@@ -1,4 +1,4 @@
-"""All branches that leave a multiple branch point, where H' loses several ranks.
+"""All branches at a multiple branch point, where H' loses several ranks.
 
 Lyapunov-Schmidt: every zero nearby is u0 + E a + z, E a basis of the kernel of H', z orthogonal to E, g(a) = 0. The
 branching equations (Keller 1977; Allgower and Georg, Section 8.1) are the lowest terms of g; g itself, solved on a
@@ -38,11 +38,11 @@ SAME_ZERO = 1e-3
 """Nearer zeros, relative to the sphere, are one."""
 
 NOISE, ZERO = 1e-11, 1e-14
-"""Round-off of a direction, relative to its largest component, and of a point, in extents."""
+"""Round-off of a direction, relative to its largest component; of a point, in extents."""
 
 BENT, BALANCINGS = 0.1, 20
-"""Terms of higher order off the path, beside the linear ones as far along it: branches of unknowns that stand still
-along the path, and so have no unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
+"""Ratio of higher to linear terms off the path: branches of unknowns that stand still along the path, and so have no
+unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
 
 ISOLATED = 1e-7
 """Least singular value of the scaled equations at an isolated zero."""
@@ -54,7 +54,7 @@ class Unresolved(ArithmeticError):
 
 @frozen(eq=False)
 class Leaving:
-    """A branch: a nearby point `u`, its `tangent`, the unit `ray` at the branch point, in the metric `weights`."""
+    """A branch: a point `u` with `tangent`, and the unit `ray` at the branch point, in the metric `weights`."""
 
     u: Array
     ray: Array
@@ -64,7 +64,7 @@ class Leaving:
 
 @frozen(eq=False)
 class Reduced:
-    """The reduced equations g(a) = 0, in units of the path."""
+    """The reduced equations g(a) = 0, scaled."""
 
     evaluator: Evaluator
     u: Array
@@ -76,7 +76,7 @@ class Reduced:
 
     @classmethod
     def beside(cls, evaluator: Evaluator, u: Array, extent: Array, heading: Array) -> Reduced:
-        """In such units, by two factorisations."""
+        """In units of the path, by two factorisations."""
         sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
         matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
         kernel, left = kernels(matrix)
@@ -88,7 +88,7 @@ class Reduced:
         return cls(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
 
     def bend(self, heading: Array, radius: float) -> float:
-        """How much g is on the sphere off the path, beside how much it changes as far along the path."""
+        """Size of g on the sphere off the path, relative to its change as far along the path."""
         along = self.kernel.T @ heading
         along = radius * along / np.linalg.norm(along)
         off = np.linalg.qr(along[:, None], mode="complete")[0][:, 1:].sum(axis=1) * radius
@@ -114,7 +114,7 @@ class Reduced:
         return np.column_stack([(self.at(a + h * e)[1] - self.at(a - h * e)[1]) / (2.0 * h) for e in np.eye(a.size)])
 
     def newton(self, a: Array, radius: float) -> Array | None:
-        """A zero on the sphere, by Newton's method, or None."""
+        """A zero on the sphere, or None."""
         a = a * (radius / np.linalg.norm(a))
         for _ in range(NEWTON):
             step = _onto_sphere(self.at(a)[1], self.slopes(a, radius), a, radius)
@@ -127,7 +127,7 @@ class Reduced:
 
 
 def _equations(slopes: Array, a: Array, radius: float) -> tuple[Array, Array]:
-    """Derivatives of g = 0 and |a| = radius, divided by their sizes, and the sizes."""
+    """Derivatives of g = 0 and |a| = radius, over their sizes, and the sizes."""
     rows = np.concatenate([slopes, 2.0 * a[..., None, :] / radius], axis=-2)
     sizes = np.maximum(np.linalg.norm(rows, axis=-1), np.finfo(float).tiny)
     return rows / sizes[..., None], sizes
@@ -142,14 +142,14 @@ def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> Array:
 
 @frozen(eq=False)
 class Polynomials:
-    """g near zero as polynomials of degree two to four."""
+    """g near zero as polynomials of degrees two to four."""
 
     powers: Array
     coefficients: Array
 
     @classmethod
     def of(cls, reduced: Reduced, radius: float) -> Polynomials:
-        """Least squares on two spheres."""
+        """Fit by least squares on two spheres."""
         m = reduced.kernel.shape[1]
         sums = [c for degree in (2, 3, 4) for c in combinations_with_replacement(range(m), degree)]
         powers = np.array([[c.count(i) for i in range(m)] for c in sums])
@@ -196,14 +196,10 @@ def _add(found: list[Array], a: Array) -> None:
 
 
 def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step: float) -> list[Leaving]:
-    """All branches that leave a multiple branch point: first the path's, back and onward.
+    """Find all branches that leave a multiple branch point: first the path's, back and onward.
 
-    `heading`: direction of the arriving path. `step`: radius of the sphere, in the metric.
-
-    Raises
-    ------
-    Unresolved
-        If the kernel is too large, or branches do not leave one by one.
+    `heading`: direction of the arriving path. `step`: radius of the sphere, in the metric. Raises `Unresolved` if the
+    kernel is too large, or branches do not leave one by one.
     """
     extent = 1.0 / np.sqrt(weights)
     resting = np.abs(heading) <= NOISE * extent * np.max(np.abs(heading) / extent)
@@ -213,7 +209,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
             bend = reduced.bend(heading / extent, step)
             if not resting.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
-            # Cubic terms; for quadratic ones this halves what the extent is off, in digits.
+            # This suits cubic terms; for quadratic ones it halves the extent's error, in digits.
             extent = np.where(resting, extent * np.sqrt(BENT / bend), extent)
         found = _on_sphere(reduced, step)
         branches = [_branch(reduced, a, step, reduced.extent**-2.0) for a in found]
@@ -244,7 +240,6 @@ def _on_sphere(reduced: Reduced, radius: float) -> list[Array]:
 
 
 def _flat(reduced: Reduced, a: Array, radius: float) -> bool:
-    """Whether a zero is not isolated."""
     rows, _ = _equations(reduced.slopes(a, radius), a, radius)
     return bool(np.linalg.svd(rows, compute_uv=False)[-1] < ISOLATED)
 

@@ -16,13 +16,13 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
 SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
-"""The tracer finds these itself; their monitors are constants."""
+"""Events that the tracer itself finds."""
 
 
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points found by events with `found_on`, and whether these and `found`, from monitors, explain the arc."""
+    """Points found by events with `found_on`, and whether these and `found` explain the arc."""
     watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]
@@ -30,7 +30,7 @@ def found_by_events(
 
 
 def monitored(event: Event, point: Linearization) -> float:
-    """The monitor at a point; an IndexError names the missing component."""
+    """The monitor at a point; an IndexError names a missing component."""
     try:
         return event.monitor(point.u, point.tangent)
     except IndexError as error:
@@ -38,7 +38,7 @@ def monitored(event: Event, point: Linearization) -> float:
 
 
 def _vanishes(event: Event, point: Linearization, first: float, last: float) -> bool:
-    """Whether a monitor is zero, to half of the digits: no more are known of the directions at a branch point."""
+    """Whether a monitor is zero to half of the digits, as directions at a branch point are."""
     return abs(event.monitor(point.u, point.tangent)) <= ROOT_OF_ROUND_OFF * max(abs(first), abs(last))
 
 
@@ -49,10 +49,10 @@ def scan_events(
     arc: Arc,
     branch_point: Linearization | None = None,
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
-    """Events on the arc in order, without those of `found_on`, and the monitors' values at its end.
+    """Events on the arc in order, without those of `found_on`, and end values of monitors.
 
-    A zero at the beginning was counted before; the sign just behind it replaces it. A zero at the `branch_point` on the
-    arc is that point: H' is singular there, and corrections beside it lose their digits.
+    A zero at the beginning was counted before; the sign behind it replaces it. A zero at the `branch_point` on the arc
+    is that point, since corrections beside it lose their digits.
     """
     found: list[tuple[int, Linearization]] = []
     values = []

@@ -1,6 +1,6 @@
 """Simple branch points and their directions, by Newton's method on a minimally augmented system.
 
-Columns are multiplied by extents and rows divided by their sizes.
+Columns are multiplied by extents, rows divided by their sizes.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ DISTINCT_DIRECTIONS = 1e-9
 """Least relative discriminant of two directions: the digits of SECOND."""
 
 HALTED = 1e-9, 100.0
-"""At a simple branch point increments fall below HALTED[0], even a million extents from the origin. Linear convergence
-means several lost ranks: the next singular value was two to four last increments (Bratu's problem on a square)."""
+"""At a simple branch point increments fall below HALTED[0]. Linear convergence means several lost ranks: the next
+singular value was two to four last increments (Bratu's problem on a square)."""
 
 IMPERFECT = 1e-8
 """Largest relative term that the system adds to H; beyond, H has no zero where H' loses rank."""
@@ -42,14 +42,14 @@ IMPERFECT = 1e-8
 class SimpleBranchPoint:
     """A zero of H where H' has rank N - 1.
 
-    `directions`: of the two branches, of unit length in the metric.
+    `directions`: of two branches, of unit length in the metric.
     """
 
     u: Array
     directions: tuple[Array, Array]
 
     def rays(self, heading: Array, weights: Array) -> Array:
-        """Rays back and onward along `heading`, and both ways of the other branch, shape (4, N + 1)."""
+        """Rays back and onward along `heading`, and those of the other branch, shape (4, N + 1)."""
         along = [inner(weights, heading, d) for d in self.directions]
         k = int(np.argmax(np.abs(along)))
         onward, other = self.directions[k] * np.sign(along[k]), self.directions[1 - k]
@@ -81,7 +81,7 @@ class ScaledDerivative:
 
 
 def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
-    """H' = [H_y, H_lam] as a new array, shape (N, N + 1), dense or sparse."""
+    """H' = [H_y, H_lam], shape (N, N + 1), dense or sparse."""
     H_y, H_lam = evaluator.derivative(u[:-1], float(u[-1]))
     evaluator.counts.jacobians += 1
     column = np.asarray(H_lam, dtype=float)
@@ -95,7 +95,7 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
 
 
 def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> Array:
-    """Largest entry of each row of H', in units of the path; 1 for a zero row."""
+    """Largest entry of each row of H', scaled; 1 for a zero row."""
     sizes = np.zeros(extent.size - 1)
     for u in points:
         full = abs(full_derivative(evaluator, u))
@@ -109,10 +109,10 @@ def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) ->
 def branch_point_near(
     evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
 ) -> SimpleBranchPoint | None:
-    """Solve H(u) + beta b = 0, gamma(u) = 0 by Newton's method; None if that finds no simple branch point.
+    """Solve H(u) + beta b = 0, gamma(u) = 0 by Newton's method; None without a simple branch point.
 
-    The system is regular at one, with beta = 0 (Govaerts, Section 8.1). An increment takes one factorisation and five
-    H'. `guess`, `heading`: approximate point and direction; |heading| bounds the correction. `rows`: see `row_sizes`.
+    The system is regular at one, with beta = 0 (Govaerts, Section 8.1). `guess`, `heading`: approximate point and
+    direction; |heading| bounds the correction. `rows`: see `row_sizes`.
     """
     extent, n = 1.0 / np.sqrt(weights), guess.size - 1
     scaled = ScaledDerivative(evaluator, extent, rows)
@@ -144,7 +144,7 @@ def branch_point_near(
 
     def done(size: float) -> bool:
         lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
-        # Here stalled increments are round-off; if they grow, several ranks are lost.
+        # Stalled increments are round-off; if they grow, several ranks are lost.
         near = size < POLISHED_NEARLY * max(newton.ratio, 1.0)
         return lost or size <= POLISHED or (near and newton.ratio >= HALVING)
 
@@ -157,15 +157,14 @@ def branch_point_near(
             here = at(u)
             if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
-            # After an early halt H' is known only to the last increment.
+            # After an early halt H' is known to the last increment only.
             halted = newton.size > HALTED[0]
             accuracy = max(RANK, HALTED[1] * newton.size)
             if (here.weak or halted) and kernels(scaled.at(u), accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
             if halted:
-                # At a regular zero one more increment is round-off; at a multiple one branches touch, or more than two
-                # cross.
+                # At a regular zero one more increment is round-off; at a multiple one branches touch, or more cross.
                 newton.run(increment, measure, lambda size: True)
                 if newton.size > HALTED[0]:
                     return None
@@ -181,11 +180,11 @@ def branch_point_near(
 
 
 def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Array) -> tuple[Array, Array] | None:
-    """Directions of two branches, in units of the path; None unless they cross transversally.
+    """Directions of two branches, scaled; None unless they cross transversally.
 
     The roots of sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 (Keller 1977; Allgower and Georg, Section 8.1).
     """
-    # The path's direction, nearly a root, comes first to avoid cancellation.
+    # The path's direction comes first to avoid cancellation.
     kernel = np.linalg.qr(here.right[0])[0]
     w = np.linalg.qr(kernel @ np.column_stack([kernel.T @ heading, generic_vector(2)]))[0]
     rows = [scaled.second(u, here.left[0][:, 0], w[:, i]) for i in range(2)]
@@ -193,7 +192,6 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     discriminant = b * b - a * c
     if not discriminant > DISTINCT_DIRECTIONS * (b * b + abs(a * c)):
         return None
-    # Homogeneous coordinates, without cancellation.
     root = np.sqrt(discriminant)
     q = -(b + (root if b >= 0 else -root))
     return w @ np.array([q, a]), w @ np.array([c, q])

@@ -1,1 +1,1 @@
-"""Kinks: points where a path of a piecewise smooth map changes pieces."""
+"""Kinks, where a path of a piecewise smooth map changes pieces."""

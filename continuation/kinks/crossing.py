@@ -14,16 +14,15 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
 STILL = SIX_DIGITS * SIX_DIGITS
-"""Smaller parameter shares of a tangent are round-off: no turning kink."""
+"""Parameter's share of a tangent that is round-off."""
 
 
 @frozen(eq=False)
 class Crossing:
     """A kink, resolved as far as possible.
 
-    `at`: The kink with the incoming tangent. `switches`: Those that vanish. `rays`, of shape (k, N + 1): First back,
-    then onward, then others. `onward`: The kink on the next piece, or None. `signs`: Of that piece. `reason`: Why the
-    path ends, if rays may be missing.
+    `at`: with the incoming tangent. `switches`: those that vanish. `rays`, shape (k, N + 1): back, onward, others.
+    `onward`: the kink on the next piece, with its `signs`, or None. `reason`: why rays may be missing.
     """
 
     at: Linearization
@@ -54,8 +53,7 @@ def cross(
     The path continues on the straightest branch with its determinant's sign, as if the map were perturbed (Allgower and
     Georg, Section 2.1).
 
-    `solver`, `signs`: Of the incoming piece. `point`: The kink. `orientation`: The determinant's sign. `beta`:
-    Vanishing switches.
+    `solver`, `signs`: of the incoming piece. `beta`: vanishing switches.
     """
     back = -point.tangent[None]
     try:

@@ -15,18 +15,18 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
 DIP = 0.25
-"""A switch that falls below this part of its values on both sides may have two zeros: the path is checked."""
+"""Part of a switch's values on both sides below which two zeros are possible."""
 
 TIED = NOISE_LOOKS * NOISE_LOOKS
-"""Two round-off samples agree within this factor. A switch this near to zero was zero at the end of the arc before, and
-switches this near to zero vanish together."""
+"""Factor between two round-off samples. A switch this near to zero was zero at the end of the arc before; switches this
+near to zero vanish together."""
 
 ZEROS_ON_ARC = 50
-"""Most zeros located on one arc: neighbouring path points have no more between them."""
+"""Most zeros located on one arc."""
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
-    """The effect of round-off at a path point on the switches, shape (m,)."""
+    """Round-off of the switches at a path point, shape (m,)."""
     evaluator, generic = solver.evaluator, generic_vector(point.u.size)
     terms = evaluator.round_off(point.u, evaluator.residual(point.u))
     signs = np.sign(generic)
@@ -42,8 +42,8 @@ def first_zero(
 ) -> tuple[Linearization, tuple[int, ...]] | None:
     """The first point of an arc where a switch vanishes, with all that vanish there, or None.
 
-    A switch that vanishes at the beginning counts once it has left zero. `signs`: Of the arc's piece. Raises
-    `EvaluationError` if the path cannot be evaluated, or has too many zeros.
+    A switch that vanishes at the beginning counts once it has left zero. `signs`: of the arc's piece. `EvaluationError`
+    if the path cannot be evaluated or has too many zeros.
     """
     s = np.array(signs)
     try:
@@ -76,7 +76,7 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the straight way from a path point to u, known to half of the digits, stays on its piece."""
+    """Whether the way from a path point to u stays on its piece, to half of the digits."""
     try:
         way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
@@ -88,7 +88,7 @@ def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> 
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:
-    """Switches with a wrong sign after the beginning, or a dip between grid points."""
+    """Switches with a wrong sign after the beginning, or a dip."""
     wrong = (grid[1:] < 0.0).any(axis=0) | (grid[-1] <= 0.0)
     left, middle, right = grid[:-2], grid[1:-1], grid[2:]
     bend = left - 2.0 * middle + right
@@ -102,7 +102,7 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
-    """The first zero of the suspects and of switches that changed sign before it."""
+    """The first zero of suspects and of switches that changed sign before it."""
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
@@ -132,8 +132,6 @@ def _first(
 def _zero(
     solver: PathSolver, switch: Function, noise: float, arc: Arc, end: Linearization, values: Array
 ) -> Linearization | None:
-    """The first zero of one switch up to `end`; `values` are on the grid."""
-
     def seen(point: Linearization) -> float:
         g = switch(point.u, point.tangent)
         return g if abs(g) > noise else 0.0

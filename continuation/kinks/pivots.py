@@ -1,7 +1,6 @@
 """Passes corners where many switches vanish, by pivots in the small LCP of their rays.
 
-``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the vanishing distances, v their complements, e the driving
-variable.
+``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``, with distances u, complements v and the driving variable e.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ PIVOTS_PER_SWITCH = 50
 class Ray:
     """A ray of the small LCP.
 
-    `grown`, of shape (m,): v' >= 0. `driven`: e', of any sign.
+    `grown`: v' >= 0, shape (m,). `driven`: e'.
     """
 
     grown: Array
@@ -38,7 +37,7 @@ class Ray:
 class Way:
     """The basis behind a corner.
 
-    `switched`: Switches that change pieces. `driver`: The next driving pair. `ray`: Its ray.
+    `switched`: switches that change. `driver`: the next driving pair.
     """
 
     switched: tuple[int, ...]
@@ -49,9 +48,7 @@ class Way:
 def way(S: Array, r: Array) -> Way | None:
     """The basis behind the corner, by pivots with perturbed switches, or None.
 
-    References
-    ----------
-    Cottle, Pang and Stone, section 4.9: that a perturbed problem, like a lexicographic rule, resolves ties.
+    A perturbed problem, like a lexicographic rule, resolves ties (Cottle, Pang and Stone, section 4.9).
     """
     m = r.size
     apart = 1.5 + 0.5 * generic_vector(m)

@@ -7,8 +7,8 @@ C_tau G, G the gradients of beta. With M = [H'_sigma; border], M v = e_{N+1} and
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-of order |beta|. Derivatives may be differences, of eight digits: six decide. For many switches pivots find one ray:
-w = D (p - n), D the incoming signs, p and n complementary, p = (I + D G Z D) n + alpha D G v.
+of order |beta|. For many switches pivots find one ray: w = D (p - n), D the incoming signs, p and n complementary, p =
+(I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 SWITCHES_ENUMERATED = 10
-"""Most switches of which all 2^10 pieces are tried; for more, pivots find one ray."""
+"""Most switches for which all 2^10 pieces are tried; for more, pivots find one ray."""
 
 
 class UnresolvedError(ArithmeticError):
@@ -46,7 +46,7 @@ class Ray:
 
 @frozen(eq=False)
 class Corner:
-    """A kink seen from one piece, and the vanishing switches."""
+    """A kink and its vanishing switches, from one piece."""
 
     pieces: Pieces
     evaluator: Evaluator
@@ -66,17 +66,15 @@ class Corner:
         return Evaluator(self.pieces.piece(signs), self.evaluator.counts)
 
     def tilts(self, v: Array) -> Array:
-        """Derivatives along v of the vanishing switches."""
+        """Derivatives of the vanishing switches along v."""
         return self.pieces.along(self.point.u, v)[list(self.beta)]
 
 
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
     """All branches that leave the corner, each once.
 
-    For too many switches, pivots give one ray if a path has `come` there.
-
-    Raises `UnresolvedError` if there are too many switches, pieces disagree on borders, or a kernel has more
-    dimensions; `EvaluationError` if a derivative fails.
+    For too many switches, pivots give one ray if a path has `come` there. Raises `UnresolvedError` if the
+    rays cannot be determined.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(
@@ -114,8 +112,8 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 class _Family:
     """Derivatives of the corner's pieces, as low-rank changes of one.
 
-    `sizes`: Switches' derivatives in general directions `R`; `GR`: along each. `columns`: The c_j of H'_{j changed} -
-    H'_sigma = c_j grad s_j. `Z`: M^{-1} of these. `GZ`: The switches' derivatives along `Z`.
+    `sizes`: of the switches' derivatives `GR` in directions `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad
+    s_j. `Z`: M^{-1} of these. `GZ`: the switches' derivatives along `Z`.
     """
 
     corner: Corner
@@ -169,7 +167,7 @@ class _Family:
             v = self._factored(signs)
             w = self.corner.tilts(v)
         else:
-            # In units of the switches, so that singular values are comparable.
+            # Units of the switches make singular values comparable.
             small = np.eye(len(taus)) + self.GZ * (flipped * self.sizes)[None, :] / self.sizes[:, None]
             small = np.column_stack([small, -self.tilts / self.sizes])
             _, values, rows = np.linalg.svd(small)
@@ -222,7 +220,6 @@ class _Family:
         return found[0]
 
     def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
-        """Raise unless the kernel is a plane without directions inside the piece."""
         a, b = np.array(taus), kernel[:, :-1]
         if len(kernel) == 2:
             # A cone in the plane has edges on these lines.
@@ -239,7 +236,6 @@ RAY_LENGTHS = 1e-3, 1e-4, 1e-5
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
-    """Whether the corrected point ahead along v has the piece's signs."""
     point, evaluator = corner.point, corner.on(signs)
     which = [corner.beta[k] for k in unsure]
     try:

@@ -22,7 +22,7 @@ from continuation.step.start import SingularStartError, StartError, first_point,
 from continuation.tolerance import Tolerance
 
 PIECES = 10
-"""Corrections of a start, each of which may change its piece."""
+"""Limit of corrections, each of which may change the piece."""
 
 
 def begin(
@@ -34,10 +34,9 @@ def begin(
     direction: int,
     target: float | None,
 ) -> tuple[Linearization, float, Signs]:
-    """The first point, a first step length and the piece's signs; binds the evaluator.
+    """The first point, step length and signs; binds the evaluator.
 
-    `u`, of shape (N + 1,): The homotopy's start. `start`: A start with direction. Raises `StartError` without a path
-    point or branch in that direction.
+    `u`: the homotopy's start. `start`: one with direction. `StartError` without a branch in that direction.
     """
     try:
         if start is not None and start[0].size == u.size:
@@ -88,7 +87,6 @@ def _out_of_kink(
 
 
 def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
-    """The signs a little ahead, half of the digits."""
     return pieces.signs(u + v * (ROOT_OF_ROUND_OFF * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
 
 

@@ -1,4 +1,4 @@
-"""Dense bordered systems: one LU factorisation of the whole matrix."""
+"""Dense bordered systems, by LU of the whole matrix."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
-"""Smallest row (column) size over the largest; above it scaling changes nothing (LAPACK)."""
+"""Smallest row (column) size over the largest, above which LAPACK does not scale."""
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
-    """Sign of the determinant: row exchanges and negative pivots are counted."""
-    # Counting bytes is three times as fast as numpy for short arrays.
+    """Sign of the determinant, from row exchanges and negative pivots."""
+    # For short arrays counting bytes is three times as fast as numpy.
     odd = (exchanges != _rows(len(exchanges))).tobytes().count(1) + np.signbit(pivots).tobytes().count(1)
     return -1 if odd % 2 else 1
 
@@ -34,13 +34,13 @@ def _rows(n: int) -> NDArray[np.int32]:
 
 
 HIDDEN = EPS / SIX_DIGITS
-"""A scaled entry below this, relative to the largest, may decide its row; LU leaves six of its digits, so solutions are
-corrected."""
+"""A scaled entry below this, relative to the largest, may decide its row; solutions are corrected, as LU leaves six of
+its digits."""
 
 
 @frozen(eq=False)
 class Dense:
-    """LU factors of the bordered matrix; row and column scaling makes pivots independent of units."""
+    """LU factors of the bordered matrix, scaled so that pivots do not depend on units."""
 
     finite: ClassVar[bool] = True
     """Solutions are finite, or `solve` raises."""
@@ -51,7 +51,7 @@ class Dense:
     columns: Array | None
     """Column factors."""
     whole: tuple[Array, Array] | None = None
-    """The scaled matrix and its magnitudes, to correct solutions."""
+    """The scaled matrix and its magnitudes."""
 
     @property
     def sign(self) -> int:
@@ -97,7 +97,7 @@ class Dense:
 def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     """Factor ``[[matrix, column], [row']]`` by LU in O(N^3).
 
-    Raises `SingularError` if a pivot is zero or an entry is not finite.
+    Raises `SingularError` if a pivot is zero or an entry not finite.
     """
     n = len(column)
     whole = np.empty((n + 1, n + 1), order="F")
@@ -139,7 +139,7 @@ class LU:
         return lu_sign(self.pivots, self.lu.diagonal())
 
     def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
+        """The solution, shape (N,)."""
         return np.asarray(dgetrs(self.lu, self.pivots, rhs)[0])
 
 

@@ -45,7 +45,7 @@ class Elimination:
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
-    """Border A by columns, given as W = A^-1 P, and rows [R, S], (k, n + k).
+    """Border A by W = A^-1 P and rows [R, S], (k, n + k).
 
     Raises `SingularError` if k > 1 and the whole is singular.
     """
@@ -59,7 +59,7 @@ def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimin
 
 @frozen(eq=False, slots=False)
 class BlockElimination:
-    """A bordered system, solved with factors of a well-conditioned H_y."""
+    """A bordered system, solved by factors of a well-conditioned H_y."""
 
     bordered: BorderedMatrix
     factor: Factored
@@ -72,7 +72,7 @@ class BlockElimination:
         return self.factor.sign * self.elimination.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,); if inaccurate, by factoring the whole."""
+        """The solution, shape (N + 1,); if inaccurate, by factoring the whole."""
         z, accurate = refined(self.bordered, self.elimination.solve, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 
@@ -93,7 +93,7 @@ def eliminate(
     factor: Callable[[Any], Factored | None],
     whole: Callable[[], BorderedSystem],
 ) -> BorderedSystem:
-    """Factor H_y and border it; near a fold factor the whole matrix. `SingularError` if singular or not finite.
+    """Factor H_y and border it; near a fold factor the whole. `SingularError` if singular or not finite.
 
     One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED both signs in ``det
     M = det H_y * schur`` are certain (W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM

@@ -17,14 +17,16 @@ def require_real(name: str, dtype: np.dtype[Any]) -> None:
 
 
 def real(name: str, entries: Any) -> Array:
-    """The entries as float64, or TypeError with `name`."""
+    """Entries as float64, or TypeError with `name`."""
     array = np.asarray(entries)
     require_real(name, array.dtype)
     return array if array.dtype == np.float64 else array.astype(float)
 
 
 def extended(matrix: Matrix, columns: Array, rows: Array) -> Matrix:
-    """[[matrix, columns], [rows]] of shapes (n, m), (n, k), (l, m + k), dense or csc; faster than `block_array`."""
+    """The matrix [[matrix, columns], [rows]] of shapes (n, m), (n, k), (l, m + k), dense or csc; faster than
+    `block_array`.
+    """
     if not sp.issparse(matrix):
         return np.vstack([np.hstack([matrix, columns]), rows])
     part, (n, m) = sp.csc_array(matrix), matrix.shape

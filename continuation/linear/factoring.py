@@ -12,15 +12,14 @@ from continuation.linear.look import Look
 from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
 METHODS = ("auto", SuperLUMethod.name, "cholmod")
-"""Names."""
 
 CHOLMOD_FROM = 1000
-"""Least order for CHOLMOD: on five-point Laplacians it halves SuperLU's time from n = 2,000 on; below 400 SuperLU is
-quicker."""
+"""Least order for CHOLMOD: on five-point Laplacians it halves SuperLU's time from n = 2,000 on; below 400 SuperLU
+wins."""
 
 
 def check_method(argument: str, name: object) -> str:
-    """The method's name, checked; ValueError if unknown, ImportError if not installed."""
+    """The method's name; ValueError if unknown, ImportError if not installed."""
     if not isinstance(name, str) or name not in METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
         raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")
@@ -31,16 +30,10 @@ def check_method(argument: str, name: object) -> str:
 
 @define(eq=False)
 class Factoring:
-    """Factors sparse matrices and counts which method did.
+    """Factors sparse matrices and counts the methods.
 
-    Attributes
-    ----------
-    method : str
-        "auto", "superlu", or "cholmod" for definite matrices.
-    direct : SuperLUMethod
-        The method for all other matrices.
-    used : dict
-        By name: number of matrices, largest fill.
+    `method`: "auto", "superlu", or "cholmod" for definite matrices. `direct`: for all others. `used`: number of
+    matrices and largest fill by name.
     """
 
     method: str = "auto"

@@ -1,8 +1,8 @@
-"""One bordered system [[A, P], [R, S]] for a matrix A of any rank, and the null spaces that it gives.
+"""A bordered system [[A, P], [R, S]] for a matrix A of any rank, and A's null spaces.
 
-Where A has lost at most as many ranks as there are columns P, the whole is regular for almost all borders, and the
-solutions for unit vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations of Dynamical
-Equilibria, Sections 3.3 and 4.1).
+If A lost at most as many ranks as P has columns, the whole is regular for almost all borders; solutions for unit
+vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Sections 3.3
+and 4.1).
 """
 
 from __future__ import annotations
@@ -24,34 +24,24 @@ from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
-"""Ratio of null vectors to border above which they replace it; the angle is 84 degrees, and a digit is lost."""
+"""Ratio of null vectors to border above which they replace it: at 84 degrees, and a digit is lost."""
 
 REFRESHED = 4
 """Limit of attempts; more do not help if two ranks are lost."""
 
 BORDERS = 5
-"""Lost ranks that can be counted: two more than `continuation.events.multiple` resolves, for its message."""
+"""Lost ranks that are counted: two more than `continuation.events.multiple` resolves, for its message."""
 
 RANK = SIX_DIGITS
-"""Smaller singular values, relative to A, count as zero."""
+"""Singular values below this, relative to A, are zero."""
 
 
 @frozen(eq=False, slots=False)
 class Bordered:
     """[[A, P], [R, S]], factored whole; A, (n, m), is dense or sparse, real or complex.
 
-    Attributes
-    ----------
-    shape : (int, int)
-        Of A.
-    matrix : ndarray or sparse array
-        The whole; sparse border rows are scaled.
-    columns : ndarray
-        P, (n, l).
-    lu : object
-        Its factors.
-    scale : ndarray, shape (n + k, 1)
-        Row factors.
+    `shape`: of A. `matrix`: the whole, with scaled border rows if sparse. `columns`: P, (n, l). `lu`: its factors.
+    `scale`, (n + k, 1): row factors.
     """
 
     shape: tuple[int, int]
@@ -62,13 +52,13 @@ class Bordered:
 
     @classmethod
     def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
-        """Factor A with columns, (n, l), and rows, (k, m + l) or (k, m) if S = 0, or raise `SingularError`."""
+        """Factor A with columns, (n, l), and rows, (k, m + l) or (k, m) if S = 0; SingularError if singular."""
         (n, m), sparse = matrix.shape, sp.issparse(matrix)
         rows = np.hstack([rows, np.zeros((len(rows), m + columns.shape[1] - rows.shape[1]))])
         scale = np.ones((n + len(rows), 1))
         if sparse:
             # Weak rows are eliminated late and do not fill the factors (Laplacian of two species, 2000 unknowns: 17
-            # thousand entries, 673 thousand at 1e-4); one correction restores the lost half of the digits.
+            # thousand entries, 673 thousand at 1e-4); one correction restores the lost digits.
             size = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
             scale[n:, 0] = ROOT_OF_ROUND_OFF * size / np.abs(rows).max(axis=1)
         whole = extended(matrix, columns, rows * scale[n:])
@@ -92,7 +82,6 @@ class Bordered:
         return np.asarray(x.reshape(rhs.shape))
 
     def _sparse(self, rhs: Array, adjoint: bool) -> Array:
-        """One correction makes up for weak pivots."""
         how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
         rhs = rhs if adjoint else rhs * self.scale
         x: Array = self.lu.solve(rhs, how)
@@ -109,25 +98,25 @@ class Bordered:
 
     @property
     def weak(self) -> bool:
-        """Whether a general solution is so large that the whole may be singular, as it is if more ranks are lost."""
+        """Whether solutions are so large that the whole may be singular: more ranks are lost."""
         return largest(self.solve(generic_vector(len(self.scale)))) * ROOT_OF_ROUND_OFF >= 1.0
 
     @cached_property
     def right(self) -> tuple[Array, Array]:
-        """Columns that span the right null space, (m, k), and their defects, which vanish with it, (l, k)."""
+        """A basis of the right null space, (m, k), and defects, which vanish with it, (l, k)."""
         (n, m), size = self.shape, len(self.scale)
         found = self.solve(np.eye(size, size - n, -n))
         return found[:m], found[m:]
 
     @cached_property
     def left(self) -> tuple[Array, Array]:
-        """Columns that span the left null space, (n, l), and their defects, (k, l)."""
+        """A basis of the left null space, (n, l), and defects, (k, l)."""
         (n, m), size = self.shape, self.matrix.shape[1]
         found = self.solve(np.eye(size, size - m, -m), adjoint=True)
         return found[:n], found[n:]
 
     def refreshed(self, matrix: Matrix) -> Bordered:
-        """Another matrix, bordered with these null vectors: the best condition."""
+        """Another matrix, bordered with these null vectors for the best condition."""
         return Bordered.of(matrix, np.linalg.qr(self.left[0])[0], np.linalg.qr(self.right[0])[0].conj().T)
 
 
@@ -146,9 +135,9 @@ class NearlySingular:
 
 
 def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
-    """Border a matrix, (n, n), by unit vectors b and c, or, if nearly orthogonal to its null vectors, by these.
+    """Border a matrix, (n, n), by unit vectors b and c, or by its null vectors if nearly orthogonal.
 
-    Matrices share no state, so resumed paths are the same. Raises `SingularError` if several ranks are lost.
+    Raises `SingularError` if several ranks are lost.
     """
     for _ in range(REFRESHED):
         factors = Bordered.of(matrix, b[:, None], c.conj()[None])

@@ -15,11 +15,11 @@ from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
 
 LARGEST_RESIDUAL = 1e-4
-"""Relative to the right-hand side; that of condition number 1e12."""
+"""Largest residual relative to the right-hand side: that of condition number 1e12."""
 
 RESTART = 100
 CYCLES = 20
-"""GMRES keeps RESTART vectors and stops after CYCLES restarts."""
+"""GMRES keeps RESTART vectors, for CYCLES restarts."""
 
 
 def _operator(operator: Any) -> Matrix:
@@ -28,7 +28,7 @@ def _operator(operator: Any) -> Matrix:
 
 @frozen(eq=False)
 class Operator:
-    """A matrix known by its products, with an optional preconditioner.
+    """A matrix given by its products, with an optional preconditioner.
 
     Parameters
     ----------
@@ -76,12 +76,12 @@ class Krylov:
         return 0
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,); `SingularError` if GMRES does not converge."""
+        """The solution, shape (N + 1,); `SingularError` if GMRES fails."""
         rhs = join(r, self.scale * rho)
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
             left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
-        # A singular operator yields z of size 1 / eps, whose residual is round-off.
+        # A singular operator yields z of size 1 / eps, with round-off as residual.
         if not (accurate and left <= LARGEST_RESIDUAL):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
@@ -118,7 +118,7 @@ def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
     first = matrix.preconditioner.matvec
     W, border = first(column), bordered.row
     if border[-1] == border[:-1] @ W:
-        # The preconditioner is no inverse: any other corner will do.
+        # Another corner will do, as the preconditioner is no inverse.
         border = np.append(border[:-1], border[-1] + np.linalg.norm(border))
     inverse = eliminated(first, W[:, None], border[None])
     return Krylov(bordered, scale, LinearOperator((n + 1, n + 1), matvec=inverse.solve, dtype=float))

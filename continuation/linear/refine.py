@@ -13,14 +13,14 @@ from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
-"""Limit per solve: each correction gains the digits of TRUSTED."""
+"""Corrections per solve: each gains the digits of TRUSTED."""
 
 BACKWARD_ERROR = 16 * EPS
 """Row-wise backward error of round-off."""
 
 TRUSTED = SIX_DIGITS
 """Largest relative error of H_y^{-1} H_lam, and smallest relative Schur complement: refinement then gains six digits a
-step, and both signs are certain."""
+step, and signs are certain."""
 
 
 class Factored(Protocol):
@@ -32,7 +32,7 @@ class Factored(Protocol):
         ...
 
     def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,); `rhs` is not modified."""
+        """The solution, shape (N,); `rhs` is kept."""
         ...
 
 
@@ -41,11 +41,8 @@ class BorderedMatrix:
     """``M = [[A, column], [row']]``, to measure residuals with."""
 
     matrix: Matrix
-    """Supports ``@``, shape (N, N)."""
     column: Array
-    """(N,)."""
     row: Array
-    """(N + 1,)."""
     row_sums: Array
     """Row sums of |A|, or a bound, shape (N,)."""
 
@@ -73,7 +70,7 @@ class BorderedMatrix:
         return gap
 
     def negligible(self, gap: Array, z: Array, rhs: Array) -> bool:
-        """Whether `gap`, the residual of `z`, is round-off in each row, in any units (Oettli & Prager 1964)."""
+        """Whether the residual `gap` of `z` is round-off in each row, in any units (Oettli & Prager 1964)."""
         largest = np.abs(z[:-1]).max()
         size = np.abs(rhs)
         size[:-1] += self.row_sums * largest + np.abs(self.column * z[-1])
@@ -91,7 +88,7 @@ def join(r: Array, rho: float) -> Array:
 
 @without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
-    """Solve M z = rhs by an approximate inverse and corrections; also whether the residual is round-off."""
+    """Solve M z = rhs by an approximate inverse with corrections; also whether the residual is round-off."""
     z = solve(rhs)
     for _ in range(REFINEMENTS):
         gap = bordered.residual(z, rhs)

@@ -1,4 +1,4 @@
-"""Numpy's warnings switched off once: switching takes as long as a small residual."""
+"""Numpy's warnings switched off once, as switching is slow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Found = TypeVar("Found")
 _silent: ContextVar[bool] = ContextVar("silent", default=False)
 
 silent: Callable[[], bool] = _silent.get
-"""Whether this thread or task is within a `Silence`."""
+"""Whether this thread or task is in a `Silence`."""
 
 
 class Silence:
@@ -36,7 +36,7 @@ class Silence:
 
 
 def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Found]], Callable[Given, Found]]:
-    """Decorator: no numpy warnings within; free of charge in a `Silence`."""
+    """Decorator: no numpy warnings; free in a `Silence`."""
 
     def decorate(function: Callable[Given, Found]) -> Callable[Given, Found]:
         guarded = np.errstate(**ignored)(function)

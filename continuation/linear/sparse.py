@@ -14,7 +14,7 @@ from continuation.linear.system import BorderedSystem, SingularError, Solver
 
 
 def canonical(matrix: Matrix) -> Matrix:
-    """The matrix in csc format, without duplicates."""
+    """The matrix as csc, without duplicates."""
     matrix = csc_array(matrix, dtype=float)
     if not matrix.has_canonical_format:
         matrix = matrix.copy()
@@ -23,7 +23,7 @@ def canonical(matrix: Matrix) -> Matrix:
 
 
 def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
-    """Factor the bordered matrix as one sparse matrix; `SingularError` if singular or not finite.
+    """Factor the bordered matrix whole; `SingularError` if singular or not finite.
 
     The dense border row doubles fill and time (five-point Laplacian, m = 100), so elimination comes first.
     """
@@ -49,5 +49,5 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
 
 
 def factor_square(matrix: Matrix) -> SparseFactor | None:
-    """Factor a csc matrix by the method that suits it; None if a pivot is zero."""
+    """Factor a csc matrix by a suitable method; None if a pivot is zero."""
     return Factoring().factor(matrix)

@@ -1,4 +1,4 @@
-"""Eigenvalues of H_y for stability: all, the rightmost, or only signs."""
+"""Eigenvalues of H_y for stability."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ ALL_OF_DENSE = 100
 """Largest order for all eigenvalues: 8 ms, and 80 ms at twice the order."""
 
 WANTED = 6
-"""Default number of eigenvalues beyond that."""
+"""Default number of eigenvalues for others."""
 
 OFF_AXIS = EPS / SIX_DIGITS
-"""Least real part of an unstable eigenvalue, relative to the largest modulus; events are located to that."""
+"""Least real part of an unstable eigenvalue, relative to the largest modulus: events are located to that."""
 
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
@@ -41,8 +41,7 @@ the dimension has grown by a sixth, so that all tests cost little more than the 
 class Spectrum:
     """Known eigenvalues of a matrix.
 
-    `values`: the rightmost first, empty if only signs are known. `unstable`: number of positive real parts, complete if
-    `covered`.
+    `values`: the rightmost first, empty if unknown. `unstable`: number of positive real parts, complete if `covered`.
     """
 
     values: np.ndarray[Any, np.dtype[np.complex128]]
@@ -77,25 +76,12 @@ class Spectrum:
 
 
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
-    """The eigenvalues of ``side * matrix`` that decide on stability.
+    """The eigenvalues of ``side * matrix`` that decide stability.
 
-    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k nearest to
-    a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
-    Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
-
-    Parameters
-    ----------
-    matrix : ndarray, sparse array, Banded or Symmetric, shape (N, N)
-    side : {1, -1}
-    k : int, optional
-        6 by default.
-
-    Raises
-    ------
-    TypeError
-        If the matrix is an operator.
-    ArithmeticError
-        If Arnoldi's method does not converge.
+    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k (default 6)
+    nearest to a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical
+    Equilibria, Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
+    Raises `TypeError` for an operator, `ArithmeticError` if Arnoldi's method does not converge.
     """
     if isinstance(matrix, Symmetric):
         return Spectrum(np.empty(0, dtype=complex), factor_ldl(matrix.matrix)[0].count(side))
@@ -137,7 +123,7 @@ def _counted(values: Any, covered: bool = True) -> Spectrum:
 
 
 def bounds(matrix: Matrix) -> tuple[float, float]:
-    """Bounds of real and imaginary parts of eigenvalues (Bendixson's theorem, Gershgorin's discs)."""
+    """Bounds of eigenvalues' real and imaginary parts (Bendixson's theorem, Gershgorin's discs)."""
     turned = csc_array(matrix.T) if issparse(matrix) else matrix.T
     rows = abs(matrix + turned).sum(axis=1)
     diagonal = matrix.diagonal()
@@ -149,7 +135,7 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
-    # A singular matrix needs a shift. If all are stable, the shift is comparable to oscillations.
+    # A singular matrix needs a shift; if all eigenvalues are stable, one comparable to oscillations.
     least = SHIFT * SIX_DIGITS * float(np.abs(matrix.diagonal()).max())
     shift = max(SHIFT * max(real, 0.1 * imaginary), least)
     inverse, wanted, solves = _solver(matrix, shift), min(k, n), 0
@@ -157,15 +143,15 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        # The square is enough for an eigenvalue on the axis, as events are located to OFF_AXIS.
+        # The square suffices for an eigenvalue on the axis, as events are located to OFF_AXIS.
         return bool(((off <= SIX_DIGITS) | (error <= SIX_DIGITS**2 * np.abs(theta))).all())
 
     while True:
         try:
             theta, more = dominant(inverse, generic_vector(n), wanted, known)
         except ArithmeticError:
-            # The bound is far from the eigenvalues, as that of differences of high order: Arnoldi's steps grow like the
-            # root of the shift (Saad, Numerical Methods for Large Eigenvalue Problems, Section 6.6).
+            # The bound is far from the eigenvalues: Arnoldi's steps grow like the root of the shift (Saad, Numerical
+            # Methods for Large Eigenvalue Problems, Section 6.6).
             if shift <= least:
                 raise
             solves += min(n, DIMENSIONS * (wanted + 1))
@@ -187,7 +173,7 @@ def dominant(
 ) -> tuple[Any, int]:
     """The k eigenvalues of largest modulus, by Arnoldi's method, and the number of applications.
 
-    `known(theta, error)`: whether they are accurate. Raises `ArithmeticError` if not.
+    Raises `ArithmeticError` unless `known(theta, error)`.
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))
@@ -196,7 +182,7 @@ def dominant(
     for j in range(1, most + 1):
         x = apply(Q[j - 1])
         size = float(np.linalg.norm(x))
-        # Twice: once leaves spurious copies of eigenvalues.
+        # Once leaves spurious copies of eigenvalues.
         for _ in range(2):
             part = Q[:j] @ x
             H[:j, j - 1] += part

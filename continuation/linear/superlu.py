@@ -34,16 +34,8 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 class SparseFactor:
     """A factored sparse matrix.
 
-    Attributes
-    ----------
-    name : str
-        The method's.
-    solve : callable
-        Solves A x = rhs, shape (N,); keeps `rhs`.
-    fill : int
-        Number of entries; 0 if unknown.
-    tell_sign : callable
-        Sign of det A; 0 if unknown.
+    `solve`: solves A x = rhs, shape (N,), and keeps `rhs`. `fill`: number of entries, or 0. `tell_sign`: sign of det A,
+    or 0.
     """
 
     name: str
@@ -58,14 +50,14 @@ class SparseFactor:
 
 
 def superlu_sign(lu: Any) -> int:
-    """Sign of the determinant, from pivots and both permutations."""
+    """Sign of the determinant, from pivots and permutations."""
     negative = np.count_nonzero(lu.U.diagonal() < 0)
     exchanges = permutation_sign(lu.perm_r) * permutation_sign(lu.perm_c)
     return -exchanges if negative % 2 else exchanges
 
 
 def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
-    """SuperLU factors of a csc matrix, with options of `splu`; None if a pivot is zero."""
+    """SuperLU factors of a csc matrix; None if a pivot is zero."""
     try:
         lu = splu(matrix, **how)
     except RuntimeError as error:
@@ -79,7 +71,7 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
 class SuperLUMethod:
     """SuperLU, for any matrix.
 
-    `weak_pivots`: keep weak diagonal pivots of symmetric patterns, which saves fill; refinement corrects.
+    `weak_pivots`: keep weak diagonal pivots of symmetric patterns, to save fill; refinement corrects.
     """
 
     name: ClassVar[str] = "superlu"
@@ -88,7 +80,7 @@ class SuperLUMethod:
     def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None if a pivot is zero."""
         if not self.weak_pivots:
-            # On faces of a symmetric pattern MMD fills half as much as the default.
+            # MMD fills faces of a symmetric pattern half as much as the default.
             return factor_superlu(look.matrix, permc_spec="MMD_AT_PLUS_A")
         if not look.symmetric_pattern:
             return factor_superlu(look.matrix, permc_spec="COLAMD")

@@ -56,7 +56,7 @@ class Symmetric:
 
 @frozen(eq=False)
 class Cholesky:
-    """factor A = L L', where the factor, 1 or 2, gives A and 2 A one L, so powers of two change no digit."""
+    """``factor * A = L L'``: a factor 1 or 2 keeps all digits if A is scaled by a power of two."""
 
     lower: Array
     factor: float = 1.0
@@ -72,7 +72,7 @@ class Cholesky:
         return 1
 
     def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
+        """The solution, shape (N,)."""
         x: Array = dpotrs(self.lower, rhs, lower=1)[0].ravel()
         return x if self.factor == 1.0 else self.factor * x
 
@@ -86,7 +86,7 @@ class LDL:
     """LAPACK's: from one, negative in 2x2 blocks."""
 
     def count(self, side: int) -> int:
-        """Number of eigenvalues with a sign, by inertia: each 2x2 block has one of either."""
+        """Number of eigenvalues with a sign: each 2x2 block has one of either."""
         single = self.ldu.diagonal()[self.pivots > 0]
         return (len(self.pivots) - single.size) // 2 + int(np.count_nonzero(side * single > 0.0))
 
@@ -96,7 +96,7 @@ class LDL:
         return -1 if self.count(-1) % 2 else 1
 
     def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
+        """The solution, shape (N,)."""
         return np.asarray(dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel())
 
 

@@ -1,4 +1,4 @@
-"""The interface of a factored bordered matrix."""
+"""The interface of factored bordered matrices."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from continuation.arrays import Array
 
 
 class SingularError(ArithmeticError):
-    """The bordered matrix is singular to working precision, or not finite."""
+    """The bordered matrix is singular to working precision or not finite."""
 
 
 class BorderedSystem(Protocol):
@@ -42,7 +42,7 @@ class BorderedSystem(Protocol):
 
 @frozen(eq=False)
 class Solver:
-    """A factored matrix or bordered system, given by its `solve` and `tell_sign`."""
+    """A factored matrix or bordered system."""
 
     solve: Callable[..., Array]
     tell_sign: Callable[[], int]

@@ -1,8 +1,8 @@
 """BLAS on one thread while a path is traced or an LCP is solved.
 
-numpy and scipy each have an OpenBLAS pool, whose threads spin after a call on cores that the other needs: two threads
-take 1.0 to 6 times as long as one on two idle cores (n = 50 to 4,000), up to 400 times on busy ones.
-OPENBLAS_NUM_THREADS or OMP_NUM_THREADS override this.
+numpy and scipy have their own OpenBLAS pools, whose threads spin on cores that the other needs: two threads take 1.0 to
+6 times as long as one on two idle cores (n = 50 to 4,000), up to 400 times on busy ones. OPENBLAS_NUM_THREADS or
+OMP_NUM_THREADS override this.
 """
 
 from __future__ import annotations
@@ -19,12 +19,11 @@ from scipy.linalg import _fblas
 
 CHOSEN = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 SYMBOLS = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", "openblas_{}_num_threads")
-"""OpenBLAS function names in numpy, scipy and elsewhere."""
+"""OpenBLAS's names in numpy, scipy and elsewhere."""
 
 
 @cache
 def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
-    """Getter and setter of each OpenBLAS's thread count; none if the user has chosen."""
     found = []
     if not any(name in os.environ for name in CHOSEN):
         for module in (_umath_linalg, _fblas):
@@ -37,7 +36,7 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
 
 
 class _OneThread(ContextDecorator):
-    """BLAS uses one thread within; the last to leave restores the counts (2 us)."""
+    """BLAS uses one thread; the last to leave restores the counts (2 us)."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -61,4 +60,4 @@ class _OneThread(ContextDecorator):
 
 
 one_thread = _OneThread()
-"""``with one_thread:``, or a decorator."""
+"""A context, or a decorator."""

@@ -1,7 +1,7 @@
 """Arrays of truncated series of numbers or intervals, accepted by numpy.
 
-A ring (floats, or outward-rounded intervals) times an algebra (Taylor series, first derivatives, or either with one
-more direction). Users call `continuation.jets` and `continuation.intervals`.
+Coefficients are floats or outward-rounded intervals; algebras are Taylor series, first derivatives, or either with one
+more direction. Users call `continuation.jets` and `continuation.intervals`.
 """
 
 from continuation.numbers.array import Interval, Jet

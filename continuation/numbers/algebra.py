@@ -1,7 +1,7 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d.
 
-Coefficients lie along the leading axis, so algebras share linear operations. They differ in products, and in f(c_0 + d)
-= sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
+Algebras share linear operations, along the leading axis. They differ in products, and in f(c_0 + d) = sum_k f_k d^k,
+with f's Taylor coefficients f_k at c_0.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from continuation.numbers import series
 from continuation.numbers.ends import Ends, moved, thin
 
 Store: TypeAlias = Any
-"""Coefficients, an array or `Ends` of shape (L, ...); L = 1 is a constant."""
+"""Coefficients, shape (L, ...); L = 1 is a constant."""
 
 
 class Algebra(Protocol):
@@ -28,11 +28,11 @@ class Algebra(Protocol):
         ...
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-        """A bilinear product of two non-constants."""
+        """A bilinear product of non-constants."""
         ...
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """The sum of f_k d^k, where a = c_0 + d is not constant."""
+        """The sum of f_k d^k, with a = c_0 + d."""
         ...
 
 
@@ -54,7 +54,7 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Store) -> Store:
-        """f_0 + f_1 d + f_2 d^2: curves through boxes have no third coefficients."""
+        """f_0 + f_1 d + f_2 d^2: curves through boxes have no more."""
         d, less = a[1:], a[1:-1]
         out = f[1] * d
         if len(less):
@@ -64,7 +64,7 @@ class TaylorAlgebra:
 
 @frozen
 class Gradient:
-    """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions."""
+    """First derivatives in many directions: c_0 + sum_i c_i e_i with e_i e_j = 0."""
 
     def degrees(self, length: int) -> list[int]:
         """0, 1, 1, ..."""
@@ -83,12 +83,12 @@ class Gradient:
 
 @frozen
 class Beside:
-    """x + y s with s^2 = 0 and x, y of the inner algebra. Coefficients: all of x, then all of y."""
+    """x + y s with s^2 = 0, x and y of the inner algebra, and the coefficients of x first."""
 
     inner: Algebra
 
     def degrees(self, length: int) -> list[int]:
-        """Those of x, then those of y, one higher."""
+        """Degrees of x, then of y, one higher."""
         inner = self.inner.degrees(length // 2)
         return [*inner, *(degree + 1 for degree in inner)]
 
@@ -114,7 +114,7 @@ def _at(algebra: Algebra, f: list[Any], a: Store) -> Store:
 
 
 def joined(*parts: Store) -> Store:
-    """Coefficients concatenated along the leading axis."""
+    """Coefficients, one after another."""
     return moved(lambda *arrays: np.concatenate(arrays), *parts)
 
 
@@ -124,12 +124,12 @@ def lengthened(a: Store, length: int) -> Store:
 
 
 def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-    """A bilinear product; either factor may be constant."""
+    """A bilinear product; factors may be constant."""
     return multiply(a, b) if len(a) == 1 or len(b) == 1 else algebra.product(multiply, a, b)
 
 
 def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
-    """The quotient, by q = (a - d q) / b_0 with b = b_0 + d, iterated until powers of d vanish."""
+    """The quotient, by iterating q = (a - d q) / b_0 with b = b_0 + d."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
     if len(b) == 1:
@@ -144,7 +144,7 @@ def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
-    """Apply a function of one argument, given by its rule."""
+    """Apply a function of one argument, by its rule."""
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
@@ -156,7 +156,6 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
 
 
 def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
-    """Taylor coefficients over a box; nan where the function is undefined."""
     f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
     told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
     return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]

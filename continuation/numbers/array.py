@@ -15,7 +15,7 @@ from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
 class Entries:
-    """Array methods; scalars lack them, so np.array([y[0], ...]) stores scalars as entries."""
+    """Array methods; np.array([y[0], ...]) stores scalars, which lack them, as entries."""
 
     __slots__ = ()
 
@@ -115,8 +115,8 @@ class ArrayJet(Entries, Jet):
 class Interval(Truncated):
     """An array of intervals, which numpy treats as an array of its shape.
 
-    Results contain all values of the operation on numbers of its operands, round-off included; nan where it is
-    undefined on part of an interval. Plain arrays count as exact. Undecided comparisons raise `UndecidedError`.
+    Results contain all values of the operation on numbers of its operands, round-off included; nan if it is undefined
+    on part of an interval. Plain arrays are exact.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Interval(Truncated):
 
     @property
     def lo(self) -> Array:
-        """Lower ends; the first axis counts boxes if there are several."""
+        """Lower ends; the first axis counts boxes, if several."""
         return self._values(self.c.lo)
 
     @property

@@ -15,7 +15,7 @@ from continuation.numbers.truncated import wrap
 
 
 def with_gradient(lo: Array, hi: Array) -> Any:
-    """Boxes, shape (boxes, m), as variables whose derivatives are unit vectors."""
+    """Boxes, shape (boxes, m), as variables with unit vectors as derivatives."""
     count, m = lo.shape
     seeds = np.zeros((1 + m, count, m))
     seeds[np.arange(1, 1 + m), :, np.arange(m)] = 1.0
@@ -25,7 +25,7 @@ def with_gradient(lo: Array, hi: Array) -> Any:
 
 
 def along_curve(value: Ends, first: Ends, half_second: Ends) -> Any:
-    """A curve over parameter intervals, from value, derivative and half the second one, each (boxes, m)."""
+    """A curve over parameter intervals, from value, derivative and half the second, each (boxes, m)."""
     parts = value, first, half_second
     return wrap(Ends(np.stack([x.lo for x in parts]), np.stack([x.hi for x in parts])), TAYLOR)
 
@@ -36,7 +36,7 @@ def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
     Parameters
     ----------
     f : callable
-        A function of an array, written in numpy functions that jets support.
+        A function of an array in numpy functions that jets support.
     lo, hi : array_like
         Ends of the box; `hi` defaults to `lo`.
 
@@ -48,7 +48,7 @@ def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
     Raises
     ------
     TypeError
-        If f uses an unsupported operation; the message names it.
+        If f uses an unsupported operation, which is named.
     UndecidedError
         If the box does not decide a comparison in f.
     """
@@ -58,7 +58,7 @@ def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
 
 
 def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
-    """An enclosure of the Jacobian of f: R^m -> R^n over a box, shape (n, m); the generalized one at kinks.
+    """An enclosure of the Jacobian of f: R^m -> R^n over a box, shape (n, m); at kinks the generalized one.
 
     Parameters
     ----------
@@ -86,6 +86,6 @@ def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
 
 
 def derivatives(image: Interval, m: int) -> tuple[Array, Array]:
-    """Lower and upper ends of an image's derivatives, shape (boxes, *shape, m)."""
+    """Ends of an image's derivatives, shape (boxes, *shape, m)."""
     slopes = lengthened(image.c, 1 + m)
     return np.moveaxis(slopes.lo[1:], 0, -1), np.moveaxis(slopes.hi[1:], 0, -1)

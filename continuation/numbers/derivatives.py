@@ -174,13 +174,13 @@ def path_series(
 ) -> Array:
     """Taylor coefficients of the path u(s) with H(u(s)) = H(u0) and border . (u(s) - u0) = s.
 
-    Coefficient k solves the bordered system for (-R_k, 0), where R_k is coefficient k of H along the lower terms. One
-    factorisation serves all orders (Cochelin, Computers & Structures 53 (1994) 1181-1192).
+    Coefficient k solves the bordered system for (-R_k, 0), with coefficient k, R_k, of H along the lower terms: one
+    factorisation serves all (Cochelin, Computers & Structures 53 (1994) 1181-1192).
 
     Parameters
     ----------
     residual : callable
-        ``residual(y, lam) -> (N,)`` in plain numpy, called order - 1 times.
+        ``residual(y, lam) -> (N,)`` in plain numpy.
     u0 : (N + 1,) array
         The point (y, lam).
     tangent : (N + 1,) array
@@ -215,7 +215,7 @@ def path_series(
 
 
 def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
-    """f(x) and f'(x) v for numbers (also objects), jets or interval arrays.
+    """f(x) and f'(x) v for numbers, jets or interval arrays.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 """Intervals as lower and upper ends, with arithmetic rounded outward.
 
-An end is nan if the operation is undefined on part of the interval. Later operations keep nan, and no comparison with
-nan holds.
+An end is nan if the operation is undefined on part of the interval; no comparison with nan holds.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ Mask = NDArray[np.bool_]
 EPS = 2.0**-52
 
 TINIEST = 2.0**-1074
-"""Smallest positive number: the largest underflow error of an operation."""
+"""Largest underflow error of an operation."""
 
 
 def down(x: Array) -> Array:
@@ -37,7 +36,7 @@ def up(x: Array) -> Array:
 def up_sum(x: Array) -> Array:
     """A number above every real sum that rounds to x, by at most two ulps; x if zero.
 
-    EPS |x| is at least the distance to the next number. Sums that are zero or subnormal are exact. `nextafter` takes
+    EPS |x| is at least the distance to the next number; sums that are zero or subnormal are exact. `nextafter` takes
     several times as long.
     """
     return x + EPS * np.abs(x)
@@ -57,7 +56,7 @@ class Ends:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of either array."""
+        """Shape of the array."""
         return self.lo.shape
 
     @property
@@ -77,7 +76,7 @@ class Ends:
         self.lo[key], self.hi[key] = value.lo, value.hi
 
     def copy(self) -> Ends:
-        """A copy with two separate arrays."""
+        """A copy, as two arrays."""
         return Ends(self.lo.copy(), self.hi.copy())
 
     def __neg__(self) -> Ends:
@@ -97,7 +96,7 @@ class Ends:
         return as_ends(other) - self
 
     def __mul__(self, other: Ends | float) -> Ends:
-        """The product; the square, which is not negative, if other is self."""
+        """The product; a square if other is self."""
         return whole_power(self, 2) if other is self else self._times(as_ends(other))
 
     __rmul__ = __mul__
@@ -109,7 +108,7 @@ class Ends:
         if self.lo is not self.hi:
             for product in (np.multiply(self.hi, other.lo, out=a), np.multiply(self.hi, other.hi, out=b)):
                 lo, hi = np.minimum(lo, product, out=lo), np.maximum(hi, product, out=hi)
-        # TINIEST covers underflow; a product with a factor zero is exact.
+        # TINIEST covers underflow; products with zero are exact.
         zero = None if np.all(hi) else (lo == 0.0) & (hi == 0.0)
         lo, hi = lo - _outward(lo, a), hi + _outward(hi, b)
         if zero is not None and zero.any():
@@ -141,7 +140,7 @@ class Ends:
         return 0.5 * self.lo + 0.5 * self.hi
 
     def radius(self, middle: Array) -> Array:
-        """A bound of the distance of numbers inside from `middle`."""
+        """A bound of the distance from `middle`."""
         return np.maximum(up_sum(self.hi - middle), up_sum(middle - self.lo))
 
     def magnitude(self) -> Array:
@@ -160,11 +159,10 @@ def as_ends(x: Ends | float) -> Ends:
 
 
 Coefficients = TypeVar("Coefficients", Array, Ends)
-"""Numbers or intervals."""
 
 
 def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
-    """Apply `move` to numbers or to both ends; shared ends stay shared."""
+    """Apply `move` to numbers or both ends; shared ends stay shared."""
     if not isinstance(arrays[0], Ends):
         return move(*arrays)
     lo = move(*(x.lo for x in arrays))
@@ -172,7 +170,7 @@ def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
 
 
 def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coefficients:
-    """Sums of up to `count` entries, enclosed whatever order `add` uses."""
+    """Sums of up to `count` entries, in any order of `add`."""
     if not isinstance(x, Ends):
         return np.asarray(add(x))
     if count <= 1:
@@ -211,8 +209,8 @@ def _nonnegative_power(u: Ends, n: int) -> Ends:
 def accumulated(count: float) -> float:
     """Relative error of a sum of `count` products, against the sum of their sizes.
 
-    gamma_n of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged for rounding of the
-    bound.
+    gamma_n of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1, enlarged for its own
+    rounding.
     """
     return float((2.0 * count + 8.0) * EPS)
 
@@ -220,9 +218,9 @@ def accumulated(count: float) -> float:
 def bilinear(product: Callable[[Any, Any], Array], a: Any, b: Ends, count: float | None = None) -> Ends:
     """The range of sums of products (`matmul`, `einsum`), by middles and radii (Rump, BIT 39 (1999) 534-554).
 
-    `product` is bilinear, with errors below `accumulated`. `count`: products per sum, if a is sparse.
+    `product` has errors below `accumulated`. `count`: products per sum, if a is sparse.
     """
-    # Radii cost most for large matrices; thin intervals have none.
+    # Thin intervals have no radii, which cost most for large matrices.
     (ma, ra), (mb, rb) = _middle_and_radius(a), _middle_and_radius(b)
     size_a, size_b = abs(ma), abs(mb)
     centre, sizes = product(ma, mb), product(size_a, size_b)
@@ -250,7 +248,7 @@ def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
 
 
 def sparse_product(matrix: Any, x: Coefficients) -> Coefficients:
-    """A sparse matrix of numbers times vectors, shape (..., n)."""
+    """A sparse matrix times vectors, shape (..., n)."""
 
     def times(entries: Any, v: Array) -> Array:
         return np.ascontiguousarray((entries @ v.reshape(-1, v.shape[-1]).T).T).reshape(*v.shape[:-1], -1)

@@ -1,4 +1,4 @@
-"""Rules of numpy functions for arrays of series."""
+"""Rules of numpy functions for series."""
 
 from __future__ import annotations
 
@@ -102,7 +102,6 @@ def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
 
 
 def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
-    """Contract two operands at a time; sum as soon as possible."""
     like = next(x for x in map(gather, operands) if isinstance(x, Truncated))
     if not isinstance(subscripts, str):
         raise like.unknown("numpy.einsum without subscripts")
@@ -174,8 +173,6 @@ def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
 
 
 def _moved(function: Any) -> Callable[..., Any]:
-    """A rule for functions that only select entries or zeros: apply them to entry numbers."""
-
     def rule(a: Any, *args: Any, **keywords: Any) -> Any:
         a = gather(a)
         others = [x for x in (*args, *keywords.values()) if isinstance(x, Truncated)]
@@ -250,4 +247,3 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
         )
     },
 }
-"""All supported numpy functions."""

@@ -1,7 +1,7 @@
 """Ranges of elementary functions over intervals.
 
-Errors of NumPy's functions are assumed to be at most 4 ulps, and ranges are widened by 8.
-`tests/continuation/intervals` compares with 200 digits.
+NumPy's functions are assumed to err by at most 4 ulps; ranges are widened by 8. `tests/continuation/intervals` compares
+with 200 digits.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from continuation.numbers.ends import EPS, Ends, Mask, absolute, down, up
 LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
-"""In radians; larger arguments have the range [-1, 1]."""
+"""Radians; larger arguments have the range [-1, 1]."""
 
 Function = Callable[[Ends], Ends]
 
 
 def near(x: float) -> Ends:
-    """An interval around a number that rounds to x or a neighbour."""
+    """An interval around a number that rounds to x or its neighbour."""
     return Ends(down(np.asarray(x)), up(np.asarray(x)))
 
 
@@ -30,14 +30,12 @@ PI, LN2, LN10 = near(np.pi), near(float(np.log(2.0))), near(float(np.log(10.0)))
 
 
 def widened(lo: Array, hi: Array) -> Ends:
-    """Ends moved apart by the library's error; nan where one is not finite."""
+    """Ends moved apart by the library's error; nan if not finite."""
     apart = Ends(lo - LIBRARY_ULPS * np.spacing(np.abs(lo)), hi + LIBRARY_ULPS * np.spacing(np.abs(hi)))
     return apart.where(np.isfinite(lo) & np.isfinite(hi))
 
 
 def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
-    """The range of a monotone function, clipped to [least, most]."""
-
     def rule(u: Ends) -> Ends:
         one, other = f(u.lo), f(u.hi)
         found = widened(np.minimum(one, other), np.maximum(one, other))
@@ -47,7 +45,7 @@ def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float =
 
 
 def sqrt(u: Ends) -> Ends:
-    """The range; IEEE 754 rounds correctly."""
+    """The range; IEEE 754 rounds it correctly."""
     return Ends(np.maximum(down(np.sqrt(u.lo)), 0.0), up(np.sqrt(u.hi)))
 
 
@@ -110,4 +108,4 @@ RANGES: dict[np.ufunc, Function] = {
     np.arccosh: _monotone(np.arccosh, 0.0),
     np.arctanh: _monotone(np.arctanh),
 }
-"""The range of a function, by its ufunc."""
+"""Ranges of functions, by ufunc."""

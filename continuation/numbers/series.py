@@ -1,8 +1,8 @@
 """Truncated power series of elementary functions, by recurrences from their differential equations.
 
 A series is an array, (L, *shape), s**0 first; a constant has L = 1. Over intervals it is a list of intervals and exact
-zeros and ones: of x + s, whose results are ranges of derivatives over k!. Recurrences: Griewank & Walther, "Evaluating
-Derivatives" (2nd ed., 2008), ch. 13; Neidinger, SIAM Review 52 (2010) 545-563.
+numbers. Recurrences: Griewank & Walther, "Evaluating Derivatives" (2nd ed., 2008), ch. 13; Neidinger, SIAM Review 52
+(2010) 545-563.
 """
 
 from __future__ import annotations
@@ -20,14 +20,12 @@ from continuation.numbers.ranges import LN2, LN10, RANGES, near
 from continuation.numbers.ranges import power as power_range
 
 PowerSeries: TypeAlias = Any
-"""An array, or a list of intervals and exact numbers."""
 
 Rule: TypeAlias = Callable[[PowerSeries], PowerSeries]
-"""A function of one series."""
 
 
 class JetDomainError(ArithmeticError):
-    """A function has no series at a point, as sqrt(0), log(0), abs(0), 1/0."""
+    """A function has no series at a point, as sqrt(0)."""
 
 
 def demand(fine: Any, operation: str, need: str) -> None:
@@ -49,7 +47,7 @@ def padded(u: Array, length: int) -> Array:
 
 
 def of(function: np.ufunc, x: Any) -> Any:
-    """The values of a function, or their range."""
+    """Values of a function, or their range."""
     return RANGES[function](x) if isinstance(x, Ends) else function(x)
 
 
@@ -57,7 +55,7 @@ def of(function: np.ufunc, x: Any) -> Any:
 
 
 def multiply(a: PowerSeries, b: PowerSeries) -> PowerSeries:
-    """Cauchy product: a contraction with a Toeplitz view of b."""
+    """Cauchy product, by a Toeplitz view of b."""
     if isinstance(a, list):
         return [_dot(a[: k + 1], b[k::-1]) for k in range(len(a))]
     length = len(b)
@@ -75,7 +73,7 @@ def multiply(a: PowerSeries, b: PowerSeries) -> PowerSeries:
 
 
 def divide(a: PowerSeries, b: PowerSeries) -> PowerSeries:
-    """Quotient of two series; b[0] must not vanish."""
+    """Quotient; b[0] must not vanish."""
     if not isinstance(b, list):
         demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
         if len(b) == 1:
@@ -89,7 +87,6 @@ def divide(a: PowerSeries, b: PowerSeries) -> PowerSeries:
 
 
 def _dot(p: PowerSeries, q: PowerSeries) -> Any:
-    """sum_j p_j q_j."""
     if not isinstance(p, list):
         return np.einsum("j...,j...->...", p, q)
     total: Any = 0.0
@@ -101,12 +98,11 @@ def _dot(p: PowerSeries, q: PowerSeries) -> Any:
 
 
 def _tail(p: PowerSeries, q: PowerSeries, k: int) -> Any:
-    """sum_{j=1..k} p_j q_{k-j}."""
     return _dot(p[1 : k + 1], q[k - 1 :: -1])
 
 
 def _over(a: Any, b: Any) -> Any:
-    """Quotient; intervals divide by two as a cheaper product."""
+    """Quotient; halving an interval is a cheaper product."""
     if type(a) is float and a == 0.0:
         return a
     return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
@@ -128,7 +124,6 @@ def _orders(u: Array) -> Array:
 
 
 def _weighted(u: PowerSeries) -> PowerSeries:
-    """The coefficients of s u'(s)."""
     return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
 
 
@@ -143,7 +138,6 @@ def _known(u: PowerSeries, constant: Ends) -> Any:
 
 
 def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
-    """The series sign u + constant."""
     if isinstance(u, list):
         return [constant + u[0] if sign > 0 else constant - u[0], *(sign * x for x in u[1:])]
     out = sign * u
@@ -155,7 +149,7 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
 
 
 def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
-    """Solve v' = rate v u'; `first` then replaces the value."""
+    """Solve v' = rate v u'; `first` replaces the value."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = of(function, u[0])
     for k in range(1, len(u)):
@@ -191,7 +185,7 @@ def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) ->
 
 
 def _circle(u: PowerSeries, sign: int) -> PowerSeries:
-    """Factors keep sign (1 - u**2) accurate near its zeros."""
+    """Factors keep sign (1 - u**2) accurate near zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
@@ -209,7 +203,7 @@ BY_SLOPE: dict[np.ufunc, Inverse] = {
     np.arccosh: (lambda u: sqrt(_circle(u, -1)), lambda x: x <= 1, "be above 1"),
     np.arctanh: (lambda u: _circle(u, 1), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
 }
-"""Functions with derivative 1 / D(u): D, where undefined, and what the argument must do."""
+"""Functions with derivative 1 / D(u): D, the undefined case, and the requirement."""
 
 
 def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
@@ -245,7 +239,7 @@ def cbrt(u: PowerSeries) -> PowerSeries:
 
 
 def absolute(u: PowerSeries) -> PowerSeries:
-    """|u|; an interval around zero has both slopes, and nan as higher derivatives."""
+    """|u|; an interval around zero has both slopes, then nan."""
     _demand(u, lambda x: x != 0, "numpy.absolute", "not be 0")
     if not isinstance(u, list):
         return np.asarray(np.sign(u[0]) * u)
@@ -325,4 +319,4 @@ ELEMENTARY: dict[np.ufunc, Rule] = {
     np.tanh: lambda u: _tangent(u, np.tanh, np.cosh, -1),
     **{function: partial(_by_slope, function) for function in BY_SLOPE},
 }
-"""Rules of one-argument functions, by ufunc."""
+"""Rules by ufunc."""

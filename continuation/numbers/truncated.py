@@ -1,7 +1,4 @@
-"""Arrays of truncated series, accepted by numpy as arrays.
-
-Kinds (`Jet`, `Interval`) differ in coefficients and algebra.
-"""
+"""Arrays of truncated series, which numpy accepts; kinds (`Jet`, `Interval`) differ in coefficients and algebra."""
 
 from __future__ import annotations
 
@@ -21,11 +18,10 @@ from continuation.numbers.ends import Ends, moved, sparse_product
 from continuation.numbers.series import ELEMENTARY
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}
-"""Rules by numpy function, filled by the package, since `functions` imports `Truncated`."""
+"""Rules by numpy function, filled by the package: `functions` imports `Truncated`."""
 
 
 METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
-"""Numpy functions that arrays have as methods."""
 
 
 class Truncated(NDArrayOperatorsMixin):
@@ -45,7 +41,7 @@ class Truncated(NDArrayOperatorsMixin):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the array."""
+        """Shape."""
         return tuple(self.c.shape[self.OWN :])
 
     @property
@@ -73,7 +69,7 @@ class Truncated(NDArrayOperatorsMixin):
         )
 
     def __getattr__(self, name: str) -> Any:
-        # numpy's object loops call a method of the function's name on each entry.
+        # numpy's object loops call a method of the function's name.
         function = getattr(np, name, None)
         if function not in ELEMENTARY and function not in METHODS:
             raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
@@ -126,12 +122,12 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap(self.c.copy(), self.algebra)
 
     def reshape(self, *shape: Any) -> Any:
-        """The entries in another shape; a view if possible."""
+        """Entries in another shape; a view if possible."""
         (shape,) = shape if len(shape) == 1 else (shape,)
         return self.moved(lambda x: x.reshape(*x.shape[: self.OWN], *np.atleast_1d(shape)))
 
     def ravel(self) -> Any:
-        """The entries along one axis."""
+        """Entries along one axis."""
         return self.reshape(-1)
 
     def flatten(self) -> Any:
@@ -139,14 +135,14 @@ class Truncated(NDArrayOperatorsMixin):
         return self.ravel().copy()
 
     def transpose(self, *axes: Any) -> Any:
-        """A view with permuted axes, reversed by default."""
+        """A view with axes permuted, by default reversed."""
         if len(axes) == 1 and not isinstance(axes[0], int):
             (axes,) = axes
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
         own = self.OWN
         return self.moved(lambda x: x.transpose(*range(own), *(axis + own for axis in order)))
 
-    # Not for functions that are evaluated
+    # Not for evaluated functions
 
     def unknown(self, operation: str) -> TypeError:
         """The error for an unsupported operation."""
@@ -159,7 +155,7 @@ class Truncated(NDArrayOperatorsMixin):
         return wrap(moved(move, self.c), self.algebra)
 
     def lifted(self, x: Any) -> Any:
-        """`x` itself, or numbers as constants of this kind."""
+        """`x` itself, or numbers as constants."""
         x = x if isinstance(x, Truncated) else gather(x, self.ONE)
         return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
 
@@ -176,7 +172,7 @@ class Truncated(NDArrayOperatorsMixin):
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
         if len(stores) == 2 and ufunc is not np.matmul:
             stores = list(ufuncs.aligned(*stores))
-        # Overflow gives inf; demand() raises where no series exists.
+        # Overflow gives inf; demand() raises if no series exists.
         with np.errstate(all="ignore"):
             if ufunc in ufuncs.UFUNC_RULES:
                 return wrap(ufuncs.UFUNC_RULES[ufunc](algebra, *stores), algebra)
@@ -192,11 +188,11 @@ class Truncated(NDArrayOperatorsMixin):
 
 
 KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
-"""Scalar and array class by type of coefficients; each kind registers itself."""
+"""Scalar and array class by type of coefficients."""
 
 
 def wrap(c: Store, algebra: Algebra) -> Any:
-    """The array with these coefficients, not copied."""
+    """The array with these coefficients."""
     scalar, array = KINDS[type(c)]
     made: Truncated = object.__new__(scalar if c.ndim == scalar.OWN else array)
     made.c, made.algebra = c, algebra
@@ -204,7 +200,7 @@ def wrap(c: Store, algebra: Algebra) -> Any:
 
 
 def gather(x: Any, one: str = "an array of series") -> Any:
-    """`x` itself, an array of numbers, or stacked lists of truncated series."""
+    """`x`, an array of numbers, or stacked lists of series."""
     if isinstance(x, Truncated):
         return x
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
@@ -221,7 +217,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 
 def common(operands: Any) -> Algebra:
-    """The algebra of all operands that are not constant."""
+    """The algebra of all non-constant operands."""
     first, *others = operands if len(operands) == 1 else sorted(operands, key=lambda x: len(x.c) == 1)
     for x in others:
         constant = len(x.c) == 1 or (len(x.c) == len(first.c) and x.algebra == first.algebra)
@@ -253,7 +249,7 @@ def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
 
 
 def parts_of(arrays: Any) -> list[Any]:
-    """Arrays, numbers lifted to the kind of the others."""
+    """Arrays; numbers are lifted to the kind of the others."""
     parts = [gather(x) for x in arrays]
     like = next(x for x in parts if isinstance(x, Truncated))
     return [like.lifted(x) for x in parts]

@@ -24,12 +24,12 @@ class UndecidedError(ArithmeticError):
 
 
 def own_axes(c: Store) -> int:
-    """Number of axes in front of the shape."""
+    """Number of axes before the shape."""
     return 2 if isinstance(c, Ends) else 1
 
 
 def aligned(a: Store, b: Store) -> tuple[Store, Store]:
-    """Both with equally many axes, for broadcasting."""
+    """Both with equally many axes."""
     if a.ndim == b.ndim:
         return a, b
     own, most = own_axes(a), max(a.ndim, b.ndim)
@@ -80,7 +80,6 @@ def _power(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _exponents(b: Store) -> Array | None:
-    """Exponents that are numbers, else None."""
     if len(b) > 1:
         return None
     if not isinstance(b, Ends):
@@ -115,7 +114,7 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
     size = np.hypot(a[:1], b[:1])
     series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
     angle, a, b = np.arctan2(a[0], b[0]), a / size, b / size
-    # Rotation onto the positive axis, where arctan is analytic.
+    # Rotate onto the positive axis, where arctan is analytic.
     along, across = _add(algebra, b[:1] * b, a[:1] * a), _add(algebra, b[:1] * a, -a[:1] * b)
     out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
     out[0] = angle
@@ -123,7 +122,7 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The angle of points (b, a); nan across the negative axis."""
+    """The angle of (b, a); nan across the negative axis."""
     ahead, beside = (compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, *x)) for x in ((a, b), (b, a)))
     above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
     turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
@@ -143,7 +142,7 @@ def _extremum(name: str, sign: int) -> Binary:
 
 
 def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The maximum; undecided boxes have both slopes, and nan as higher derivatives."""
+    """The maximum; undecided boxes have both slopes, then nan."""
     first, second = a.lo[:1] > b.hi[:1], b.lo[:1] > a.hi[:1]
     lo = np.where(first, a.lo, np.where(second, b.lo, np.minimum(a.lo, b.lo)))
     hi = np.where(first, a.hi, np.where(second, b.hi, np.maximum(a.hi, b.hi)))
@@ -154,12 +153,12 @@ def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
 
 
 def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
-    """The matrix product, with numpy's rules for vectors and stacks."""
+    """The matrix product, as numpy's."""
     own = own_axes(a)
     if a.ndim == own or b.ndim == own:
         raise ValueError("numpy.matmul: a scalar has no matrix product; use *")
     if own == 1 and len(a) == 1 and a.ndim <= 3 and b.ndim == 2:
-        return np.asarray(b @ a[0].T)  # a constant matrix: one BLAS product for all coefficients
+        return np.asarray(b @ a[0].T)  # a constant matrix: one BLAS product for all
     if own == 1 and len(b) == 1 and b.ndim <= 3 and a.ndim == 2:
         return np.asarray(a @ b[0])
     row, column = a.ndim == own + 1, b.ndim == own + 1
@@ -196,7 +195,7 @@ UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
     np.minimum: _extremum("numpy.minimum", -1),
     np.matmul: matmul,
 }
-"""Rules of an algebra and one or two coefficients; all but `matmul` get equally many axes."""
+"""Rules of an algebra and coefficients, with equally many axes but for `matmul`."""
 
 
 # Comparisons
@@ -204,7 +203,7 @@ UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
 
 NEGATION: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
 NEGATION |= {other: one for one, other in NEGATION.items()}
-"""The negation of a comparison of two numbers."""
+"""Negations of comparisons."""
 
 
 def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
@@ -215,7 +214,7 @@ def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
 
 
 def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
-    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or none."""
+    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
     yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, NEGATION[ufunc]))

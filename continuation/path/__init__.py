@@ -1,4 +1,4 @@
-"""Paths: points, events, parts, refinement, interrupts."""
+"""Paths, their points and events."""
 
 from continuation.path.path import LocatedEvent, Path, Step
 

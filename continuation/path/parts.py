@@ -1,4 +1,4 @@
-"""Steps and events of parts, reversed paths and joined paths."""
+"""Steps and events of parts of paths."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ MEET = 1e-6
 """Largest distance of equal ends, relative to the paths' extent."""
 
 StepsAndEvents: TypeAlias = tuple[list[Step], list[LocatedEvent]]
-"""The steps and events of a path."""
 
 
 @frozen(eq=False)
@@ -42,7 +41,7 @@ class Backwards:
 
 
 def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> StepsAndEvents:
-    """Some steps and the events between the first and the last; `ValueError` for a negative step."""
+    """Some steps and the events between; `ValueError` for a negative step."""
     numbers = range(*chosen.indices(len(steps)))
     if numbers.step < 0:
         raise ValueError("step: expected a positive one; path.reversed() turns a path round")
@@ -103,9 +102,9 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
 def following(
     first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float
 ) -> StepsAndEvents:
-    """Steps and events of a second path, counted from the end of the first.
+    """Steps and events of a second path, counted from the first's end; `ValueError` if the ends do not meet.
 
-    `extent`: the larger of the two extents. Raises `ValueError` if the ends do not meet.
+    `extent`: the larger of two.
     """
     a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
@@ -114,7 +113,7 @@ def following(
 
 
 def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
-    """Steps and events of a path, counted from step `a` at its start."""
+    """Steps and events of a path, counted from step `a`."""
     return (
         [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],
         [evolve(event, step=event.step + a.index, arclength=a.arclength + event.arclength) for event in events],

@@ -1,4 +1,4 @@
-"""The result of a trace, with arrays and dense output."""
+"""The result of a trace."""
 
 from __future__ import annotations
 
@@ -44,8 +44,7 @@ class Path:
     references : tuple of str
         BibTeX of homotopy and parts; see `continuation.cite`.
     end_error : float or None
-        At the target: bound of the components' absolute error, from round-off of the equations' terms; after an
-        endgame, its estimate.
+        At the target: bound of the components' absolute error by round-off; after an endgame, an estimate.
     winding_number : int or None
         After an endgame: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
@@ -164,10 +163,10 @@ class Path:
         return np.array(points) if wanted.ndim else points[0]
 
     def error_bound(self, homotopy: Any, s: float | Array) -> Array:
-        """How far ``path(s)`` is from the path, by component, across the null vector of H'; one factorisation a point.
+        """Bound the distance of ``path(s)`` from the path, by component, across the null vector of H'.
 
-        The first two chord steps, and what the next ones can add if H' changes evenly; infinite where they do not
-        halve. A number for what is printed or drawn; for proofs see `continuation.certify`.
+        Two chord steps are measured, the others bounded if H' changes evenly; infinite if they do not halve. For proofs
+        see `continuation.certify`.
 
         Parameters
         ----------
@@ -188,7 +187,6 @@ class Path:
         return bounds if wanted.ndim else bounds[0]
 
     def _places(self, s: Any) -> tuple[Array, list[float]]:
-        """Arclengths asked for, and those of the steps."""
         wanted = real_vector("s", s) if np.size(s) else np.zeros(0)
         knots = self.arclength.tolist()
         if not knots:
@@ -199,7 +197,6 @@ class Path:
         return wanted, knots
 
     def _end(self, s: float, knots: list[float]) -> int:
-        """Index of the step at the end of the arc at s."""
         return min(max(bisect_right(knots, s), 1), len(knots) - 1)
 
     def crossings(self, t: float) -> Array:
@@ -238,7 +235,7 @@ class Path:
         fraction = (s - knots[i - 1]) / (knots[i] - knots[i - 1])
         if segment is None:
             return (1 - fraction) * self.steps[i - 1].u + fraction * self.steps[i].u
-        # Archives keep no metric; the fraction is exact at knots and smooth between.
+        # Archives keep no metric; the fraction is exact at knots.
         return segment.at(fraction if weights is None else parameter_at(segment, weights, fraction))
 
     def reversed(self) -> Path:
@@ -292,13 +289,13 @@ class Path:
         return (plot_bifurcation if "value" in options else plot_components)(self, axes, **options)
 
     def to_xarray(self) -> Any:
-        """Points and events as an `xarray.Dataset`, as `Archive.to_xarray`."""
+        """An `xarray.Dataset` of points and events, as `Archive.to_xarray`."""
         from continuation.archive import growing
 
         return growing.dataset_of(self)
 
     def to_dataframe(self) -> Any:
-        """Points and events as a `pandas.DataFrame`, with the homotopy's names."""
+        """A `pandas.DataFrame` of points and events."""
         from continuation.archive import growing
 
         return growing.dataframe_of(self)
@@ -348,7 +345,6 @@ def _off(place: float, curve: Callable[[float], Array], t: float) -> float:
 
 
 def _curve(before: Step, after: Step) -> Callable[[float], Array]:
-    """The path between two points on [0, 1]."""
     if after.segment is not None:
         return after.segment.at
     return lambda place: before.u if place == 0.0 else before.u + place * (after.u - before.u)

@@ -25,7 +25,7 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 DEEPEST = 8
-"""Halvings of an arc: each divides a cubic's error by 16, so eight give nine digits."""
+"""Halvings of an arc: each divides a cubic's error by 16, eight give nine digits."""
 
 
 def refined_path(
@@ -33,8 +33,8 @@ def refined_path(
 ) -> tuple[list[Step], list[LocatedEvent]]:
     """Steps and events of a path with more points, for a given accuracy.
 
-    Each arc's middle is corrected onto the path. If it moves farther than the accuracy (relative to each component's
-    range), it becomes a step and both halves are examined. New steps are REGULAR, with cubic segments.
+    An arc's middle is corrected onto the path. If it moves farther than the accuracy (relative to each component's
+    range), it becomes a step, and both halves are examined.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
         raise complain(ValueError, "accuracy", "a positive number", accuracy)
@@ -60,17 +60,10 @@ def refined_path(
 def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Sequence[int]) -> Array:
     """How far points of a path's dense output are off, shape (k, N + 1).
 
-    Chord steps across the null vector of H' at a point lead from it onto the path. The first is Newton's, whose error
-    is half of what H' changes on the way: those after the second shrink by twice the ratio of these two (Deuflhard,
-    Newton Methods for Nonlinear Problems, Section 2.1). Infinite where they do not halve.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    path : sequence of Step
-    points : ndarray, shape (k, N + 1)
-    indices : sequence of int
-        The step at the end of each point's arc.
+    Chord steps across the null vector of H' lead from a point onto the path. The first is Newton's, whose error is half
+    of what H' changes on the way; those after the second shrink by twice the ratio of these two (Deuflhard, Newton
+    Methods for Nonlinear Problems, Section 2.1). Infinite if they do not halve. `points`, shape (k, N + 1); `indices`:
+    the step at the end of each point's arc.
     """
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     bounds = np.full_like(points, np.inf)
@@ -92,7 +85,6 @@ def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Seq
 
 
 def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:
-    """The steps that an arc needs."""
     guess, slope = segment.at(0.5), segment.derivative(0.5)
     weights = np.ones_like(guess) if after.weights is None else after.weights
     length = norm(weights, slope)
@@ -103,7 +95,7 @@ def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, al
         near: Linearization = linearize(solver.evaluator, guess, weights, border)
         point = solver.project_and_linearize(near, guess, border)
     except EvaluationError:
-        # Without a correction, the arc stays.
+        # An arc without a correction stays.
         return []
     if (np.abs(point.u - guess) <= allowed).all():
         return []

@@ -1,4 +1,4 @@
-"""Steps and located events."""
+"""Steps and events."""
 
 from __future__ import annotations
 
@@ -28,9 +28,8 @@ class Step:
     index : int
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
-        Sum of the steps' lengths, each of the circular arc through two points with the angle between their tangents, in
-        the step's metric. It is the curve's length to fourth order in the angle and depends on the steps
-        (`continuation.arclength` is accurate to 1e-9).
+        Sum of lengths of circular arcs through two points with the angle between their tangents, in the step's metric:
+        the curve's length to fourth order in the angle (`continuation.arclength` is accurate to 1e-9).
     step_length : float
         The predictor's step; 0 at the start.
     residual_norm : float
@@ -41,8 +40,8 @@ class Step:
     corrector_iterations, rejections : int
         Iterations, and attempts before.
     contraction, distance, angle, share : float
-        First ratio of the corrector's increments; length of its correction; angle (radians) between the tangents; the
-        parameter's share of the tangent.
+        First ratio of increments; length of the correction; angle (radians) between tangents; the parameter's share of
+        the tangent.
     segment : Segment or None
         The path from the point before.
     weights : ndarray or None
@@ -107,8 +106,8 @@ class LocatedEvent:
     switches : tuple of int
         At a kink: the vanishing switching functions.
     rays : ndarray, shape (k, N + 1), or None
-        At a kink or simple branch point: outward directions of all branches, of unit length in the metric; the first
-        points back along the path, the second, if any, onward. Archives keep those of kinks.
+        At a kink or simple branch point: outward directions of all branches, of unit length in the metric; first back
+        along the path, then onward. Archives keep those of kinks.
     weights : ndarray, shape (N + 1,), or None
         The metric; None after reading.
     observed : mapping
@@ -140,7 +139,7 @@ class LocatedEvent:
 
     @property
     def turns(self) -> bool:
-        """Whether the parameter turns (not another number)."""
+        """Whether the parameter turns."""
         return self.kind is Kind.TURNING_POINT and self.name == "turning point"
 
     @property

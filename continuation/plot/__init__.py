@@ -1,7 +1,4 @@
-"""Pictures of paths; matplotlib is imported on drawing.
-
-Okabe and Ito's colours suit colour-blind readers; line styles repeat them.
-"""
+"""Pictures of paths; matplotlib is imported on drawing. Okabe and Ito's colours suit colour-blind readers."""
 
 from continuation.plot.along import plot_components, plot_heat, plot_profiles, plot_steps
 from continuation.plot.bifurcation import plot_bifurcation

@@ -1,4 +1,4 @@
-"""Pictures of one path: components, profiles, heat map, steps."""
+"""Pictures of one path."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def plot_profiles(
     path : Path
     axes : matplotlib Axes, optional
     profiles : int, default 7
-        At most as many. Evenly spaced in arclength, ends included.
+        Evenly spaced in arclength, ends included.
     x : array_like, shape (N,), optional
         Positions; default: numbers of the unknowns.
 

@@ -1,4 +1,4 @@
-"""What every picture of a path is made of: curves, solid where stable, with marked and named events, and an arrow."""
+"""Parts of pictures of paths: curves, events, arrows."""
 
 from __future__ import annotations
 
@@ -15,10 +15,8 @@ from continuation.status import Kind, Status
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":")
 TURN = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
-"""Mark of turning points."""
 
 KINK = {**TURN, "marker": "D", "markersize": 5}
-"""Mark of kinks."""
 
 MARKS = {
     Kind.TURNING_POINT: TURN,
@@ -27,10 +25,9 @@ MARKS = {
     Kind.KINK: KINK,
     Kind.HOPF: {**TURN, "marker": "*", "markersize": 10, "markerfacecolor": "black"},
 }
-"""Marks by kind: circle, filled square, square, diamond, star."""
+"""Marks by kind."""
 
 OTHER = {**KINK, "markerfacecolor": "0.6"}
-"""Mark of other events."""
 
 SMOOTHNESS = 12
 """Curve points per step ..."""
@@ -47,7 +44,7 @@ UNSTABLE = "unstable"
 Axes = Any
 
 Drawn: TypeAlias = Any
-"""A `continuation.Path`."""
+"""A path."""
 
 Parts: TypeAlias = tuple[Sequence[float], bool] | None
 """Arclengths where stability changes, and whether the first part is stable."""
@@ -61,9 +58,9 @@ class Curve:
     ----------
     path : Path
     s, u : ndarray
-        What `sampled` gives.
+        Points of the curve.
     y, at : sequence of float
-        The number, there and at the events.
+        The number at points and at events.
     label : str
     k : int
         Of colours and dashes.
@@ -81,7 +78,7 @@ class Curve:
 
 
 def sampled(path: Drawn) -> tuple[Array, Array]:
-    """Arclengths and points of the curve: dense output if stored, else cubics through points and turning points."""
+    """Arclengths and points of the curve, from dense output or cubics."""
     knots, steps = path.arclength, path.steps
     if len(steps) < 2:
         return knots, path.u
@@ -99,7 +96,7 @@ def sampled(path: Drawn) -> tuple[Array, Array]:
 
 
 def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
-    """What is known at points and events, between them by monotone cubics, which add no extrema."""
+    """Numbers known at points and events, between them by monotone cubics, without further extrema."""
     from scipy.interpolate import PchipInterpolator
 
     points = sorted([*path.events, *path.steps], key=lambda point: point.arclength)
@@ -109,7 +106,7 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
         return np.repeat(values[:1], wanted.size, axis=0)
     s, values = s[apart], values[apart]
     k = np.clip(np.searchsorted(s, wanted), 1, s.size - 1)
-    # Archives fill shorter paths with NaN, and a number may be known on a part of a path.
+    # Archives fill shorter paths with NaN, and a number may be known on part of a path.
     known = np.isfinite(values[k - 1]) & np.isfinite(values[k])
     return np.where(known, PchipInterpolator(s, np.where(np.isfinite(values), values, 0.0))(wanted), np.nan)
 
@@ -117,7 +114,7 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
 def stable_parts(path: Drawn) -> Parts:
     """From stored stability, or None.
 
-    It changes at the first event between two points, those that users asked for last, else half way.
+    It changes at the first event between two points, else half way.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None
@@ -131,7 +128,7 @@ def stable_parts(path: Drawn) -> Parts:
 
 
 def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool) -> Axes:
-    """Draw curves with their events; with `legend` also names and arrows."""
+    """Draw curves with events; with `legend` also names and arrows."""
     if against not in ("lam", "arclength"):
         raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
     axes = axes_or_new(axes)
@@ -143,21 +140,20 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
         edges, solid = curve.parts or ((), True)
         for k, (a, b) in enumerate(pairwise([knots[0], *edges, knots[-1]])):
             s = np.unique(np.concatenate(([a, b], knots[(knots > a) & (knots < b)])))
-            # With stability, dashes do not distinguish lines.
             dashes = {} if curve.parts is None else {"linestyle": "-" if solid != bool(k % 2) else "--"}
             alone = {"marker": "." if knots.size == 1 else "", "label": "_" if k else curve.label}
             axes.plot(np.interp(s, knots, x), np.interp(s, knots, curve.y), **{**looks, **dashes, **alone})
         off = np.abs(np.interp([event.arclength for event in events], knots, curve.y) - curve.at)
         flat = flat and bool(np.ptp(curve.y) < off.max(initial=0.0))
     if flat:
-        # Nothing but round-off: as a constant is drawn; what the axes get later may need more room.
+        # Draw mere round-off as a constant; later curves may need more room.
         middle = float(curves[0].y[0])
         room = 0.05 * (abs(middle) or 1.0)
         axes.update_datalim([(x[0], middle - room), (x[0], middle + room)])
         axes.autoscale_view()
     label_axis(axes, against, [curve.path for curve in curves])
     tidy(axes)
-    # This fixes the limits, which names need.
+    # Fix the limits, which names need.
     axes.get_xlim()
     _mark(axes, curves, lam, legend)
     if not legend:
@@ -167,7 +163,7 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
     if any(curve.parts for curve in curves):
         axes.set_title("solid: stable, dashed: not", fontsize="x-small", color="0.4", loc="right")
     if len(axes.get_legend_handles_labels()[1]) > 1:
-        # Beside the curves, where the layout makes room.
+        # Beside the curves, if the layout makes room.
         room = axes.figure.get_layout_engine() is not None
         beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if room else {}
         axes.legend(frameon=False, fontsize="small", **beside)
@@ -175,7 +171,7 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
 
 
 def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
-    """Mark events; name the first of each name, with the number of such on its path, and early ends."""
+    """Mark events; name the first of each name, with their number, and early ends."""
     from matplotlib.lines import Line2D
 
     said = set()
@@ -183,7 +179,7 @@ def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
         mine = [curve for curve in curves if curve.path is path]
         for k, event in enumerate(path.events):
             x, heights = event.lam if lam else event.arclength, [float(curve.at[k]) for curve in mine]
-            # Events' round-off must not set the scale, as it would by `plot`.
+            # Round-off of events must not set the scale, as by `plot`.
             axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **sign(event)))
             many = sum(other.name == event.name for other in path.events)
             if named and event.name not in said:
@@ -196,7 +192,7 @@ def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
 
 
 def _say(axes: Axes, text: str, x: float, y: float, below: bool = False) -> None:
-    """Write beside a point, towards the middle of the panel; names may come from a file."""
+    """Write beside a point, towards the middle of the panel."""
     text = "".join(c if c.isprintable() else "?" for c in text)
     right, up = (axes.transData + axes.transAxes.inverted()).transform((x, y))
     side, above = right < 0.6, up < (0.1 if below else 0.9)
@@ -207,7 +203,6 @@ def _say(axes: Axes, text: str, x: float, y: float, below: bool = False) -> None
 
 
 def _arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
-    """Draw an arrow head two fifths along a line's moving points."""
     moves = np.flatnonzero(np.isfinite(y[1:]) & np.isfinite(y[:-1]) & ((np.diff(x) != 0.0) | (np.diff(y) != 0.0)))
     if moves.size:
         k = moves[2 * moves.size // 5]
@@ -216,7 +211,7 @@ def _arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
 
 
 def require_matplotlib() -> None:
-    """Raise ImportError with advice unless matplotlib imports."""
+    """Raise ImportError without matplotlib."""
     try:
         import matplotlib.pyplot  # noqa: F401
     except ImportError as error:

@@ -10,15 +10,7 @@ TABLE_ROWS = 10
 
 
 def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = ()) -> str:
-    """Escape texts into a table.
-
-    Parameters
-    ----------
-    caption : str
-    rows : iterable of sequence
-    head : sequence of str
-        Column names.
-    """
+    """Escape texts into a table; `head` names columns."""
     cells = "".join(
         "<tr>" + "".join(f"<td style='text-align:left'>{escape(str(cell))}</td>" for cell in row) + "</tr>"
         for row in rows

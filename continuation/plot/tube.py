@@ -11,24 +11,14 @@ from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from continuation.point.segment import cubic
 
 POINTS = 12
-"""Points per cell, as smooth as a path (`drawing.SMOOTHNESS`)."""
+"""Points per cell."""
 
 VISIBLE = 0.004
 """Least drawn radius in picture widths: most tubes are thinner than a line."""
 
 
 def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, axes: Axes | None = None) -> Axes:
-    """Draw the tube in one component against the parameter.
-
-    Parameters
-    ----------
-    cells : continuation.certificate.cells.Cells
-    gaps : sequence of tuple of float
-        Arclengths at their ends.
-    component : int
-        Of y.
-    axes : matplotlib Axes, optional
-    """
+    """Draw the tube in one component of y against the parameter; `gaps` are arclengths."""
     axes = axes_or_new(axes)
     from matplotlib.collections import PolyCollection
 

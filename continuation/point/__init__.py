@@ -1,1 +1,1 @@
-"""Points and arcs: linearisation, projection, segments."""
+"""Points and arcs of a path."""

@@ -18,7 +18,7 @@ from continuation.predictors import Prediction
 class Arc:
     """The path from a to b, in the pseudo-arclength border . (u - a.u).
 
-    `length`: pseudo-arclength of b. `guide`: the segment or a better model, on which events are sought.
+    `length`: pseudo-arclength of b. `guide`: the segment or a better model, for events.
     """
 
     a: Linearization
@@ -31,7 +31,7 @@ class Arc:
 
     @property
     def samples(self) -> list[tuple[Array, Array]]:
-        """Points inside the arc with tangents of about unit length, from the guide."""
+        """Points inside the arc, from the guide, with tangents of about unit length."""
         if not self._samples:
             guide = self.guide
             if isinstance(guide, PolynomialSegment):
@@ -43,7 +43,7 @@ class Arc:
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:
-        """A point just behind the beginning."""
+        """A point just after a."""
         return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
 
 
@@ -60,7 +60,7 @@ def position(arc: Arc, u: Array) -> float:
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
-    """The prediction itself, made to end on b, if it is a `Curve`; else the Hermite cubic."""
+    """The prediction, made to end on b, if it is a `Curve`; else the Hermite cubic."""
     # hasattr is faster than isinstance of a Protocol.
     if not hasattr(prediction, "derivative"):
         return cubic_between(a, b, a.border)
@@ -70,7 +70,7 @@ def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> A
 
 
 def cubic_between(a: Linearization, b: Linearization, border: Array) -> Arc:
-    """The Hermite cubic's arc, in pseudo-arclength along `border`."""
+    """The Hermite cubic's arc, along `border`."""
     return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
@@ -81,7 +81,7 @@ def angle_between(a: Linearization, b: Linearization) -> float:
 
 
 def length_between(a: Linearization, b: Linearization, angle: float) -> float:
-    """Arclength from the chord: exact for a circle, else with an error of fifth order."""
+    """Arclength from the chord, exact for a circle, else to fourth order."""
     half = 0.5 * angle
     chord = norm(a.weights, b.u - a.u)
     return chord * (half / math.sin(half)) if half > 1e-8 else chord

@@ -17,10 +17,10 @@ from continuation.evaluation.evaluator import CountedSystem, Evaluator
 from continuation.metric import norm
 
 REFINED = 1e-14
-"""Relative last increment of a fully refined tangent: 50 units of round-off."""
+"""Relative last increment of a fully refined tangent: 50 ulps."""
 
 ROUND_OFF_LEFT = 1e3
-"""A last increment within this factor is accepted if round-off ends the contraction: conditions of a thousand are
+"""Factor of a last increment that is accepted if round-off ends the contraction: condition numbers of a thousand are
 ordinary."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
@@ -28,10 +28,10 @@ SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 at half its range."""
 
 NEAR_SINGULAR = SIX_DIGITS / EPS
-"""Growth of a solution that means a singular matrix; six digits remain."""
+"""Growth of a solution that shows a singular matrix: six digits remain."""
 
 TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)
-"""The first increment is of a general error, the second of what the factorisation leaves: their ratio need only be
+"""The first increment is of a general error, the second of what the factorisation leaves, so their ratio need only be
 below one."""
 
 SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
@@ -39,7 +39,7 @@ SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
 
 @frozen(eq=False)
 class Anchor:
-    """A factorisation, and what it can be remade from."""
+    """A factorisation, with point and border to remake it."""
 
     u: Array
     border: Array
@@ -60,7 +60,7 @@ class Linearization:
     tangent: Array
     orientation: int
     border: Array = field(init=False)
-    """W tangent, so border . tangent = 1."""
+    """W tangent."""
 
     @border.default
     def _border(self) -> Array:
@@ -85,8 +85,7 @@ class Linearization:
     def solve(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
         """Solve ``H' z = r, border . z = rho`` for any border.
 
-        Solutions of H' z = r differ by multiples of the tangent. By default z with rho = 0 is the shortest
-        (Moore-Penrose).
+        By default z with rho = 0 is the shortest (Moore-Penrose).
         """
         return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
 
@@ -95,7 +94,7 @@ class Linearization:
         return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
 
     def blur(self, noise: Array) -> float:
-        """Length of a correction by noise of the equations, shape (N,): two samples of signs."""
+        """Length of a correction by noise of the equations, shape (N,): two sign samples."""
         samples = (self.approximate(signs * noise) for signs in (1.0, np.sign(generic_vector(noise.size))))
         return max(norm(self.weights, sample) for sample in samples)
 
@@ -115,7 +114,7 @@ class Linearization:
 
 
 def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array) -> Linearization:
-    """Factor at u; the tangent makes an acute angle with the border `reference`.
+    """Factor at u, with reference . tangent > 0.
 
     With M = [[H'], [reference']] and M v = e_{N+1}, det [[H'], [v']] = det(M) |v|^2: one factorisation gives the
     orientation (Allgower and Georg, Section 2.1).
@@ -140,8 +139,7 @@ def relinearize(
     `guess`: about a multiple of the tangent.
 
     Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. If
-    `signed`, it begins with a general error, which does not shrink if M~^{-1} M has a negative eigenvalue: so det M~
-    and det M have one sign.
+    `signed`, it begins with a general error, which shrinks only if det M~ and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
@@ -165,7 +163,7 @@ def relinearize(
 def _refined(
     apply: Callable[[Array], Array], anchor: Anchor, guess: Array, weights: Array, accuracy: float
 ) -> Array | None:
-    """The solution of M v = e_{N+1}, or None; measured in the metric, as the largest component depends on units."""
+    """The solution of M v = e_{N+1}, or None; the metric makes this independent of units."""
     refinement = Iteration(guess, TANGENT_REFINEMENT)
     solve, border = anchor.system.approximate, anchor.border
     v, longest = guess, norm(weights, guess)
@@ -193,7 +191,7 @@ def _refined(
 
 @frozen(eq=False)
 class RefinedSystem:
-    """Refinement of a nearby factorisation for the point's own matrix."""
+    """A nearby factorisation, refined for the point's own matrix."""
 
     near: CountedSystem
     apply: Callable[[Array], Array]
@@ -219,7 +217,7 @@ class RefinedSystem:
 
 
 def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The point with exact solves for its own matrix.
+    """The point with exact solves.
 
     Series need them: an error in a coefficient enters later ones.
     """

@@ -22,44 +22,35 @@ from continuation.tolerance import Tolerance
 MaxStep = Callable[[Array, Array], float]
 
 ARC_PLACES = 0.31, 0.77
-"""Places where arc and path are compared: no symmetry of an S-bend or cubic aligns these."""
+"""Places where arc and path are compared: no symmetry of an S-bend or cubic aligns them."""
 
 LATE = 0.93
-"""A series is also compared here: its end correction, a power of t, hides an S behind the other places (2 of 1,500
-S-bends)."""
+"""A further place for series: the end correction, a power of t, hides an S behind the others (2 of 1,500 S-bends)."""
 
 SLACK = 0.004
 """Allowed distance, in arc lengths: that of a cubic that turns by one radian."""
 
 MISSED, EVEN = 0.07, 1.5e-4
-"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for a cubic extrapolated by its length),
-an arc over an S by as much. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of the path
-still show in steps of a third (900 measured)."""
+"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for an extrapolated cubic), an arc over an
+S by as much. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of the path still show in steps
+of a third."""
 
 ARC_NOISE = 1e2
-"""Least allowed distance, in tolerances, for noise on short arcs."""
+"""Least allowed distance, in tolerances: noise on short arcs."""
 
 CHORD_STEPS = Contraction()
 
 SMALL_INCREMENT = 1e-4
-"""Increment, in tolerances, that is accepted if round-off stops the iteration; after three factorisations 1 is."""
+"""Increment, in tolerances, that is accepted if round-off stops the iteration; after three factorisations it is 1."""
 
 
 @define(eq=False)
 class PathSolver:
     """Puts points of one homotopy on its path.
 
-    Attributes
-    ----------
-    evaluator : Evaluator
-    tolerance : Tolerance
-        The start may raise it for noise in H (`continuation.step.start`).
-    max_step : callable or None
-        How far an interior path may go in a direction (`continuation.homotopy.SupportsMaxStep`).
-    straight : callable or None
-        About how far a path of straight pieces goes before it bends.
-    room : callable or None
-        How far a straight path without a target goes to its end.
+    `tolerance`: raised at the start for noise in H. `max_step`: how far an interior path may go in a direction.
+    `straight`: about how far a path of straight pieces goes before it bends. `room`: how far a straight path without a
+    target goes to its end.
     """
 
     evaluator: Evaluator
@@ -75,25 +66,15 @@ class PathSolver:
 
     @property
     def noted(self) -> str:
-        """The sentence about noise at the path's end."""
+        """A sentence about noise."""
         least = self.tolerance.relative
         return f" The residual is noisy: the tolerance was raised to {least:.0e}." if least > self.asked else ""
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
-        """Bring a guess onto the path in the hyperplane orthogonal to `border`.
+        """Bring a guess onto the path in the hyperplane orthogonal to `border`; return the point and the factorisation
+        used.
 
-        A nearby factorisation serves while increments halve, then new ones.
-
-        Returns
-        -------
-        u : ndarray, shape (N + 1,)
-        anchor : Anchor
-            The factorisation used.
-
-        Raises
-        ------
-        EvaluationError
-            If all fail.
+        A nearby factorisation serves while increments halve, then new ones. Raises `EvaluationError` if all fail.
         """
         evaluator = self.evaluator
         settled = self.settled(near, guess, border)
@@ -109,7 +90,7 @@ class PathSolver:
         raise EvaluationError("a point of the path could not be settled")
 
     def settled(self, near: Linearization, guess: Array, border: Array) -> Array | None:
-        """`project` with the nearby factorisation alone; None if it fails."""
+        """`project` by the nearby factorisation; None if it fails."""
         return self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, SMALL_INCREMENT)
 
     def _chord_steps(
@@ -122,7 +103,6 @@ class PathSolver:
             size = measure(step, near.weights)
             if not chord.add(step, size):
                 break
-            # The next is negligible.
             if size <= SIX_DIGITS:
                 return chord.x
         # The stalled increment joins two points of round-off.
@@ -138,8 +118,7 @@ class PathSolver:
     def noise_by_component(self, near: Linearization) -> Array:
         """Round-off of a correction by component, shape (N + 1,).
 
-        The point is moved by a few units in the last place (of the path's size, if larger); the correction beyond
-        moving it back is round-off.
+        A point a few ulps away is corrected; the difference is round-off.
         """
         evaluator, u = self.evaluator, near.u
         last_place = np.maximum(np.spacing(np.abs(u)), EPS / np.sqrt(near.weights * u.size))
@@ -155,10 +134,7 @@ class PathSolver:
     def project_and_linearize(
         self, near: Linearization, guess: Array, border: Array, along: Array | None = None
     ) -> Linearization:
-        """Project `guess` and linearise; the tangent makes an acute angle with the border.
-
-        `along`: approximate direction; it saves solves.
-        """
+        """Project `guess` and linearise; an approximate direction `along` saves solves."""
         u, anchor = self.project(near, guess, border)
         return relinearize(self.evaluator, u, near.weights, anchor, border, guess=along)
 
@@ -170,8 +146,8 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
 def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     """The arc if it is near the path; None if it joins branches or misses an S.
 
-    One residual and one solve estimate the error at each place; a cubic with these becomes the guide. `distance`: the
-    prediction's error, in the metric.
+    A residual and a solve estimate the error at each place; a cubic with these errors becomes the guide. `distance`:
+    the prediction's error, in the metric.
     """
     a, segment, weights = arc.a, arc.segment, arc.a.weights
     length = norm(weights, arc.b.u - a.u)
@@ -191,7 +167,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     c = first - p * d
     even = max(EVEN * length, noise)
     if max(distance, *(norm(weights, one) for one in off)) > even:
-        # An S shows in the middle. Measured from the cubic, all errors share the factorisation's.
+        # An S shows in the middle. Measured from the cubic, errors share the factorisation's.
         middle = a.approximate(-solver.evaluator.residual(segment.at(0.5)))
         if not norm(weights, middle - (c + 0.5 * d) / 16.0) <= even:
             return None

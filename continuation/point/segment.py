@@ -42,7 +42,7 @@ _SAMPLED = np.array(_QUARTERS)[:, None] ** _POWERS, _POWERS * np.array(_QUARTERS
 class PolynomialSegment:
     """``begin + c_1 t + c_2 t^2 + ...``; rows of `coefficients` are terms.
 
-    Relative to the beginning, so that round-off is that of the way.
+    Terms are relative to the beginning, so that round-off is that of the way.
     """
 
     begin: Array
@@ -65,7 +65,7 @@ class PolynomialSegment:
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
-        """Points and derivatives inside, by one matrix product."""
+        """Points and derivatives inside."""
         points, slopes = (list(table[:, : len(self.coefficients)] @ self.coefficients) for table in _SAMPLED)
         return [self.begin + point for point in points], slopes
 
@@ -105,7 +105,7 @@ class Curve(Protocol):
 class SeriesSegment:
     """A series at the first point, made to end on the second.
 
-    Its gap there is the first neglected term; t^power times the gap gains an order.
+    The gap there is the first neglected term; t^power times the gap is added.
     """
 
     curve: Curve
@@ -136,7 +136,7 @@ class SeriesSegment:
 def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> PolynomialSegment:
     """The Hermite cubic in sigma = border . (u - u0), rescaled to [0, 1].
 
-    du/dsigma is v / (border . v), without an estimate of arclength.
+    du/dsigma is v / (border . v).
     """
     sigma = dot(border, u1 - u0)
     return cubic(u0, u1, v0 * (sigma / dot(border, v0)), v1 * (sigma / dot(border, v1)))

@@ -1,4 +1,4 @@
-"""Predictors: curves that extrapolate the path from its points and tangents."""
+"""Predictors extrapolate the path."""
 
 from continuation.predictors.base import Knot, Prediction, Predictor
 from continuation.predictors.polynomial import Hermite, Tangent

@@ -22,10 +22,9 @@ class Knot:
 
 
 class Prediction(Protocol):
-    """A curve from the current point; made once a point, called once an attempt.
+    """A curve from the current point.
 
-    If it also has a `derivative` and an `order`, it is accurate enough to be the path between its ends
-    (`continuation.point.segment.Curve`).
+    With a `derivative` and an `order`, it is accurate enough to be the path (`continuation.point.segment.Curve`).
     """
 
     @property
@@ -34,7 +33,7 @@ class Prediction(Protocol):
         ...
 
     def __call__(self, h: float) -> Array:
-        """Return the point at step length h > 0, shape (N + 1,)."""
+        """The point at step length h > 0, shape (N + 1,)."""
         ...
 
 
@@ -46,9 +45,9 @@ class Predictor(Protocol):
     memory : int
         Number of knots used, with the current one.
     order : int
-        Local error O(h^(order + 1)); the least, if the prediction has its own `order`.
+        Local error O(h^(order + 1)); the least, if predictions have an `order`.
     interior_fraction : float, optional
-        Part of the distance to the boundary that it may use; default 0.9.
+        Usable part of the distance to the boundary; default 0.9.
     """
 
     @property
@@ -62,7 +61,7 @@ class Predictor(Protocol):
         ...
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Prediction:
-        """Return the prediction from `point`.
+        """The prediction from `point`.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Series coefficients without jets: a fit to nearby points of the path."""
+"""Series coefficients without jets, by a fit to nearby points."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ FITTED_ORDER = 11
 """Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
 
 CHORD = Contraction()
-"""With the current factorisation; divergence shortens the range."""
+"""The current factorisation serves; divergence shortens the range."""
 
 ROUNDS = 40
-"""Limit of range changes; 4^-40 of a range is nothing."""
+"""Limit of range changes."""
 
 
 def fitted(
@@ -35,24 +35,9 @@ def fitted(
 ) -> Array:
     """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
-    The polynomial has the point's tangent and interpolates points of the path, found by chord steps.
-
-    Parameters
-    ----------
-    evaluator : Evaluator
-    point : Linearization
-    order : int
-    first : float
-        First range tried.
-    reach : callable
-        Range in which a series is accurate.
-    accuracy : float
-        In the metric; noise, doubled by each power, lowers the order.
-
-    Raises
-    ------
-    EvaluationError
-        If no range works.
+    The polynomial has the point's tangent and interpolates points of the path, found by chord steps. `first`: first
+    range tried. `reach`: range in which a series is accurate. `accuracy`: in the metric; noise, doubled by each power,
+    lowers the order. Raises `EvaluationError` if no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)

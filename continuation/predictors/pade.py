@@ -1,4 +1,4 @@
-"""Curves from a power series: the series itself, or vector Pade approximants beyond its radius of convergence."""
+"""Power series of the path, and vector Pade approximants beyond its radius of convergence."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ DEGREES = 6
 """Successive orders compared."""
 
 LONGEST_RANGE, LOOKS = 8.0, 25
-"""Longest range, in ranges of the series, and the number of samples of it, a tenth apart."""
+"""Longest range, in ranges of the series, and its number of samples, a tenth apart."""
 
 
 @frozen(eq=False)
 class Series:
-    """The curve sum_j c_j s^j / sum_i d_i s^i in pseudo-arclength s, and its trusted range.
+    """The curve sum_j c_j s^j / sum_i d_i s^i in pseudo-arclength s.
 
     `coefficients`: c, shape (L + 1, N + 1). `denominator`: d, shape (m + 1,), first 1.
     """
@@ -31,16 +31,16 @@ class Series:
 
     @property
     def order(self) -> int:
-        """Order of the series that it was made from, L + m."""
+        """Order of the original series, L + m."""
         return len(self.coefficients) + len(self.denominator) - 2
 
     def __call__(self, h: float) -> Array:
-        """Return the point at h."""
+        """The point at h."""
         point: Array = _value(self.coefficients, h) / _value(self.denominator, h)
         return point
 
     def derivative(self, h: float) -> Array:
-        """Return du/ds at h."""
+        """Derivative du/ds at h."""
         top = _slope(self.coefficients, h) - self(h) * _slope(self.denominator, h)
         slope: Array = top / _value(self.denominator, h)
         return slope
@@ -58,7 +58,7 @@ def _slope(coefficients: Array, h: float) -> Array:
 
 
 def approximant(coefficients: Array, weights: Array) -> Series:
-    """Return the approximant of degrees (K - K // 2, K // 2) of a series of order K, with reach 0.
+    """The approximant of degrees (K - K // 2, K // 2) of a series of order K.
 
     Coefficients K - m + 1..K of denominator times series vanish in least squares (simultaneous, or type II,
     approximation; Baker and Graves-Morris, Section 8.1).
@@ -82,7 +82,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
 
 
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Series | None:
-    """Return the approximant with the longest range, or None.
+    """The approximant with the longest range, or None.
 
     In its range successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet); a
     pole of the path limits all.
@@ -113,7 +113,7 @@ def _agreement(
 
 
 def first_pole(denominator: Array) -> float:
-    """Return the denominator's smallest positive real root, or inf."""
+    """The smallest positive real root of the denominator, or inf."""
     roots = np.polynomial.polynomial.polyroots(np.trim_zeros(denominator, "b"))
     real = roots.real[np.abs(roots.imag) <= ROOT_OF_ROUND_OFF * np.abs(roots)]
     return float(real[real > 0.0].min(initial=np.inf))

@@ -1,4 +1,4 @@
-"""Predictors from past points and tangents, without evaluations."""
+"""Predictors from past points and tangents."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Line:
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
-        """Return the point at h."""
+        """The point at h."""
         point = multiple(h, self.v)
         point += self.u
         return point
@@ -41,7 +41,7 @@ class Cubic:
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
-        """Return the point at h."""
+        """The point at h."""
         point = multiple(h - self.sigma, self.cube)
         for coefficient in (self.square, self.v):
             point += coefficient
@@ -58,22 +58,22 @@ class Tangent:
     order: int = field(default=1, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
-        """Return the tangent line."""
+        """The tangent line."""
         return Line(point.u, point.tangent)
 
 
 @frozen
 class Hermite:
-    """The cubic through the last two points and tangents, in sigma = border . (u - point.u): order 3, at no extra cost.
+    """The cubic through the last two points and tangents, in sigma = border . (u - point.u): order 3.
 
-    Euler's step at the start, and after a right-angle turn.
+    It is Euler's at the start, and after a right-angle turn.
     """
 
     memory: int = field(default=2, init=False)
     order: int = field(default=3, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Cubic | Line:
-        """Return the Hermite cubic."""
+        """The Hermite cubic."""
         u, v, past = point.u, point.tangent, history[-min(len(history), 2)]
         sigma, along = dot(point.border, past.u - u), dot(point.border, past.tangent)
         if not (sigma < 0.0 and along > 0.0):

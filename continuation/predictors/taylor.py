@@ -30,17 +30,17 @@ ORDERS = (8, 30)
 """Bounds of the chosen order: beyond 30 round-off removes the gain."""
 
 LARGEST_ORDER = 100
-"""The cost is its square; from about 60 on it gains nothing."""
+"""The cost is quadratic; above about 60 nothing is gained."""
 
 LONGEST_STEP = 100.0
-"""In the metric: a polynomial path has no last terms."""
+"""Largest step, in the metric: polynomial paths have no last terms."""
 
 
 def best_order(n: int, accuracy: float) -> int:
-    """Return the order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
+    """The order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f = 4 + n/60 is a compromise, at most a third slower than the best (docs, "choosing"). The least (f + K) exp(L/K), L
-    = -ln accuracy, is at K^2 = L (K + f).
+    f = 4 + n/60 is at most a third slower than the best. The least (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K
+    + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -49,7 +49,7 @@ def best_order(n: int, accuracy: float) -> int:
 
 
 def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
-    """Return the step at which one of the last two terms reaches `accuracy`; one may vanish by symmetry."""
+    """The step at which one of the last two terms reaches `accuracy`; one may vanish by symmetry."""
     measure = Tolerance(relative=accuracy).measure
     order = len(coefficients) - 1
     reach = LONGEST_STEP
@@ -92,11 +92,11 @@ class Taylor:
 
     @property
     def order(self) -> int:
-        """The given or least order; `Series.order` is the actual one."""
+        """The given or least order."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series:
-        """Return the series at the point."""
+        """The series at the point."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
         reach = partial(series_reach, accuracy=self.accuracy, weights=point.weights)
         coefficients = self._exact(evaluator, point, order) if evaluator.followed else None
@@ -121,7 +121,7 @@ class Taylor:
 
 
 def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
-    """Return path coefficients, shape (order + 1, N + 1); None if jets fail."""
+    """Path coefficients, shape (order + 1, N + 1); None if jets fail."""
     homotopy = evaluator.homotopy
     if offers(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)

@@ -1,1 +1,1 @@
-"""One step: settings, start, state, attempt, acceptance and loop."""
+"""One step: settings, start, attempt, acceptance, loop."""

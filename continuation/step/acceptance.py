@@ -1,4 +1,4 @@
-"""Decide whether an arc counts, where the path ends on it, and which events it has."""
+"""Decide whether an arc counts, where the path ends on it, and its events."""
 
 from __future__ import annotations
 
@@ -27,12 +27,10 @@ from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
-"""Marks a point where several branches cross."""
 
 LEAST_STEP_SHARE = 2.0**-8
-"""Least part of the controller's step to which an arc shrinks while eigenvalue count and events disagree. A later
-crossing has another cause: a pole of H_y or a symmetry.
-"""
+"""Least part of the controller's step to which an arc shrinks while eigenvalue count and events disagree. Later
+crossings have other causes: poles of H_y or symmetry."""
 
 
 @frozen(eq=False)
@@ -50,7 +48,7 @@ class Accepted:
 
 @frozen(eq=False)
 class Examiner:
-    """Examines arcs."""
+    """Decides whether arcs count."""
 
     solver: PathSolver
     settings: Settings
@@ -67,15 +65,7 @@ class Examiner:
     ) -> Accepted | Rejected:
         """Return the arc to the arrival, or why it does not count.
 
-        Parameters
-        ----------
-        point : Linearization
-        state : State
-        attempt : Arrival
-        prediction : Prediction
-            The path between the points, if accurate.
-        landed : bool
-            Whether the attempt aimed at the target.
+        `prediction`: the path between the points, if accurate. `landed`: whether the attempt aimed at the target.
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
@@ -99,7 +89,7 @@ class Examiner:
                 # A singular end loses rank by itself.
                 flipped = False
             elif index is not None:
-                # The end of the path may lie on another branch than the arc's end.
+                # The path may end on another branch than the arc.
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
@@ -183,7 +173,6 @@ def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
 
 
 def _across(point: Linearization, attempt: Arrival, prediction: Prediction) -> float:
-    """Error of a landing's prediction across the path."""
     off = attempt.point.u - prediction(attempt.h)
     return norm(point.weights, off - point.tangent * dot(point.border, off))
 

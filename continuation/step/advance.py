@@ -45,16 +45,15 @@ from continuation.step.verdict import (
 )
 
 SINGULAR_STRETCH = 1.19
-"""Factor of the next step after a singular factorisation: halves would creep up to the branch point. Without it 720
-traces had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none.
-"""
+"""Factor of the next step after a singular factorisation; halving creeps up to the branch point. Without it 720 traces
+had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none."""
 
 INSIDE = (Rejection.MIDPOINT, Rejection.CROSSINGS, Rejection.OTHER_BRANCH)
-"""Reasons that lie inside a landing's arc, and so inside every longer one."""
+"""Reasons that lie inside a landing's arc, so inside longer ones too."""
 
 NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
-"""After so many attempts at one step it is asked whether noise in H has grown, and by what it must have, so that an end
-comes to it: two measurements of one noise differ by less."""
+"""Attempts at one step after which H's noise is measured again; factor by which it must grow, since two measurements
+differ by less."""
 
 TINY = 1e-300
 """A monitor value of zero with a sign."""
@@ -62,7 +61,7 @@ TINY = 1e-300
 
 @frozen(eq=False)
 class Moved:
-    """An accepted step; `verdict` if the path ends there."""
+    """An accepted step."""
 
     point: Linearization
     step: Step
@@ -73,7 +72,7 @@ class Moved:
 
 @frozen(eq=False)
 class Stopped:
-    """No step: the verdict, and the path's limit if found."""
+    """No step, and the path's limit if found."""
 
     verdict: Verdict
     end: Array | None = None
@@ -83,14 +82,7 @@ class Stopped:
 class Advance:
     """Makes the steps of one path.
 
-    Attributes
-    ----------
-    solver : PathSolver
-    settings : Settings
-    recorder : StepRecorder
-    spent : callable
-        Names the exhausted limit of the budget, or "".
-    pieces : Pieces or None
+    `spent`: names the exhausted limit of the budget, or "".
     """
 
     solver: PathSolver
@@ -106,7 +98,7 @@ class Advance:
 
     @extent.default
     def _extent(self) -> SupportsExtent | None:
-        # Asked once, since isinstance is slow.
+        # isinstance is slow: ask once.
         return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
 
     @stepper.default
@@ -126,7 +118,7 @@ class Advance:
         return Examiner(self.solver, self.settings, self.target, self.pieces)
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:
-        """Return the next accepted point, or why there is none."""
+        """Make one step."""
         settings, controller = self.settings, self.settings.controller
         try:
             prediction = settings.predictor.prepare(self.solver.evaluator, point, state.history)
@@ -146,7 +138,7 @@ class Advance:
             point, prediction, h, controller.bounds.maximum, state.last_failed_landing
         )
         if landing is not None:
-            # A long correction discredits a landing too.
+            # A long correction makes a landing unreliable too.
             if (
                 isinstance(landing, Arrival)
                 and controller.update(memory, self._measures(landing, prediction, 0)).accept
@@ -155,7 +147,7 @@ class Advance:
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
                 if found.reason in INSIDE:
-                    # A longer step contains the same obstacle, less visibly.
+                    # A longer step contains the obstacle too, less visibly.
                     h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
@@ -187,7 +179,7 @@ class Advance:
                 return Stopped(verdict)
 
     def _noisier(self, point: Linearization, state: State, u: Array) -> State | None:
-        """The state with the noise of H at u; None unless it has grown."""
+        """The state with noise grown at u, or None."""
         evaluator, known = self.solver.evaluator, state.noise if state.noise.size else np.zeros(u.size - 1)
         try:
             evaluator.measure_noise(u, point.tangent, evaluator.residual(u))
@@ -196,7 +188,7 @@ class Advance:
             least = min(max(CLEAR_OF_NOISE * point.blur(noise), state.tolerance), COARSEST)
         except EvaluationError:
             grown = False
-        # Keep evaluator and state equal, for resumed traces.
+        # Evaluator and state must be equal for resumed traces.
         evaluator.noisy(noise if grown else known)
         if not grown:
             return None
@@ -204,15 +196,15 @@ class Advance:
         return evolve(state, noise=noise, tolerance=least)
 
     def _limit_ahead(self, point: Linearization, state: State) -> tuple[SingularLimit | None, State]:
-        """The end, where it is one that no step can reach; the state remembers what was tried."""
+        """The end, if no step can reach it; the state remembers attempts."""
         limit = None
         if self.target.endgame_is_due(point, state):
             limit, state = self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
-            # The limit lies beyond the border of this piece.
+            # The limit lies beyond this piece.
             limit = None
         if limit is not None and point.orientation == 0 and between(self.solver, point, limit.u):
-            # Without determinants: eigenvalues show that the limit is on another branch.
+            # Without determinants only eigenvalues show that the limit is on another branch.
             limit = None
         return limit, state
 
@@ -312,7 +304,6 @@ class Advance:
         return point, state
 
     def _monitor_behind(self, event: Event, point: Linearization, before: float) -> float:
-        """The monitor behind a kink; a zero tangent component keeps its sign."""
         g = event.monitor(point.u, point.tangent)
         moves = isinstance(event, TurningPoint) and abs(g) * math.sqrt(point.weights[event.component]) > STILL
         return g if moves or not isinstance(event, TurningPoint) else math.copysign(min(abs(before), TINY), before)

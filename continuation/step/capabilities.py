@@ -19,7 +19,7 @@ from continuation.step.stepper import LOW_ORDER_FRACTION
 
 
 def max_step_of(homotopy: Any) -> MaxStep | None:
-    """Return the homotopy's `max_step`, or None.
+    """The homotopy's `max_step`, or None.
 
     TypeError or ValueError unless it gives numbers: NaN would shorten steps forever.
     """
@@ -36,7 +36,7 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
         if math.isnan(h):
             if finite(v):
                 raise complain(ValueError, "max_step", "a number, at least 0, or inf", found)
-            # An overflowing prediction: no part of it is inside.
+            # An overflowing prediction is nowhere inside.
             return 0.0
         return h
 
@@ -44,7 +44,7 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
 
 
 def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] | None:
-    """Return the homotopy's `observe`, or None.
+    """The homotopy's `observe`, or None.
 
     TypeError unless it maps names to numbers; ValueError if the names change: they are archive columns.
     """
@@ -71,7 +71,7 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 def finish_of(
     homotopy: Any, given: Callable[[Array, float], Array | None] | None
 ) -> Callable[[Array, float], Array | None] | None:
-    """Return the given finish, else the homotopy's, or None.
+    """The given finish, else the homotopy's, or None.
 
     ValueError unless it gives None or N finite numbers.
     """
@@ -93,26 +93,14 @@ def finish_of(
 
 
 FALSE_END = 1e-3
-"""Largest residual at a `finish`'s end, relative to the equation's terms; at a false end it is about 1."""
+"""Largest residual at a `finish`'s end, relative to the equation's terms; false ends have about 1."""
 
 
 def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | None) -> Array:
-    """Return the end (y, lam) found by a `finish`, if H vanishes there.
+    """Return the end (y, lam) found by a `finish`; ValueError unless H vanishes there.
 
     Each equation must be small relative to its terms, or as small as at the last point with the end's parameter, since
     terms such as x_i w_i may vanish.
-
-    Parameters
-    ----------
-    evaluator : Evaluator
-    here : ndarray, shape (N + 1,)
-    y : ndarray, shape (N,)
-    target : float or None
-
-    Raises
-    ------
-    ValueError
-        If an equation does not hold.
     """
     end = np.append(y, here[-1] if target is None else target)
     try:
@@ -130,6 +118,6 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
 
 
 def interior_fraction(predictor: Predictor) -> float:
-    """Part of the distance to the boundary that a prediction may use: the predictor's, else 0.9."""
+    """Part of the distance to the boundary for a prediction: the predictor's, else 0.9."""
     fraction = getattr(predictor, "interior_fraction", LOW_ORDER_FRACTION)
     return float(fraction)

@@ -2,7 +2,7 @@
 
 Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at t. The arc is
 *regular* if no real z changes by more than SPAN between samples, nor the outer of three samples add up to more than
-SPAN times the middle one: then no branch crosses it. It *crosses* a branch if one z vanishes like 1 - t / s at a branch
+SPAN times the middle one: no branch crosses it then. It *crosses* a branch if one z vanishes like 1 - t / s at a branch
 point s (a power of it at a degenerate one) and no other z comes near zero. Other arcs are too long or off the path.
 """
 
@@ -30,65 +30,54 @@ from continuation.step.degenerate import SIMPLE_ORDER, Z_ROUND_OFF, BranchPointO
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
-"""Largest ratio of a real eigenvalue at two samples. For a parabola that touches zero the outer of three samples
-add up to four times the middle one or more.
-"""
+"""Largest ratio of a real eigenvalue at two samples. If a parabola touches zero, the outer of three samples add up to
+four times the middle one or more."""
 
 LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
-"""The same limits for I - M_a^-1 M(t)."""
+"""These limits for I - M_a^-1 M(t)."""
 
 TOLD = 0.25
 """Least reported change of an eigenvalue."""
 
 ONWARD = 0.1
 """Extra sample beyond an arc that approaches a singular matrix, in arc lengths. A greater recovery of H' there shows a
-singular point on the arc.
-"""
+singular point on the arc."""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
-"""Sample parameters on a cubic, and on a series' longer arc."""
+"""Sample parameters on a cubic, and on a longer series."""
 
 NEAR_ARC = 2e-2
-"""Largest distance of a branch point from its arc, in arc lengths: five times an arc's error."""
+"""Largest distance of a branch point from its arc, in arc lengths: five arc errors."""
 
 ON_PATH = 8 * float(np.finfo(float).eps)
 """Largest round-off residual relative to the rows of H'. True crossings had at most 3e-16; 1e-13 joined curves 2e-6
-apart.
-"""
+apart."""
 
 AHEAD = 3.0
-"""Branch points farther ahead, in arc lengths, are ignored; the next arc sees them."""
+"""Branch points farther ahead, in arc lengths, are left to the next arc."""
 
 NEAR_CROSSING = 0.1
-"""Least distance of an arc's end from a crossing, in arc lengths; nearer, the next factors are nearly singular."""
+"""Least distance of an arc's end from a crossing, in arc lengths: nearer, factors are nearly singular."""
 
 STEP_BACK = 0.7
-"""Factor of a step that ended near a crossing; largest factor of one that is to end behind it."""
+"""Factor of a step that ended near a crossing; limit for one that shall end behind it."""
 
 BEST = 4.0 / 3.0
-"""Best step over a crossing, relative to its distance: balances the cubic's error x^4 and the
-branches' distance x - 1.
-"""
+"""Best step over a crossing, relative to its distance: balances the cubic's error x^4 and the branches' distance x -
+1."""
 
 SMALLEST = 2.0**-6
-"""Least part of an arc searched for pairs of crossings, and least factor of a step, since crossings near the beginning
-may be round-off.
-"""
+"""Least part of an arc searched for pairs of crossings, and least factor of a step: crossings near the beginning may be
+round-off."""
 
 AT_END = 1e-6
-"""A crossing this near to the arc's end, in arc lengths, is at the end: half of its digits are known."""
+"""Distance of a crossing at the arc's end, in arc lengths: half of its digits are known."""
 
 
 @frozen(eq=False)
 class Crossed:
-    """A branch point on an arc.
-
-    Attributes
-    ----------
-    point : Linearization
-        With the arc's first factorisation.
-    rays : ndarray, shape (4, N + 1), or None
-        Unit vectors back, onward, and along the other branch; None if H' loses several ranks.
+    """A branch point on an arc. `rays`, shape (4, N + 1): unit vectors back, onward, and along the other branch; None
+    if H' loses several ranks.
     """
 
     point: Linearization
@@ -100,19 +89,8 @@ def on_arc(
 ) -> Crossed | Rejected | None:
     """Return the branch point on an arc, None, or a rejection.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    arc : Arc
-    attempt : Arrival
-        End of the arc, or of a longer one.
-    prediction : Prediction
-    flipped : bool
-        Whether the determinant's sign changes on the arc.
-    ends : bool
-        Whether the path ends with the arc.
-    index : int
-        Of the step; varies the start vectors.
+    `attempt`: end of this or a longer arc. `flipped`: the determinant changes sign. `ends`: the path ends with the arc.
+    `index`: the step's; varies start vectors.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()
@@ -128,7 +106,7 @@ def on_arc(
 
 
 def between(solver: PathSolver, point: Linearization, u: Array) -> bool:
-    """Whether H' at u has an eigenvalue of another sign."""
+    """Whether an eigenvalue of H' has another sign at u."""
     apply, start = _differential(solver, u), generic_vector(u.size)
     if apply is None:
         return False
@@ -165,7 +143,7 @@ class _Looks:
         return np.zeros(self.arc.a.u.size)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """The large changes 1 - z at u, near parameter t."""
+        """Large changes 1 - z at u, near t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []
@@ -187,7 +165,7 @@ class _Looks:
         return self.prediction(t * self.arc.length)
 
     def first(self) -> BranchPointOnArc | Rejected | None:
-        """First branch point, None on a regular arc."""
+        """The first branch point; None on a regular arc."""
         arc, told = self.arc, self.told
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
@@ -197,7 +175,7 @@ class _Looks:
             least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
                 found = self._branch_point(t, t / there[-1])
-                # At the arc's end z may vanish farther on.
+                # At the arc's end z may vanish beyond.
                 if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
                     return self.rejected(Rejection.ORIENTATION, max(before, shorter))
@@ -218,7 +196,7 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Sample toward the beginning while a pair of crossings makes an eigenvalue grow; return the parameters."""
+        """Sample toward the beginning while a pair of crossings makes an eigenvalue grow."""
         told, places = self.told, list[float]()
         t = min((place for place, there in told.items() if there and there[0] < LOWEST), default=0.0)
         while t > SMALLEST and told[t] and told[t][0] < LOWEST:
@@ -230,7 +208,7 @@ class _Looks:
         return places
 
     def over(self, seen: BranchPointOnArc) -> Crossed | Rejected | None:
-        """The branch point, if the arc crosses it along its branch; None if it ends before."""
+        """The branch point, if crossed along its branch; None if the arc ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         if self.ends and 1.0 < s <= 1.0 + AT_END:
@@ -260,13 +238,13 @@ class _Looks:
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether z is noise already at the arc's beginning, as near poles."""
+        """Whether z is noise even at the beginning, as near poles."""
         a = self.arc.a
         blur = self.solver.tolerance.relative / np.sqrt(a.weights)
         return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
 
     def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
-        """The branch point indicated by the sample at t: simple, near `place`, or degenerate."""
+        """The branch point indicated at t: simple, near `place`, or degenerate."""
         solver, arc = self.solver, self.arc
         lost = self._lost(self._point(t), t)
         found = self.simple(self._point(place)) if lost == 1 else None
@@ -287,7 +265,6 @@ class _Looks:
         return found
 
     def _lost(self, u: Array, t: float) -> int:
-        """Multiplicity of the smallest z near t."""
         apply, told = _differential(self.solver, u), self.look(u, t, Z_ROUND_OFF)
         if apply is None or not told or told[-1] <= 0.0:
             return 1
@@ -322,7 +299,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float, lost: int) -> bool:
-    """Whether the sample fits eigenvalues that vanish together, and no other is near zero."""
+    """Whether eigenvalues vanish together, and no other is near zero."""
     first, *others = sorted(told, key=lambda mu: abs(mu - expected)) or [min(expected, TOLD)]
     others = [mu for k, mu in enumerate(others, 1) if k >= lost or abs(mu - first) > NEAR_CROSSING * abs(first)]
     near = abs(first - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

@@ -23,16 +23,16 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
 HIGHEST_ORDER = 20.0
-"""Largest order of a zero of z: beyond, z is flat to round-off."""
+"""Largest order of a zero of z: beyond, z is round-off."""
 
 SECANTS_OF_Z = 20
-"""Limit of secant steps; four or five are usual."""
+"""Limit of secant steps; four or five suffice."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
-"""Relative difference step for z'; order assumed first (2 would hit a double zero); largest order of a simple zero."""
+"""Relative difference step for z'; first order (2 would hit a double zero); largest order of a simple zero."""
 
 BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""Largest useful round-off of z; round-off of the products."""
+"""Largest useful round-off of z; round-off of products."""
 
 FARTHEST = 3.0
 """Search limit, in arc lengths."""
@@ -56,7 +56,7 @@ class BranchPointOnArc:
         return bool(round(self.order) * self.lost % 2)
 
     def expected(self, t: float, s: float) -> float:
-        """1 - z at t of an eigenvalue that vanishes at s."""
+        """1 - z at t, if z vanishes at s."""
         left = 1.0 - t / s
         return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
@@ -64,25 +64,9 @@ class BranchPointOnArc:
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
 ) -> tuple[Array, float] | None:
-    """The degenerate branch point indicated by a sample at t, or None.
+    """Return the degenerate branch point indicated at t and its order, or None.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    arc : Arc
-    prediction : Prediction
-    t : float
-        Where z has fallen.
-    z_at : callable
-        Maps parameter and point to z or NaN.
-    lost : int
-        Number of eigenvalues like z.
-
-    Returns
-    -------
-    u : ndarray, shape (N + 1,)
-    order : float
-        Approximate order of the zero of z.
+    `z_at`: maps parameter and point to z or NaN. `lost`: number of eigenvalues like z.
     """
 
     def beside(place: float) -> float:
@@ -117,7 +101,7 @@ def degenerate_point(
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                # M_a is nearly singular: the rest of z is round-off.
+                # M_a is nearly singular: z is round-off.
                 return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= BLURRED else None
             last, t = left, t - order * left
     except ArithmeticError:
@@ -127,7 +111,7 @@ def degenerate_point(
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
-    """The pair of z and z / z' at t; 0 without slope."""
+    """The pair (z, z / z') at t; 0 without slope."""
     z = look(t)
     step = -BESIDE * t * abs(z) ** (1.0 / order)
     change = look(t + step) - z
@@ -135,7 +119,7 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
 
 
 def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
-    """Effect of round-off in H on z; 0 if too large."""
+    """Effect of H's round-off on z; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)

@@ -1,6 +1,6 @@
-"""Extent: how far each component goes before the path turns; gives the first scales and step.
+"""Extent: how far each component goes before the path turns; it gives scales and step.
 
-Independent of units and origin: simplified Newton corrections d, e at u + h v, v the tangent, measure nonlinearity
+Simplified Newton corrections d, e at u + h v, v the tangent, measure nonlinearity independently of units and origin
 (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). |d_i| / (h |v_i|), in the median, is the
 path's turn, |e| / |d| the equations' change.
 """
@@ -21,44 +21,41 @@ TURN = 0.25
 """Nonlinearity at the extent; 0.1 to 0.5 change factorisations on twelve problems by a tenth."""
 
 AROUND = 1.001
-"""Accuracy factor of the search for TURN. With 1.05 shifts of the origin changed factorisations on Bratu's problem
-twofold.
-"""
+"""Accuracy factor of the search for TURN. With 1.05 shifted origins changed factorisations on Bratu's problem
+twofold."""
 
 POWERS = 0.5, 4.0
-"""Bounds of the nonlinearity's power of length: usually one, two for symmetric paths."""
+"""Bounds of the nonlinearity's power of length: one, two on symmetric paths."""
 
 FIRST_STEP = 0.3
-"""First step, in extents: it turns by a third of TURN; controllers aim at 0.4 radians."""
+"""First step, in extents, turns by a third of TURN; controllers aim at 0.4 radians."""
 
 NEAR = 1e-9
-"""Length, relative to the target's distance, at which H is linear but for its own rounding if a path begins at zero."""
+"""Length, relative to the target's distance, at which H is linear but for rounding if a path begins at zero."""
 
 SEARCH_START = 1e-3
-"""First length tried, relative to the target's distance: before the first turn."""
+"""First length tried, relative to the target's distance."""
 
 LENGTHS_TRIED = 40
 """Limit of lengths; five are usual."""
 
 GROWTH = 30.0
-"""Largest growth of the length in one try, since a straight beginning predicts nothing."""
+"""Largest growth of the length in one try: a straight beginning predicts nothing."""
 
 STRAIGHT_LENGTH = 1e30
-"""A path straight to this length, relative to its start, has no scale."""
+"""A path straight to this length, in units of its start, has no scale."""
 
 STANDSTILL = 1e-60
-"""A component stands still below this part of the largest motion, in any units."""
+"""Part of the largest motion below which a component stands still."""
 
 STILL_PIECEWISE = 1e-13
-"""STANDSTILL on pieces, where components stand still to round-off of others."""
+"""STANDSTILL on pieces, which have round-off of other components."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
-"""A tangent component is round-off if below the first, relatively, and refinement changes it by more
-than the second.
-"""
+"""A smaller tangent component, relatively, is round-off if refinement changes it by more than the second."""
 
 UNCERTAIN = 100.0
-"""Corrections below this multiple of their sampled round-off are ignored."""
+"""Corrections below this multiple of round-off are ignored."""
 
 OTHER_UNITS = 1e4
 """A larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
@@ -75,27 +72,8 @@ def initial_extent(
 ) -> tuple[Array, Array]:
     """Return how far each component goes until the path turns or reaches the target; and its noise.
 
-    Parameters
-    ----------
-    evaluator : Evaluator
-    point : Linearization
-        The start, in any metric.
-    target : float or None
-    residual : ndarray, shape (N,)
-        H at the point.
-    farthest : float
-        Length for straight pieces without target.
-    room : float
-        Distance to an end value.
-    sizes : ndarray, shape (N + 1,), optional
-        Sizes of the components.
-
-    Returns
-    -------
-    extent : ndarray, shape (N + 1,)
-        Positive; the median for components that stand still.
-    blur : ndarray, shape (N + 1,)
-        |H'^-1| times the noise.
+    Components that stand still get the median. `residual`: H at the point. `farthest`: length for straight pieces
+    without target. `room`: distance to an end value. `sizes`: of the components. Arrays have shape (N + 1,).
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -115,7 +93,7 @@ def initial_extent(
     # The shortest length that changes a component by its size is safest.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # At zero terms show no noise: measure it ahead.
+    # At zero, terms show no noise: measure it ahead.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -127,7 +105,7 @@ def initial_extent(
     best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     if near:
-        # What is round-off in the tangent is so on the way.
+        # Round-off of the tangent is round-off of the way.
         blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
@@ -180,9 +158,8 @@ def initial_extent(
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """Factor for the sizes of components that stand still, until H is about linear at that distance.
-
-    Too large a size would make a branch of a symmetric trunk as short as round-off.
+    """Factor for the sizes of components that stand still, so that H is about linear: too large ones would make a
+    branch of a symmetric trunk short.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -190,11 +167,10 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
             d = point.solve(residual - evaluator.residual(point.u + h * z))
             turned = float((np.abs(d + h * z)[moved] / (h * z[moved])).max())
         except Exception:
-            # As above.
             turned = np.inf
         if turned <= OTHER_UNITS:
             break
-        # Leading terms have order two or three; the root suits three.
+        # Leading terms have order two or three.
         h *= max(np.sqrt(TURN / turned), TURN / GROWTH)
     return h
 
@@ -202,8 +178,7 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array) -> Array:
     """The tangent, with zeros for round-off.
 
-    A tiny component may have another unit; refinement with H' at an indistinguishable point decides, and with H at
-    length h, if given.
+    A tiny component may have another unit; refinement with H' nearby decides, and with H at length h, if given.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -221,12 +196,11 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
     if h:
-        # At zero H itself may know nothing of what H' says: terms that cancel but for round-off.
+        # At zero terms of H may cancel but for round-off.
         try:
             ahead = point.approximate(residual - evaluator.residual(point.u + h * np.where(small, 0.0, v))) / h
             replaced |= np.abs(ahead - v) > REPLACED * np.abs(v)
         except EvaluationError:
-            # Outside the domain: H' has to do.
             pass
     return np.where(small & replaced, 0.0, v)
 
@@ -245,7 +219,7 @@ def _largest(samples: list[Array]) -> Array:
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array, apart: Array
 ) -> tuple[Array, float]:
-    """The correction at u + h v across v, and the nonlinearity. `apart`: how far the point itself is off the path."""
+    """The correction at u + h v across v, and the nonlinearity; `apart`: distance of u from the path."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -266,8 +240,7 @@ def _nonlinearity(
     turned = max(turned, min(second / first, 1.0)) if first > 0.0 else turned
     bent = ~moving & (np.abs(d) > apart)
     if bent.any():
-        # A component that begins to move here, as the parameter at a fold, is a parabola, which has no scale, until it
-        # is none.
+        # A component that begins to move here, as the parameter at a fold, is a parabola without scale.
         parabola = 4.0 * corrected(point.u + 0.5 * h * v)
         turned = max(turned, median(np.abs(d - parabola)[bent] / np.abs(d[bent])))
     return d, turned

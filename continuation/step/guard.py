@@ -1,4 +1,4 @@
-"""User-defined checks of arcs."""
+"""Checks of arcs by users."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from continuation.point.arc import Arc
 
 
 class Guard(Protocol):
-    """A function that says why an arc does not count; the step is then shortened.
+    """A function that may reject an arc; the step is then shortened.
 
-    Guards run last, on the part of the arc up to the path's end; they do not see ends by `finish` or the endgame.
+    Guards run last, on the arc up to the path's end; they do not see ends by `finish` or endgame.
     """
 
     def __call__(self, arc: Arc, /) -> str | None:
@@ -26,13 +26,13 @@ class Guard(Protocol):
         Returns
         -------
         str or None
-            None if it counts; else the reason.
+            The reason, if any.
         """
         ...
 
 
 def objection(guard: Guard, arc: Arc) -> str:
-    """Return the guard's answer, "" for None; `TypeError` for a wrong type."""
+    """The guard's answer, "" for None; `TypeError` for others."""
     answer: Any = guard(arc)
     if answer is None or isinstance(answer, str):
         return answer or ""

@@ -1,4 +1,4 @@
-"""The options of a path, for every function with `**options`."""
+"""The options of a path."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance
 
 Finish = Callable[[Array, float], Array | None]
-"""Maps (y, lam) to the end y, or None to continue."""
+"""Maps (y, lam) to the end y, or None."""
 
 
 class PartOptions(TypedDict, total=False):
@@ -34,7 +34,7 @@ class PartOptions(TypedDict, total=False):
     Parameters
     ----------
     preset : Preset, default DEFAULT
-        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: the next three parts.
+        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or other: the next three parts.
     predictor : Predictor, default None
         Replaces the preset's, like the next two.
     corrector : Corrector, default None
@@ -42,14 +42,13 @@ class PartOptions(TypedDict, total=False):
     metric : Metric, default None
         For arclength. Default: the homotopy's, else `Automatic`.
     events : sequence of Event, default ()
-        Watched besides the homotopy's, turning points and branch points.
+        Added to the homotopy's, turning points and branch points.
     guards : sequence of Guard, default ()
         Functions of an arc that return why it does not count, or None; refused steps are shortened. Not archived.
     check_jacobian : bool, default False
         Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True
-        Watch turning points and branch points. False saves a third of the cost, for searches of ends; steps over branch
-        points are refused.
+        Watch turning points and branch points. False saves a third of the cost; steps over branch points are refused.
     """
 
     preset: Preset
@@ -75,18 +74,17 @@ class Options(PartOptions, total=False):
     target : float or None, default "homotopy"
         Final parameter value; None for none. Default: the homotopy's, else 0.
     direction : int, default 0
-        Sign of the parameter's first movement; 0: towards the target.
+        Sign of the parameter's first change; 0: towards the target.
     start : tuple of (u, v) or (y, lam), or Path, default None
-        Replaces the homotopy's start: point ``(y, lam)`` and direction; or a guess of y at a parameter value; or a path
-        to continue.
+        Replaces the homotopy's start: point ``(y, lam)`` and direction; a guess of y at a parameter value; or a path to
+        continue.
     finish : callable, default None
         Maps ``(y, lam)`` to the end y or None, after each step; replaces the homotopy's. Not archived.
     max_step : float, default None
-        Largest step in arclength, the resolution of pictures and path: bends narrower than half of it may be missed
-        (docs/guarantee.md).
+        Largest step in arclength: bends narrower than half of it may be missed (docs/guarantee.md).
     box : mapping or None, default "homotopy"
-        The path ends where it leaves the box: ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to (low,
-        high), None for open. Default: the homotopy's, if any.
+        The path ends outside the box: ``"lam"``, the number or name of an unknown, or ``"y"`` for all, to (low, high),
+        None for open. Default: the homotopy's.
     """
 
     tolerance: float | Tolerance
@@ -118,11 +116,9 @@ DEFAULTS: Options = {
     "max_step": None,
     "box": "homotopy",
 }
-"""Defaults."""
 
 OPTIONS = tuple(Options.__annotations__)
 PART_OPTIONS = tuple(PartOptions.__annotations__)
-"""Names of the options."""
 
 
 class Part(NamedTuple):
@@ -145,10 +141,7 @@ EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap
 
 
 def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: Mapping[str, str] | None = None) -> None:
-    """Refuse unknown options, and `owned` ones with the reason.
-
-    `TypeError` gives the nearest of the `known` options.
-    """
+    """Refuse unknown options (`TypeError` with the nearest `known` one), and `owned` ones with the reason."""
     for name in names:
         if owned and name in owned:
             raise TypeError(f"{name}: expected no such option here, {owned[name]}")
@@ -159,10 +152,7 @@ def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: M
 
 
 def checked(options: Mapping[str, Any]) -> Options:
-    """Return the options with defaults.
-
-    `TypeError, ValueError` give the option, the expected and the found value.
-    """
+    """The options with defaults; `TypeError, ValueError` for wrong values."""
     check_names(options)
     # `check_names` has checked the names.
     asked: Options = {**DEFAULTS, **options}  # type: ignore[typeddict-item]
@@ -193,19 +183,19 @@ def checked(options: Mapping[str, Any]) -> Options:
 
 
 def check_run(observers: Any, state: Any) -> None:
-    """Raise TypeError for bad observers or state."""
+    """Raise TypeError for wrong observers or state."""
     each("observers", observers, OBSERVER)
     if state is not None and not isinstance(state, State):
         raise complain(TypeError, "state", "the state of a tracer, or None", state)
 
 
 def names_homotopy(target: Any) -> bool:
-    """Return whether a target or box is "homotopy"."""
+    """Whether a target or box is "homotopy"."""
     return isinstance(target, str) and target == "homotopy"
 
 
 def checked_target(target: Any) -> float | None:
-    """Return a target as float or None; TypeError or ValueError otherwise."""
+    """The target as float or None; TypeError or ValueError otherwise."""
     if target is None:
         return None
     if not is_number(target) or not math.isfinite(target):
@@ -226,7 +216,7 @@ Documented = TypeVar("Documented", bound=Callable[..., Any])
 
 
 def documented(function: Documented) -> Documented:
-    """Replace ``{options}`` in the docstring, and ``{parts}`` by the `PartOptions`."""
+    """Replace ``{options}`` and ``{parts}`` (`PartOptions`) in the docstring."""
     text = inspect.getdoc(function)
     if text is not None:
         parts, others = (_parameters(options) for options in (PartOptions, Options))

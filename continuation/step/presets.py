@@ -11,7 +11,7 @@ from continuation.predictors import Hermite, Predictor, Taylor
 
 @frozen
 class Preset:
-    """Predictor, corrector and controller that suit each other."""
+    """Predictor, corrector and controller."""
 
     name: str
     trade: str

@@ -1,4 +1,4 @@
-"""Progress on stderr: a live line on a terminal, else occasional lines."""
+"""Progress on stderr: a live line on a terminal, else lines."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from continuation.path import LocatedEvent, Step
 from continuation.step.tracer import Tracer
 
 LIVE_SECONDS = 0.1
-"""Between updates of a live line."""
 
 PLAIN_SECONDS = 10.0
-"""Between lines without a terminal."""
 
 
 class Progress:
@@ -43,7 +41,7 @@ class Progress:
         self._show(step.index, text)
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Do nothing: steps show the turning points."""
+        """Do nothing."""
 
     def end(self, tracer: Tracer) -> None:
         """Show the last point and the status."""
@@ -80,7 +78,7 @@ def _tqdm(stream: TextIO, label: str) -> Any:
 
 
 class SweepProgress:
-    """Shows the number of finished paths: ``trace_many(..., progress=SweepProgress())``.
+    """Counts finished paths: ``trace_many(..., progress=SweepProgress())``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Records of steps, made only here during a trace."""
+"""Records of steps."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Observe = Callable[[Array, float], Mapping[str, float]]
 
 
 def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
-    """Return the function that gives a point's stored scalars: the homotopy's and the events'.
+    """A point's stored scalars: the homotopy's and the events'.
 
     It raises `ValueError` if two have one name.
     """
@@ -46,7 +46,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
 
 @frozen(eq=False)
 class StepRecorder:
-    """Makes records; `observe` gives extra scalars."""
+    """Makes records, with `observe`'s scalars."""
 
     evaluator: Evaluator
     observe: Observe | None
@@ -61,7 +61,7 @@ class StepRecorder:
         tangent: Array | None = None,
         **how: Any,
     ) -> Step:
-        """Return the record of a point.
+        """The record of a point.
 
         `residual_norm`: Computed if NaN. `tangent`: Default: the point's. `**how`: Other fields of `Step`.
         """
@@ -79,13 +79,13 @@ class StepRecorder:
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:
-        """Return events with extra scalars."""
+        """Events with extra scalars."""
         if self.observe is None:
             return events
         return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]
 
     def end(self, point: Linearization, state: State, u: Array) -> Step:
-        """Return the record of an end that no step reached."""
+        """The record of an end that no step reached."""
         chord = u - point.u
         length = norm(point.weights, chord)
         end = evolve(point, u=u, tangent=chord / length if length > 0.0 else point.tangent)

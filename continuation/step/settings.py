@@ -1,4 +1,4 @@
-"""Settings: everything that decides a path, except homotopy and start."""
+"""Settings of a path."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Settings:
     ----------
     predictor, corrector, controller, metric
     events : tuple of Event
-        The homotopy's, the caller's, turning points and branch points.
+        The homotopy's and the caller's, turning points, branch points.
     guards : tuple of Guard
     tolerance : Tolerance
     budget : Budget
@@ -105,8 +105,8 @@ def complete_settings(
 ) -> Settings:
     """Complete checked options from the homotopy.
 
-    `start`: Returns (y, lam), for blocks or a box. `observers`: Their `events` are watched. `TypeError, ValueError` for
-    a homotopy's bad metric, events or target.
+    `start`: returns (y, lam). `observers`: their `events` are watched. `TypeError, ValueError` for wrong metric, events
+    or target.
     """
     preset, target = asked["preset"], asked["target"]
     own = homotopy.metric if offers(homotopy, SupportsMetric) else None
@@ -150,7 +150,7 @@ def _capped(controller: Any, longest: float | None) -> Any:
 def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:
     box: Any = asked["box"]
     if names_homotopy(box):
-        # A caller's target or events replace the homotopy's own box.
+        # A caller's target or events replace the box.
         said = asked["events"] or not names_homotopy(asked["target"])
         box = None if said else getattr(homotopy, "box", None)
     return () if box is None else faces(box, Labels.of(homotopy), start())

@@ -23,23 +23,22 @@ from continuation.step.extent import FIRST_STEP, REPLACED, initial_extent
 
 
 class StartError(ArithmeticError):
-    """The start is no point of a path."""
+    """The start lies on no path."""
 
 
 class SingularStartError(StartError):
-    """The Jacobian has no full rank at the start, so the path has no direction."""
+    """The Jacobian has no full rank at the start: the path has no direction."""
 
 
 CORRECTING = BorderedNewton(max_iterations=20)
-"""One correction a path: many iterations are cheap."""
+"""Many iterations are cheap: one correction a path."""
 
 STEEP = 1e-8
 """Least parameter component of a tangent with border e_{N+1}: half of the digits."""
 
 CLEAR_OF_NOISE = 4.0
-"""Tolerance in units of a correction's noise: two standard deviations of a difference. With half CONSERVATIVE fails in
-single precision.
-"""
+"""Tolerance in units of a correction's noise: two standard deviations of a difference. With half, CONSERVATIVE fails in
+single precision."""
 
 COARSEST = 0.1
 """Tolerance if noise leaves no digit; later checks refute a worse start."""
@@ -51,18 +50,18 @@ NEARBY = 1.0
 """Largest correction, in extents, of a start off its parameter."""
 
 SAME_KERNEL = 1e-6
-"""Largest relative difference of one kernel by two borders: six digits."""
+"""Relative difference of one kernel by two borders: six digits."""
 
 ALIGNED = 1.0 - 1e-6
-"""Least cosine of one kernel by two borders: an angle of 1e-3."""
+"""Least cosine of one kernel by two borders."""
 
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
 ) -> tuple[Linearization, float]:
-    """Return the start on the path, with tangent, and a first step length.
+    """Return the corrected start with tangent, and a first step length.
 
-    `direction`: Sign of the tangent's parameter component; 0: towards the target, else +1. `StartError`: wrong point;
+    `direction`: sign of the tangent's parameter component; 0: towards the target, else +1. `StartError`: wrong point;
     SingularStartError: wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
@@ -90,10 +89,7 @@ def first_point(
 
 
 def at_parameter(solver: PathSolver, u: Array) -> Array:
-    """Return the point of the path at a guess's parameter value.
-
-    `StartError` if Newton's method fails.
-    """
+    """The path's point at a guess's parameter value; `StartError` if Newton's method fails."""
     evaluator = solver.evaluator
     unit = np.zeros_like(u)
     unit[-1] = 1.0
@@ -113,7 +109,7 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """Return the start in the trace's metric, and its extent.
+    """The start in the trace's metric, and its extent.
 
     Noise of H raises the tolerance, and the extents of noisier components.
     """
@@ -145,7 +141,7 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
 def _without_rest(
     solver: PathSolver, point: Linearization, u: Array, residual: Array, off: Array
 ) -> tuple[Array, Array]:
-    """A start and H there, with zeros for what a solver left of them, no more than it is off: its size is no unit."""
+    """Start and H there, with zeros for what a solver left of them: its size is no unit."""
     while (rest := (u != 0.0) & (np.abs(off) > REPLACED * np.abs(u))).any():
         zeroed = np.where(rest, 0.0, u)
         try:
@@ -162,14 +158,14 @@ def _without_rest(
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank.
 
-    Border e_{N+1} fails at turning points too; a kernel that depends on random borders has more than one dimension.
+    Border e_{N+1} fails at turning points; a kernel that depends on random borders has several dimensions.
     """
     ones = np.ones_like(u)
     try:
         point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
-        # Units may make the parameter component small. A border without units that gives the same kernel confirms it.
+        # Units may make the parameter component small. A border without units confirms it by the same kernel.
         v = point.tangent
         border = np.divide(1.0, v, out=np.zeros_like(v), where=v != 0.0)
         again = linearize(evaluator, u, ones, border / norm(ones, border))
@@ -199,12 +195,12 @@ def _well_conditioned(point: Linearization) -> bool:
 
 
 def is_guess(start: Any) -> bool:
-    """Return whether a start is (y, lam)."""
+    """Whether a start is (y, lam)."""
     return isinstance(start, tuple | list) and len(start) == 2 and np.ndim(start[1]) == 0 and np.ndim(start[0]) == 1
 
 
 def guessed(start: Any) -> Array:
-    """Return a start (y, lam) as one vector; ValueError otherwise."""
+    """A start (y, lam) as one vector; ValueError otherwise."""
     y, lam = (real_vector("start", part) for part in start)
     u: Array = np.append(y, lam)
     if not np.isfinite(u).all():
@@ -213,10 +209,7 @@ def guessed(start: Any) -> Array:
 
 
 def arriving(path: Path) -> tuple[Array, Array]:
-    """Return a path's last point and tangent, or the chord from the point before.
-
-    `ValueError` without such a point.
-    """
+    """A path's last point and its tangent or chord; `ValueError` without."""
     before, last = [None, *path.steps[-2:]][-2:] if len(path.steps) else (None, None)
     if last is None:
         raise ValueError("start: expected a path with a point to go on from, found one without")
@@ -227,7 +220,7 @@ def arriving(path: Path) -> tuple[Array, Array]:
 
 
 def point_and_direction(start: Any) -> tuple[Array, Array]:
-    """Return copies of a start's finite point and direction; ValueError otherwise."""
+    """Copies of a start's finite point and direction; ValueError otherwise."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
         raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}; a guess is (y, lam)")
@@ -242,10 +235,7 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
 def point_from_tangent(
     solver: PathSolver, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
 ) -> tuple[Linearization, float]:
-    """Begin at a point in a direction; its determinant sign is the orientation.
-
-    `ValueError` unless `start` is a pair (u, v) of the right size, v nonzero.
-    """
+    """Begin at a point in a direction, which orients the determinant; `ValueError` for a wrong or zero pair."""
     evaluator, (u, v) = solver.evaluator, point_and_direction(start)
     if u.size != size:
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")

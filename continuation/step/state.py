@@ -1,4 +1,4 @@
-"""The state of a trace between steps, for archives."""
+"""The state of a trace between steps."""
 
 from __future__ import annotations
 
@@ -11,41 +11,14 @@ from continuation.predictors import Knot
 
 @frozen(eq=False)
 class State:
-    """State at an accepted point; with the settings it determines the rest of the path, bit for bit.
+    """State at an accepted point; with the settings it determines the rest of the path.
 
-    Attributes
-    ----------
-    history : tuple of Knot
-        The predictor's knots, the current point last.
-    weights : ndarray, shape (N + 1,)
-        Metric.
-    anchor : tuple of two ndarrays, shape (N + 1,)
-        Point and border of the factorisation.
-    orientation : int
-        Determinant sign of the tangent.
-    h : float
-        Next step length.
-    controller : tuple of float
-    monitors : tuple of float
-        Of the events; 0 if found at the point.
-    occurrences : tuple of int
-        Of the events.
-    origin : Knot
-        The start, with metric `origin_weights`.
-    divergence_monitor : tuple of float
-        See `continuation.ends.divergence`.
-    last_failed_landing : float
-        Parameter value, or inf.
-    last_failed_endgame : float
-        Parameter value, or inf.
-    index : int
-        Of the last step.
-    signs : tuple of int
-        The piece ahead.
-    noise : ndarray, shape (N,), or (0,) where there is none
-        Of each equation.
-    tolerance : float
-        Raised for noise, else 0.
+    `history`: the predictor's knots, the current point last. `weights`: the metric. `anchor`: point and border of the
+    factorisation. `orientation`: determinant sign of the tangent. `h`: the next step length. `monitors`, `occurrences`:
+    values and counts of the events; a monitor that vanishes at the point is 0. `origin`: the start, with metric
+    `origin_weights`. `divergence_monitor`: see `continuation.ends.divergence`. `last_failed_landing`,
+    `last_failed_endgame`: parameter values, or inf. `index`: of the last step. `signs`: the piece ahead. `noise`: of
+    each equation, shape (N,), or (0,) without. `tolerance`: raised for noise, else 0.
     """
 
     history: tuple[Knot, ...]

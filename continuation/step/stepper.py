@@ -17,22 +17,21 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 
 LOW_ORDER_FRACTION = 0.9
-"""Part of the distance to the boundary that a prediction may use: usual in interior methods (Wright, Primal-Dual
-Interior-Point Methods, 1997).
-"""
+"""Part of the distance to the boundary for a prediction, as in interior methods (Wright, Primal-Dual Interior-Point
+Methods, 1997)."""
 
 SHORTENINGS, SHORTEST = 60, 0.1
-"""Limit of cuts at a boundary, and least factor: sixty go below any least step."""
+"""Limit of cuts at a boundary, and least factor: they go below any least step."""
 
 TANGENT = 1e-6
-"""Accuracy of the tangent, in tolerances; more is useless."""
+"""Accuracy of the tangent, in tolerances."""
 
 
 @frozen(eq=False)
 class Arrival:
     """An attempt that arrived.
 
-    `point`: Its tangent is oriented by angle for now. `angle`: Between the tangents, radians.
+    `angle`: between the tangents, radians.
     """
 
     h: float
@@ -53,7 +52,7 @@ class Stepper:
     fraction: float
 
     def shortened(self, point: Linearization, prediction: Prediction, h: float) -> float:
-        """Return the step, cut until the prediction is well inside the domain."""
+        """The step, cut until the prediction is well inside the domain."""
         max_step = self.solver.max_step
         if max_step is None:
             return h
@@ -81,7 +80,7 @@ class Stepper:
         reason = None
         if dot(border, correction.u - point.u) <= 0.0:
             reason = Rejection.BACKWARDS
-        # For any controller: such a correction left the predicted path.
+        # A correction longer than the step left the predicted path.
         elif correction.distance > h:
             reason = Rejection.TOO_FAR
         elif solver.max_step is not None and not solver.max_step(point.u, correction.u - point.u) > 1.0:

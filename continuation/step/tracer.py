@@ -1,4 +1,4 @@
-"""The loop: an iterator of accepted steps."""
+"""The loop over accepted steps."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ from continuation.step.verdict import (
 
 
 class Observer(Protocol):
-    """Watches a trace, without influence: an archive, a progress bar, a plot."""
+    """Watches a trace: an archive, a progress bar, a plot."""
 
     def step(self, tracer: Tracer, step: Step) -> None:
         """Receive an accepted step; `tracer.state` is the state after it.
@@ -83,9 +83,9 @@ class Observer(Protocol):
 
 @documented
 class Tracer:
-    """One path as an iterable of steps: ``for step in Tracer(homotopy)``; the loop may be left.
+    """One path as an iterable of steps: ``for step in Tracer(homotopy)``.
 
-    A second loop continues, with clock and budget. Observers see the end whenever a loop is left.
+    The loop may be left, and a second one continues, with clock and budget. Observers see the end of each loop.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Tracer:
     Raises
     ------
     TypeError, ValueError
-        For bad input; for an unknown option, with the nearest one.
+        For wrong input.
     """
 
     def __init__(
@@ -149,7 +149,7 @@ class Tracer:
 
     @property
     def references(self) -> tuple[str, ...]:
-        """BibTeX of homotopy, parts and substitute methods used so far."""
+        """BibTeX of homotopy, parts and substitutes used."""
         parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
@@ -275,7 +275,7 @@ class Tracer:
             noise=np.zeros(0) if self._evaluator.noise is None else self._evaluator.noise,
             tolerance=self._solver.tolerance.relative,
         )
-        # State last: interrupted before, a resumed trace begins again.
+        # State last: a trace interrupted before begins again.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
         if self._start is None and (verdict := start_on_target(point.lam, settings.target)) is not None:
             self._end(verdict)
@@ -299,7 +299,7 @@ class Tracer:
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
         path.seconds, self._clock, path.references = self.seconds, None, self.references
-        # All observers: archives must close.
+        # All observers must be told: archives must close.
         with ExitStack() as telling:
             for observer in reversed(self.observers):
                 telling.callback(observer.end, self)
@@ -310,7 +310,6 @@ class Tracer:
         self.state = state
         for observer in self.observers:
             for event in events:
-                # The step shows its own event.
                 if not event.ends_step:
                     observer.event(self, event)
             observer.step(self, step)
@@ -318,7 +317,7 @@ class Tracer:
     def _next(self, point: Linearization) -> Linearization | None:
         state = self.state
         assert state is not None
-        # Steps that are not finite show overflow.
+        # Non-finite steps show overflow.
         with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict

@@ -1,4 +1,4 @@
-"""Why a path ends: functions in the order of their calls return a `Verdict`, or None to continue."""
+"""Why a path ends: each function gives a `Verdict`, or None to continue."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars`: After the status' sentence. `limit`: A singular end. `rejected`: Last failures. `error`: Bound for a
-    regular end.
+    `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: last failures. `error`: a regular
+    end's bound.
     """
 
     status: Status
@@ -37,7 +37,6 @@ class Verdict:
 
 
 INTERRUPTED = Verdict(Status.INTERRUPTED)
-"""Ctrl-C."""
 
 
 def abandoned(reason: str) -> Verdict:
@@ -51,7 +50,7 @@ def raised(error: BaseException) -> Verdict:
 
 
 def sentence(error: BaseException) -> str:
-    """Return an exception in one line."""
+    """An exception in one line."""
     try:
         text = str(error)
     except Exception as within:
@@ -71,7 +70,7 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
 
 
 def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """The budget is exhausted at `limit`; an asymptote in sight is mentioned."""
+    """The budget is exhausted at `limit`; mentions an asymptote in sight."""
     limit = limit or ("" if state is None else beyond_horizon(state.here.u))
     if not limit:
         return None
@@ -100,7 +99,7 @@ def finished(residual_norm: float) -> Verdict:
 
 
 def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
-    """The step is below its minimum; the last rejection decides the status."""
+    """The step is below its minimum; the last rejection decides."""
     if h >= minimum:
         return None
     last = rejected[-1]

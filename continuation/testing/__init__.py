@@ -1,4 +1,4 @@
-"""The conformance suite: whether a homotopy fulfils the engine's requirements.
+"""The conformance suite for homotopies.
 
 Run ``check_homotopy(instance)``, ``continuation check module:Class`` in a shell, or ``homotopy_checks(instance)`` with
 ``pytest.mark.parametrize``. The homotopy's capabilities select the checks.

@@ -14,7 +14,7 @@ from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 COMPARED_ORDER = 6
-"""Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3; jets cost order^2."""
+"""Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3."""
 
 SOLVE_ERROR = 1e-8
 """Largest relative residual of a bordered solve: half of the digits."""
@@ -24,10 +24,10 @@ DERIVATIVE_ERROR = 1e-6
 not."""
 
 CANCELLED_ENTRY = 1e-10
-"""Error of an entry that cancels, relative to the largest entry."""
+"""Error of a cancelling entry, relative to the largest."""
 
 SURELY_REGULAR = 1e12
-"""Largest condition number for a trusted sign of a determinant."""
+"""Largest condition number for a trusted determinant sign."""
 
 
 @frozen(eq=False)
@@ -81,8 +81,8 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
         with reporting("bordered.solve", place.where):
             z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
         require(z.shape == b.shape, f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
-        # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term, since
-        # it may be round-off alone.
+        # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term, which
+        # may be round-off.
         largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
         allowed = SOLVE_ERROR * (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
         _compare("bordered", place, "the solution's equation", whole @ z, b, allowed)
@@ -114,7 +114,6 @@ def taylor(subject: Subject) -> None:
 
 
 def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:
-    """The series solves the equations to its order and keeps its arclength."""
     along = c @ point.border
     for k in range(2, COMPARED_ORDER + 1):
         said = f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}"

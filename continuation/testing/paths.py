@@ -28,9 +28,9 @@ from continuation.testing.subject import Place, Subject, fail, random_directions
 
 
 def max_step(subject: Subject) -> None:
-    """After a share of the way to the boundary, `max_step` gives the rest, in units of v."""
+    """After a share of the way to the boundary, `max_step` gives the rest."""
     for place in subject.places:
-        # Relative to the point, since interior points span orders of magnitude.
+        # Relative, since interior points span orders of magnitude.
         size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
         for v in size * np.array(random_directions(place.u.size, 4, 19)):
             whole = _longest(subject, place.where, place.u, v)
@@ -73,7 +73,7 @@ def archive(subject: Subject) -> None:
     if "unstorable" in tree:
         # The owner passes it to `resume`.
         return
-    # Their modules are loaded, since encoding just named them.
+    # Encoding has just loaded these modules.
     named = re.findall(r'"(?:class|function)": "([\w.]+):([\w.]+)"', text)
     trusted = registry([attrgetter(name)(sys.modules[module]) for module, name in named])
     try:
@@ -111,7 +111,7 @@ def _same_path(name: str, wanted: Path, found: Path) -> None:
         for a, b in zip(p, q):
             if not np.array_equal(a.u, b.u):
                 fail(f"{name}: expected {a!r}, found {b!r}, which differs by {float(np.abs(a.u - b.u).max()):.3g}")
-            # By name: archives order scalars differently.
+            # Archives order scalars differently.
             scalars = list(a.observed.values()), [b.observed.get(key, math.inf) for key in a.observed]
             if len(a.observed) != len(b.observed) or not np.array_equal(*scalars, equal_nan=True):
                 fail(f"{name}: {a!r} observed {dict(a.observed)}, found {dict(b.observed)}")

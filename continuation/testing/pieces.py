@@ -15,13 +15,13 @@ from continuation.testing.protocol import answers, difference
 from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 SAME_VALUE = 1e4
-"""Allowed difference of two formulas, in units of round-off."""
+"""Allowed difference of two formulas, in round-off."""
 
 MOVED_ULPS = 64.0
-"""Ulps by which a point moves to sample round-off."""
+"""Motion of a point, in ulps, to sample round-off."""
 
 SMOOTH = 1e-4
-"""Relative difference of one-sided derivatives of a switch; difference quotients have eight digits."""
+"""Relative difference of one-sided derivatives of a switch."""
 
 
 def switches(subject: Subject) -> None:
@@ -74,7 +74,6 @@ def pieces(subject: Subject) -> None:
 
 
 def _round_off(subject: Subject, place: Place, value: Array) -> Array:
-    """The map's change for one ulp of the largest values along the path."""
     move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(random_directions(place.u.size, 1, 29)[0])
     moves = [MOVED_ULPS * move, -MOVED_ULPS * move, MOVED_ULPS * np.where(np.arange(move.size) % 2, move, -move)]
     looks = [np.asarray(subject.homotopy.residual((place.u + m)[:-1], float((place.u + m)[-1]))) for m in moves]
@@ -94,7 +93,7 @@ def derivatives_of_pieces(subject: Subject) -> None:
 
 
 def _met(subject: Subject) -> list[tuple[Place, Signs]]:
-    """Places and up to three kinks, with all pieces that meet there."""
+    """Places and up to three kinks, with all pieces there."""
     each = Pieces(subject.homotopy)
     found = []
     for place in subject.places:

@@ -42,14 +42,12 @@ def _double(x: Any, n: int) -> bool:
 
 
 def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """Weights at the start and later."""
     v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
 
 
 def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    """Observed scalars there and at the start."""
     y, lam = homotopy.start()
     return homotopy.observe(place.y, place.lam), homotopy.observe(np.array(y, dtype=float), float(lam))
 
@@ -168,7 +166,6 @@ def _asked(subject: Subject, place: Place, name: str) -> Any:
 
 
 def _numbers(answer: Any, place: Place) -> list[Array]:
-    """The numbers in an answer."""
     n = place.u.size - 1
     if hasattr(answer, "solve"):
         return [np.array(answer.solve(np.ones(n), 1.0)), np.array([float(answer.sign)])]

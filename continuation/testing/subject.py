@@ -1,4 +1,4 @@
-"""The homotopy under test, with points near its path and one traced path."""
+"""The homotopy under test, with points and a path."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ LONGEST_PATH = 60
 """Steps of the traced path."""
 
 FEWEST = 6
-"""A path with fewer points before its end is traced again with shorter steps."""
+"""Fewest points of a path that is not traced again with shorter steps."""
 
 STEPS_WITHOUT_TARGET = 12
-"""Fewer without a target: the path may leave the homotopy's region."""
+"""Steps without a target, as the path may leave the homotopy's region."""
 
 
 class CheckFailure(AssertionError):
@@ -133,7 +133,7 @@ class Subject:
         return sorted({k for k in (last // 2, last - 1) if k > 0})
 
     def finite(self, place: Place) -> bool:
-        """Whether the residual is finite there."""
+        """Whether the residual is finite."""
         return bool(np.isfinite(self.evaluator.residual_norm(place.u)))
 
     @cached_property
@@ -150,7 +150,7 @@ class Subject:
 
     @property
     def limits(self) -> Budget:
-        """The budget of a traced path."""
+        """Budget of a traced path."""
         if self.steps is not None:
             return Budget(steps=self.steps)
         return Budget(steps=LONGEST_PATH if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
@@ -188,7 +188,7 @@ class Subject:
 
     @cached_property
     def regular(self) -> Path:
-        """The path without a perhaps singular end (boundary, endgame, `finish`)."""
+        """The path without a perhaps singular end."""
         path = self.path
         end = path.endpoint
         if end.kind != Kind.TARGET or not (self.has("max_step") or path.winding_number or end.segment is None):
@@ -197,7 +197,7 @@ class Subject:
         return Path(steps=path.steps[:-1], events=events, status=Status.BUDGET_EXHAUSTED, counts=path.counts)
 
     def points(self) -> Iterator[tuple[Place, Linearization]]:
-        """The places on the path, linearized in the Euclidean metric."""
+        """Places on the path, linearized."""
         yield self.start, self.first.with_weights(np.ones_like(self.start.u))
         for k in self._sampled():
             step = self.path.steps[k]
@@ -206,7 +206,7 @@ class Subject:
                 yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
 
     def derivative(self, place: Place) -> Array:
-        """[H_y, H_lam] as a dense matrix, shape (N, N + 1)."""
+        """The matrix [[H_y, H_lam]], dense, shape (N, N + 1)."""
         if self.has("jacobian"):
             with reporting("jacobian", place.where):
                 H_y, H_lam = self.homotopy.jacobian(place.y, place.lam)

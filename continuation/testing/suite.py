@@ -24,7 +24,7 @@ class Check:
     ----------
     name : str
     capability : str
-        The attribute that is checked; empty if all homotopies have it.
+        The checked attribute; empty if always there.
     after : str
         The check that must pass first, or empty.
     """
@@ -77,12 +77,12 @@ CHECKS = (
     Check("archive", paths.archive, after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
-"""Basic, cheap checks first: correct the first failure first."""
+"""Cheap checks first."""
 
 
 @frozen
 class Result:
-    """A check's name, outcome ("passed", "failed", "failed as expected", "not run") and message."""
+    """A check's name, outcome and message."""
 
     name: str
     outcome: str
@@ -101,7 +101,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
     Parameters
     ----------
     homotopy : Homotopy
-        A small instance: matrices become dense, and the path is traced about ten times.
+        A small instance: matrices become dense, and paths are traced about ten times.
     steps : int, optional
         Default: 60, or 12 without a target.
     """
@@ -166,7 +166,7 @@ def check_homotopy(
     expected_failed_checks : mapping of str to str, optional
         Checks known to fail, and why.
     steps : int, optional
-        Both other arguments as for `homotopy_checks`.
+        As for `homotopy_checks`.
 
     Returns
     -------
