@@ -75,7 +75,7 @@ def pitcon_is_quick_on_small_dense_systems(engine_presets):
 
     small, large = (seconds("PITCON (dense)", kind) for kind in ("exponential-cosine, n = 5", "Bratu 2D"))
     return small is None or (
-        5.0 * small < seconds("DEFAULT", "exponential-cosine, n = 5") and large > 2.0 * seconds("DEFAULT", "Bratu 2D")
+        5.0 * small < seconds("DEFAULT", "exponential-cosine, n = 5") and large > 1.25 * seconds("DEFAULT", "Bratu 2D")
     )
 
 
