@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
+    CancelledError,
     Executor,
     Future,
     ProcessPoolExecutor,
@@ -236,6 +237,7 @@ def _spread(
 ) -> Iterator[tuple[int, Result]]:
     """Submit all tasks; repeat those lost with a worker, each in its own process."""
     lost: dict[int, BaseException] = {}
+    again = set[int]()
     for task in tasks:
         try:
             futures[executor.submit(traced, task)] = task.number
@@ -251,9 +253,14 @@ def _spread(
         while ended:
             # Dask repeats lost tasks while their future is held.
             future = ended.pop()
-            number, raised = futures.pop(future), future.exception()
+            number = futures.pop(future)
+            raised = CancelledError() if future.cancelled() else future.exception()
             if isinstance(raised, BrokenExecutor):
                 lost[number] = raised
+            elif isinstance(raised, Exception) and number not in again and not pool:
+                # `traced` returns what a homotopy raises: this is the executor's, as when dask loses a result.
+                again.add(number)
+                futures[executor.submit(traced, tasks[number])] = number
             else:
                 yield number, future.result() if raised is None else raised
             del future

@@ -148,11 +148,11 @@ def _best(changes: Array) -> Any:
 class ByDifferences:
     """Central differences, eight to ten digits.
 
-    `u0`: where `steps`, relative to sizes, were chosen, both of shape (N + 1,). `usual`, shape (N,): each equation's
-    change as all components move by their sizes.
+    `unit`, `steps`, of shape (N + 1,): steps relative to units, or to larger components. `usual`, shape (N,): each
+    equation's change as all components move by their sizes.
     """
 
-    u0: Array
+    unit: Array
     steps: Array
     usual: Array
     name: str = "differences"
@@ -172,7 +172,7 @@ class ByDifferences:
 
     def scale(self, u: Array) -> Array:
         """Rounded steps at u: units of directions, shape (N + 1,)."""
-        reach = self.steps * np.maximum(sizes(self.u0), np.abs(u))
+        reach = self.steps * np.maximum(self.unit, np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
@@ -196,6 +196,7 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     each component's equations; default: all.
     """
     steps, size = np.empty_like(u0), sizes(u0)
+    unit = size.copy()
     groups = np.arange(u0.size) if groups is None else groups
     usual = np.nan_to_num(np.abs(difference_along(residual, u0, size * generic(u0.size))[0]))
     for group in range(int(groups.max()) + 1):
@@ -203,14 +204,14 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
         while True:
             changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1].T
             seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
-            steps[own] = DIFFERENCE_STEPS[_best(seen)] * (reach / size)[own]
+            steps[own], unit[own] = DIFFERENCE_STEPS[_best(seen)], reach[own]
             # A component that is almost zero has no unit: try longer steps that agree as well.
             longer = own & (size < USUAL_STEP) & (reach < 1.0)
             longer[own] &= (seen[:, 0] <= seen.min(axis=1)) | (changes.min() == 1.0)
             if not longer.any():
                 break
             reach[longer] = np.minimum(reach[longer] / DIFFERENCE_STEPS[3], 1.0)
-    return ByDifferences(u0, steps, usual)
+    return ByDifferences(unit, steps, usual)
 
 
 Products: TypeAlias = Exact | ByDifferences

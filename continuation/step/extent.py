@@ -240,7 +240,9 @@ def _nonlinearity(
     turned = max(turned, min(second / first, 1.0)) if first > 0.0 else turned
     bent = ~moving & (np.abs(d) > apart)
     if bent.any():
-        # A component that begins to move here, as the parameter at a fold, is a parabola without scale.
-        parabola = 4.0 * corrected(point.u + 0.5 * h * v)
-        turned = max(turned, median(np.abs(d - parabola)[bent] / np.abs(d[bent])))
+        # A component that begins to move here, as the parameter at a fold, follows a parabola, which has no scale.
+        half = corrected(point.u + 0.5 * h * v)
+        bent &= half != 0.0
+        if bent.any():
+            turned = max(turned, median(np.abs(d - 4.0 * half)[bent] / np.abs(d[bent])))
     return d, turned

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve
+from numpy.typing import NDArray
 
 from continuation.arguments.checks import real_vector
 from continuation.arrays import Array, generic_vector, median
@@ -72,14 +73,23 @@ def first_point(
     except EvaluationError as error:
         raise StartError(f"At the start {error}.") from error
     point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
-    given, off = u, point.solve(residual)
-    if tolerance.measure(off, point.weights) > 1.0:
+    judge, off = point, point.solve(residual)
+    if tolerance.measure(off, judge.weights) > 1.0:
         u = _correct_start(solver, point, u, unit)
         residual = evaluator.residual(u)
-        off = point.solve(residual)
-    u, residual = _without_rest(solver, point, u, residual, off)
-    if u is not given:
         point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
+        off = judge.solve(residual)
+    # Unknowns that are no larger than the point is off the path are what a solver left of zeros: their size is no unit.
+    while (left := _left_of_zero(point.u, off)).any():
+        u = np.where(left, 0.0, point.u)
+        try:
+            residual = evaluator.residual(u)
+            off = judge.solve(residual)
+            if tolerance.measure(off, judge.weights) > 1.0:
+                break
+            point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
+        except (EvaluationError, SingularStartError):
+            break  # H has no value, or no derivative, at zero.
     wanted = direction
     if wanted == 0:
         wanted = 1 if target is None or target >= u[-1] else -1
@@ -138,21 +148,9 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
     raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
 
 
-def _without_rest(
-    solver: PathSolver, point: Linearization, u: Array, residual: Array, off: Array
-) -> tuple[Array, Array]:
-    """Start and H there, with zeros for what a solver left of them: its size is no unit."""
-    while (rest := (u != 0.0) & (np.abs(off) > REPLACED * np.abs(u))).any():
-        zeroed = np.where(rest, 0.0, u)
-        try:
-            residual_there = solver.evaluator.residual(zeroed)
-        except EvaluationError:
-            break  # Zero is outside the domain.
-        off = point.solve(residual_there)
-        if solver.tolerance.measure(off, point.weights) > 1.0:
-            break
-        u, residual = zeroed, residual_there
-    return u, residual
+def _left_of_zero(u: Array, off: Array) -> NDArray[np.bool_]:
+    """Components that a Newton step, -off, replaces."""
+    return np.asarray((u != 0.0) & (np.abs(off) > REPLACED * np.abs(u)))
 
 
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:

@@ -20,7 +20,7 @@ HOPF_PAIR = 1e-2
 LEAST_MOTION = 1e-2
 """Least relative scale: round-off must not measure a component at rest."""
 
-NONLINEAR, RADII_TRIED = 0.1, 60
+NONLINEAR, MIDDLE, RADII_TRIED = 0.1, 0.3, 60
 """At an orbit's size nonlinear terms are between this part of the linear ones and all of them; the most radii tried."""
 
 ONE_RETURN = 1e-3
@@ -40,12 +40,14 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     Returns x with exact zeros, Re q exp(2 pi i t) at nodes, period and scale. Raises `ValueError` if no pair of
     eigenvalues is near the imaginary axis.
     """
-    while True:
-        matrix = field.derivatives(x[:, None], p)[0][0]
-        rest = np.abs(np.linalg.lstsq(matrix, field(x[:, None], p)[:, 0], rcond=None)[0]) > REPLACED * np.abs(x)
-        if not (rest & (x != 0.0)).any():
+    matrix = field.derivatives(x[:, None], p)[0][0]
+    off = _newton(matrix, field, x, p)
+    while (rest := (x != 0.0) & (off > REPLACED * np.abs(x))).any():
+        zeroed = np.where(rest, 0.0, x)
+        there = field.derivatives(zeroed[:, None], p)[0][0]
+        if not (_newton(there, field, zeroed, p) <= off).all():
             break
-        x = np.where(rest, 0.0, x)
+        x, matrix, off = zeroed, there, _newton(there, field, zeroed, p)
     values, left, right = eig(matrix, left=True)
     off = np.where(values.imag > 0.0, np.abs(values.real) / np.maximum(np.abs(values), np.finfo(float).tiny), np.inf)
     k = int(np.argmin(off))
@@ -70,7 +72,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
             if NONLINEAR <= share <= 1.0:
                 break
             # Quadratic or cubic terms; outside its domain f is nonlinear enough.
-            r *= 1.0 / min(max(np.sqrt(share), 0.1), 10.0) if share < np.inf else 0.1
+            r *= 1.0 / min(max(np.sqrt(share / MIDDLE), 0.1), 10.0) if share < np.inf else 0.1
         else:
             r = 1.0  # f is linear.
     # Components at rest follow those that oscillate.
@@ -78,6 +80,12 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     q, still = r * q, np.where(x != 0.0, LEAST_MOTION * size, follow)
     scale = np.maximum(np.abs(q), np.where(still > 0.0, still, LEAST_MOTION * size))
     return x, (q * turned[:, None]).real, float(2.0 * np.pi / values[k].imag), scale
+
+
+def _newton(matrix: Array, field: Field, x: Array, p: float) -> Array:
+    """Sizes of the components of Newton's step from an approximate equilibrium."""
+    found: Array = np.abs(np.linalg.lstsq(matrix, field(x[:, None], p)[:, 0], rcond=None)[0])
+    return found
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:

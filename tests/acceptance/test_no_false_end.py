@@ -246,6 +246,19 @@ def test_a_start_at_a_fold_to_round_off(preset, y):
         assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
 
 
+@without_series
+@pytest.mark.parametrize(
+    ("residual", "start"),
+    [
+        (lambda y, lam: np.stack([y[0] + y[1] - np.hypot(*y) - lam, y[1] - y[0] - lam]), [1e-17, 2e-17]),
+        (lambda y, lam: np.stack([y[0] - lam**2, y[1] - 1.0 - lam - y[0] ** 1.5]), [1e-17, 1.0]),
+    ],
+)
+def test_a_start_near_zero_where_no_derivative_is_at_zero(preset, residual, start):
+    path = trace(from_functions(residual, start=(start, 0.0), target=1.0), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+
+
 @every_preset
 @pytest.mark.parametrize(
     ("folds", "unit"),

@@ -262,7 +262,7 @@ def dask_sweep(folder: Path, size: int) -> Found:
         def residual(self, y: Any, lam: Any) -> Any:
             marker = os.environ["MARKER"]
             if lam > 0.0 and self.splitting == 1.0 and not os.path.exists(marker):
-                open(marker, "x").close()
+                open(marker, "w").close()
                 os.kill(os.getpid(), signal.SIGKILL)
             return super().residual(y, lam)
 

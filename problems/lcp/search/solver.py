@@ -145,6 +145,7 @@ def solve(
         left = _given(locals())
         left["x0"] = None if start is None else start[small.kept]
         left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
+        left["archive"] = archive if small.kept.size else None
         return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0

@@ -95,6 +95,18 @@ def test_a_component_that_is_almost_zero_says_nothing_of_its_step(small):
     np.testing.assert_allclose(found, [[1.4, 1.0, 0.6], [0.0, -1.2, 0.1]], atol=1e-8)
 
 
+@pytest.mark.parametrize("small", [1e-8, 1e-12, 1e-310])
+def test_a_component_that_begins_at_almost_zero_is_followed_far_from_it(small):
+    """Its step is not relative to the first value where it has grown to one."""
+
+    def residual(y, lam):
+        a, b = (float(part) for part in y)
+        return np.array([a - lam, b - 1.0 - np.sin(3.0 * a)])
+
+    path = trace(from_functions(residual, start=([small, 1.0], 0.0), target=1.0), budget=Budget(steps=40))
+    assert path.status is Status.REACHED_TARGET
+
+
 class Spoiled(ExponentialCosine):
     """One entry of [H_y, H_lam] is wrong."""
 
