@@ -58,8 +58,7 @@ class Folded:
     @classmethod
     def random(cls, generator, n, m, cone=False):
         """With a path through the origin's neighbour `at`; or a cone, every switch of which vanishes at 0."""
-        draw = lambda *shape: generator.integers(-3, 4, shape)  # noqa: E731
-        A, C, G, d, at = draw(n, n + 1), draw(n, m), draw(m, n + 1), draw(m), draw(n + 1)
+        A, C, G, d, at = (generator.integers(-3, 4, shape) for shape in ((n, n + 1), (n, m), (m, n + 1), m, n + 1))
         if cone:
             d, at = 0 * d, 0 * at
         b = -(A @ at + C @ np.abs(G @ at + d))
