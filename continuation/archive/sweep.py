@@ -17,7 +17,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
@@ -167,10 +167,10 @@ def _swept(
                 future.cancel()
             _end_processes(executor)
             for future, number in futures.items():
-                if future.done() and not future.cancelled() and future.exception() is None:
-                    # In a terminal, Ctrl-C reaches workers too.
-                    with suppress(KeyboardInterrupt):
-                        kept.add(number, future.result())
+                ended = future.done() and not future.cancelled() and future.exception() is None
+                # Ctrl-C reaches workers in a terminal, and stops threads: their paths have not ended.
+                if ended and _status(future.result()) is not Status.INTERRUPTED:
+                    kept.add(number, future.result())
         kept.finish()
     paths = [kept.paths[number] for number in sorted(kept.paths)]
     if stopped:
@@ -197,13 +197,12 @@ class _Kept:
         if isinstance(found, BaseException):
             found = _sent(Path(status=Status.RAISED, message=sentence(found)), task)
         if isinstance(found, Path):
-            self.paths[number], status = found, found.status
+            self.paths[number] = found
         else:
             assert self.target is not None
             append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
             self.numbers.append(number)
-            status = Status(int(found.paths["status"][0]))
-        if status is Status.INTERRUPTED:
+        if _status(found) is Status.INTERRUPTED:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
@@ -230,6 +229,10 @@ class _Kept:
         self.stack.callback(store.close)
         self.parts[share.layout] = store
         return store
+
+
+def _status(found: Path | Share) -> Status:
+    return found.status if isinstance(found, Path) else Status(int(found.paths["status"][0]))
 
 
 def _spread(
