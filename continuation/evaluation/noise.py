@@ -54,7 +54,7 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         samples = np.stack([here, *(residual(u + t * h * w) for t in NOISE_PLACES[1:])])
         found = np.abs(_FOURTH @ samples).max(axis=0)
         # Equal samples are no evidence.
-        found[found == 0.0] = np.inf
+        found[(samples == here).all(axis=0)] = np.inf
         now = (least <= NOISE_STEADY * found) & (least < np.inf)
         least = np.where(steady, least, np.minimum(least, found))
         steady |= now
