@@ -32,8 +32,8 @@ RELATIVE_FLOOR = 1e-13
 RESIDUAL_RATIO = 1e-3
 """Largest residual at the limit, relative to the first sample moved to the target."""
 
-ULPS = 8.0
-"""Perturbation, in ulps, that shows round-off."""
+ULPS = 8.0, -1021.0
+"""Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
@@ -243,13 +243,18 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
-    """Motion of the point by round-off in H: H a few ulps away, less its linear part."""
+    """Motion of the point by round-off in H: H a few ulps away, less its linear part.
+
+    The parameter moves, too: near a pole H at one value is as smooth as at any other, and as wrong.
+    """
     apply = evaluator.differential(at.u)
+    seen = np.zeros_like(at.u)
     if apply is None:
-        return np.zeros_like(at.u)
-    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
-    nearby[-1] = at.u[-1]
-    left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
-    # The largest of many samples is larger.
-    seen: Array = 2.0 * np.abs(at.solve(left, 0.0, unit))
+        return seen
+    here, ulp = evaluator.residual(at.u), np.spacing(at.u) * np.sign(generic_vector(at.u.size))
+    for ulps in ULPS:
+        there = at.u + ulps * ulp
+        left = evaluator.residual(there) - here - apply(there - at.u)
+        # The largest of many samples is larger.
+        seen = np.maximum(seen, 2.0 * np.abs(at.solve(left, 0.0, unit)))
     return seen

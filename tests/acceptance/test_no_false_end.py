@@ -3,6 +3,8 @@
 The campaign is `examples/benchmarks/ends.py`; a few paths of each family are traced here.
 """
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from mpmath import mp, mpf
@@ -34,7 +36,7 @@ def test_families_in_random_units(family, preset):
 @pytest.mark.parametrize(
     ("family", "seed"),
     [("zero by symmetry", [k, 77]) for k in (36, 48, 51, 95)]
-    + [("trusses", seed) for seed in ([1, 3, 7], [1, 4, 7], [1, 8, 7], [20261127, 7], [20261128, 21])],
+    + [("trusses", seed) for seed in ([1, 3, 7], [1, 4, 7], [1, 8, 7], [20261127, 7], [20261128, 21], [20261201, 1])],
 )
 @by_preset(FAST, CONSERVATIVE)
 def test_noise_that_vanishes_at_the_start_or_looks_smooth_on_a_grid(family, seed, preset):
@@ -112,6 +114,27 @@ def test_the_error_of_an_end_is_a_bound(preset, others, d):
     # Round-off of the parameter moves the end by eps / sqrt(d).
     known = np.finfo(float).eps / (np.sqrt(d) if others else 1.0)
     assert path.end_error <= 1e4 * max(error, known)
+
+
+@every_preset
+@pytest.mark.parametrize(
+    ("size", "unit", "target"),
+    [
+        (0.0012464456977341373, 746.997097442634, 746.9970897293323),
+        (0.0787474205648065, 0.011253023365254989, 0.011253023249876249),
+        (7411.434926737541, 210.0635473548268, 210.06354524870105),
+        (16.568561467980505, 2.4606021211320215, 2.460602093027407),
+    ],
+)
+def test_the_error_of_an_end_before_a_pole_is_a_bound(preset, size, unit, target):
+    """The parameter is rounded by its unit, alike at all samples of the endgame that lie close together."""
+    path = trace(
+        from_functions(lambda y, lam: (1.0 - lam / unit) * (y / size) - 1.0, start=([size], 0.0), target=target),
+        preset=preset,
+    )
+    true = Fraction(size) / (1 - Fraction(target) / Fraction(unit))
+    assert path.status is Status.REACHED_TARGET
+    assert abs(float(Fraction(float(path.endpoint.y[0])) - true)) <= 2.0 * path.end_error
 
 
 def test_a_parameter_that_hardly_enters():
