@@ -6,11 +6,12 @@ After increment d the error is at most q / (1 - q) |d| if increments shrink by a
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 from attrs import define, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 
 HALVING = 0.5
 """The last increment then bounds the error (Higham, Accuracy and Stability of Numerical Algorithms, Section 12.1;
@@ -53,6 +54,11 @@ class Iteration:
     count: int = 0
     stalled: bool = False
 
+    @property
+    def error(self) -> float:
+        """Bound of the error; before three increments no ratio is known to be the largest."""
+        return self.size if self.count < 3 else self.size * min(self.worst / max(1.0 - self.worst, HALVING), 1.0)
+
     def add(self, step: Array, size: float) -> bool:
         """Add an increment; False, without adding, if its ratio is too large."""
         rule, k, before = self.rule, self.count, self.size
@@ -85,3 +91,24 @@ class Iteration:
             if done(size):
                 return True
         return False
+
+
+def updated(increments: list[tuple[Array, Array]], z: Array, weights: Array) -> Array:
+    """Apply Broyden's good update to a chord increment z; append it, and its dual, to `increments`.
+
+    All increments since the factorisation define it (Kelley, Iterative Methods for Linear and Nonlinear Equations,
+    Section 7.3). Each update multiplies the determinant by `left`, so no update turns its sign.
+    """
+    for (_, dual), (after, _) in pairwise(increments):
+        z = z + dot(dual, z) * after
+    if increments:
+        left = 1.0 - dot(increments[-1][1], z)
+        if left < 1.0 - MONOTONE:
+            # Round-off contains nothing about the matrix.
+            increments.clear()
+        else:
+            z = z / left
+    weighted = weights * z
+    if (square := dot(weighted, z)) > 0.0:
+        increments.append((z, weighted / square))
+    return z

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -11,33 +10,11 @@ from attrs import field, frozen
 from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
 from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER, KELLEY
-from continuation.contraction import MONOTONE
+from continuation.contraction import updated
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import Evaluator
-from continuation.metric import inner
 from continuation.point.linearization import Anchor, Linearization, linearize
 from continuation.tolerance import Tolerance
-
-
-def updated(increments: list[Array], z: Array, weights: Array) -> Array:
-    """Apply Broyden's good update to a chord increment z; append it to `increments`.
-
-    All increments since the factorisation define it (Kelley, Iterative Methods for Linear and Nonlinear Equations,
-    Section 7.3).
-    """
-    for before, after in pairwise(increments):
-        z = z + (inner(weights, before, z) / inner(weights, before, before)) * after
-    if increments:
-        last = increments[-1]
-        left = 1.0 - inner(weights, last, z) / inner(weights, last, last)
-        if left < 1.0 - MONOTONE:
-            # Round-off contains nothing about the matrix.
-            increments.clear()
-        else:
-            z = z / left
-    if inner(weights, z, z) > 0.0:
-        increments.append(z)
-    return z
 
 
 @frozen
@@ -69,7 +46,7 @@ class BorderedNewton:
     ) -> Correction:
         """See `Corrector.correct`."""
         anchors: list[Anchor] = []
-        increments: list[Array] = []
+        increments: list[tuple[Array, Array]] = []
         fresh_at = 0
 
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:

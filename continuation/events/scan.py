@@ -12,7 +12,7 @@ from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import may_vanish, on_value, zeros
 from continuation.point.arc import Arc, position
-from continuation.point.linearization import Linearization
+from continuation.point.linearization import REFINED, Linearization
 from continuation.point.projection import PathSolver
 
 SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
@@ -72,7 +72,8 @@ def scan_events(
         resolution = getattr(event, "resolution", None)
         if resolution is not None:
             if noise is None:
-                noise = solver.noise_by_component(arc.a)
+                # A tangent is refined to REFINED of its length, which a component that stands still may have.
+                noise = solver.noise_by_component(arc.a) + REFINED * arc.length / np.sqrt(arc.a.weights)
             # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue

@@ -10,7 +10,7 @@ from attrs import evolve, field, frozen
 from scipy.linalg.blas import dscal
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector, largest
-from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
+from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration, updated
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import CountedSystem, Evaluator
@@ -165,18 +165,19 @@ def _refined(
 ) -> Array | None:
     """The solution of M v = e_{N+1}, or None; the metric makes this independent of units."""
     refinement = Iteration(guess, TANGENT_REFINEMENT)
-    solve, border = anchor.system.approximate, anchor.border
+    solve, border, increments = anchor.system.approximate, anchor.border, list[tuple[Array, Array]]()
     v, longest = guess, norm(weights, guess)
     while True:
-        step = solve(-apply(v), 1.0 - dot(border, v))
-        size = sqrt(dot(weights * step, step))
-        if not refinement.add(step, size):
+        plain = solve(-apply(v), 1.0 - dot(border, v))
+        size = sqrt(dot(weights * plain, plain))
+        if not refinement.add(updated(increments, plain, weights), size):
             if refinement.size <= ROUND_OFF_LEFT * accuracy * norm(weights, v):
                 break
             return None
         v = refinement.x
         # A cheap bound of the norm comes first.
         longest += size
+        size = refinement.error
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
             break
         if refinement.count == TANGENT_REFINEMENT.iterations:

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import Factory, define, evolve, field
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector
-from continuation.contraction import Contraction, Iteration
+from continuation.contraction import Contraction, Iteration, updated
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
 from continuation.evaluation.noise import NOISE_LOOKS
@@ -98,12 +98,13 @@ class PathSolver:
     ) -> Array | None:
         """Chord steps while increments halve; the point if the last is within `enough`, or round-off."""
         chord, residual, measure = Iteration(guess, CHORD_STEPS), self.evaluator.residual, self.tolerance.measure
+        increments: list[tuple[Array, Array]] = []
         while chord.count < CHORD_STEPS.iterations:
-            step = solve(-residual(chord.x))
+            step = updated(increments, solve(-residual(chord.x)), near.weights)
             size = measure(step, near.weights)
             if not chord.add(step, size):
                 break
-            if size <= SIX_DIGITS:
+            if chord.error <= SIX_DIGITS:
                 return chord.x
         # The stalled increment joins two points of round-off.
         last = chord.size * min(chord.ratio, 1.0)

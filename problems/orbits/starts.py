@@ -45,10 +45,12 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     while (rest := (x != 0.0) & (off > REPLACED * np.abs(x))).any():
         zeroed = np.where(rest, 0.0, x)
         there = field.derivatives(zeroed[:, None], p)[0][0]
-        if not (_newton(there, field, zeroed, p) <= off).all():
+        left = _newton(there, field, zeroed, p)
+        # Least squares know a step to the round-off of its largest component.
+        if not (left <= np.maximum(off, np.finfo(float).eps * off.max())).all():
             break
-        x, matrix, off = zeroed, there, _newton(there, field, zeroed, p)
-    values, left, right = eig(matrix, left=True)
+        x, matrix, off = zeroed, there, left
+    values, dual, right = eig(matrix, left=True)
     off = np.where(values.imag > 0.0, np.abs(values.real) / np.maximum(np.abs(values), np.finfo(float).tiny), np.inf)
     k = int(np.argmin(off))
     if not off[k] <= HOPF_PAIR:
@@ -57,7 +59,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     q, size = right[:, k], sizes(x)
     q = q / np.abs(q / size).max()
     turned = np.exp(2j * np.pi * grid.nodes)
-    rate = left[:, k].conj() / (np.vdot(left[:, k], q) * abs(values[k]))
+    rate = dual[:, k].conj() / (np.vdot(dual[:, k], q) * abs(values[k]))
 
     def bent(r: float) -> Array:
         """The nonlinear part of f at that radius, in radii."""

@@ -34,6 +34,19 @@ def test_the_normal_form_from_its_hopf_point_over_the_fold(f, jacobian, accuracy
     )
 
 
+@pytest.mark.parametrize("left", [[0.0, 0.0, 0.0], [8.2e-39, 4.2e-36, 4.3e-75], [1e-300, 1e-36, 1e-120]])
+def test_what_a_solver_left_of_zeros_sets_no_sizes(left):
+    def f(x, p):
+        u, v, w = x[0] / 1e-3, x[1], x[2] / 100.0
+        g, q = p + u * u + v * v - (u * u + v * v) ** 2, u * v
+        return np.stack([1e-3 * (g * u - v), u + g * v, 100.0 * (0.3 * q - w)])
+
+    orbit = PeriodicOrbit.from_hopf(f, (left, 0.0), intervals=12)
+    assert orbit.period == pytest.approx(2.0 * np.pi, rel=1e-6)
+    path = continuation.trace(orbit, start=orbit.leaving, budget=continuation.Budget(steps=8))
+    assert len(path) == 9
+
+
 @pytest.mark.parametrize(
     ("f", "p", "x0", "period", "multiplier", "accuracy"),
     [(van_der_pol, 1.0, [2.0, 0.0], 6.663286859323131, 8.596951e-4, 1e-8),
