@@ -208,7 +208,7 @@ class Evaluator:
         self.noise = None
         terms = self.round_off(u, residual)
         try:
-            noise = noise_along(self.residual, u, w, residual)
+            noise = noise_along(self.residual, u, w, residual, POINT_ULPS * terms)
         except EvaluationError:
             return terms
         # More than the point's round-off has another source; `look` sees POINT_ULPS / LOOK of it.

@@ -41,11 +41,11 @@ WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
 """Accuracy factor and limits of `allowed_along`'s lengths."""
 
 
-def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
+def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array, enough: Array) -> Array:
     """The noise of each equation, shape (N,): differences along w that do not shrink.
 
     Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` of shape (N + 1,).
-    `here`, shape (N,): residual(u).
+    `here`, shape (N,): residual(u). `enough`, shape (N,): smaller noise need not be steady.
     """
     least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
@@ -55,7 +55,7 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         found = np.abs(_FOURTH @ samples).max(axis=0)
         # Equal samples are no evidence.
         found[(samples == here).all(axis=0)] = np.inf
-        now = (least <= NOISE_STEADY * found) & (least < np.inf)
+        now = (least <= NOISE_STEADY * found) & (least < np.inf) | (found <= enough)
         least = np.where(steady, least, np.minimum(least, found))
         steady |= now
         if steady.all():
