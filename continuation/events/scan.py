@@ -103,3 +103,20 @@ def first_terminal(
         if events[i].terminal and counts[i] == events[i].terminal:
             return k, tuple(counts)
     return None, tuple(counts)
+
+
+def up_to(
+    solver: PathSolver,
+    events: tuple[Event, ...],
+    before: tuple[float, ...],
+    arc: Arc,
+    found: list[tuple[int, Linearization]],
+    branch_point: Linearization | None,
+) -> list[tuple[int, Linearization]]:
+    """Events up to the last of `found`, at which the arc was cut: its own end may show more than the whole arc's did."""
+    last, again = found[-1][0], scan_events(solver, events, before, arc, branch_point)[0]
+    kept = []
+    for i in {i for i, _ in (*found, *again)}:
+        first, second = ([pair for pair in some if pair[0] == i] for some in (found, again))
+        kept += second if i != last and len(second) > len(first) else first
+    return sorted(kept, key=lambda pair: (position(arc, pair[1].u), pair[0] == last))

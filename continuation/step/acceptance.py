@@ -9,7 +9,7 @@ from continuation.arrays import dot
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
-from continuation.events.scan import first_terminal, found_by_events, scan_events
+from continuation.events.scan import first_terminal, found_by_events, scan_events, up_to
 from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
 from continuation.metric import norm
@@ -108,8 +108,12 @@ class Examiner:
             if index is not None and at is not None:
                 found = sorted((*found, (index, at)), key=lambda pair: position(arc, pair[1].u))
             last, _ = first_terminal(events, state.occurrences, found)
-            ended = ending.arc if last is None else cut(ending.arc, found[last][1])
-            more, all_found = found_by_events(self.solver, events, ended, found if last is None else found[: last + 1])
+            ended = ending.arc
+            if last is not None:
+                ended = cut(ending.arc, found[last][1])
+                at = at if at is not None and within(arc, at, ended.b) else None
+                found = up_to(self.solver, events, state.monitors, ended, found[: last + 1], at)
+            more, all_found = found_by_events(self.solver, events, ended, found)
             several = ending.limit is not None or (branch is not None and branch.rays is None)
             if not (all_found or several) and attempt.h > LEAST_STEP_SHARE * state.h:
                 return _rejected(attempt, Rejection.UNACCOUNTED)

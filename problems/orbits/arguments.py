@@ -8,7 +8,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE, complain, integer, real_vector
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.evaluation.products import sizes
 from problems.orbits.grid import Grid
 
@@ -53,6 +53,6 @@ def check_times(times: Array, states: Array) -> None:
 
 
 def spread(states: Array) -> Array:
-    """Standard deviations, or `sizes` of constant components."""
-    spread = states.std(axis=0)
-    return np.where(spread > 0.0, spread, sizes(states[0]))
+    """Standard deviations, or `sizes` of components that are constant but for round-off."""
+    deviations, round_off = states.std(axis=0), len(states) * EPS * np.abs(states).max(axis=0)
+    return np.where(deviations > round_off, deviations, sizes(states[0]))

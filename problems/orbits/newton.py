@@ -8,11 +8,15 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.correctors.base import far_from_round_off
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import factor_bordered
 from continuation.metric import norm
 
 ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
-"""First increments may grow; the last is below ORBIT_FOUND, or below ORBIT_NEAR if they no longer halve."""
+"""First increments may grow; the last is below ORBIT_FOUND, or if they no longer halve below ORBIT_NEAR or round-off: a
+component at rest may have the size of its round-off."""
 
 
 def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
@@ -20,7 +24,7 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
 
     Raises `ArithmeticError` without convergence.
     """
-    found = Iteration(u, ORBIT_NEWTON)
+    found, evaluator = Iteration(u, ORBIT_NEWTON), Evaluator(homotopy, Counts())
 
     def increment() -> Array:
         y, lam = found.x[:-1], float(found.x[-1])
@@ -28,7 +32,9 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
         return factor_bordered(matrix, column, border).solve(-homotopy.residual(y, lam), 0.0)
 
     def done(size: float) -> bool:
-        return size <= ORBIT_FOUND or (size <= ORBIT_NEAR and found.ratio >= HALVING)
+        if size <= ORBIT_FOUND or found.ratio < HALVING:
+            return size <= ORBIT_FOUND
+        return size <= ORBIT_NEAR or not far_from_round_off(evaluator, found.x)
 
     with np.errstate(all="ignore"):
         if not found.run(increment, lambda step: norm(weights, step), done):

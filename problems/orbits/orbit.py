@@ -11,11 +11,12 @@ import scipy.sparse as sp
 from attrs import Factory, evolve, field, fields_dict, frozen
 
 from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
-from continuation.arrays import Array
+from continuation.arrays import Array, generic_vector
 from continuation.curves.beginning import as_point
 from continuation.evaluation.products import sizes
 from continuation.events import Event
 from continuation.metric import Weighted
+from continuation.step.extent import REPLACED
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
 from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, check_times, spread
@@ -25,7 +26,7 @@ from problems.orbits.grid import Grid
 from problems.orbits.models import Model
 from problems.orbits.multipliers import Multipliers
 from problems.orbits.newton import newton
-from problems.orbits.starts import MESHES, circle_at, one_period
+from problems.orbits.starts import MESHES, circle_at, explained, one_period, units_at_rest
 
 
 @frozen(eq=False, slots=False)
@@ -152,8 +153,15 @@ class PeriodicOrbit:
         times, states = real_vector("t", t), as_table(x)
         check_times(times, states)
         field = field_of(f, beside.get("jacobian"), beside.get("second"), states[-1], spread(states), parameter)
+        states = explained(field, times, states, parameter)
         cut, period, grid = one_period(field, times, states, parameter, Asked(intervals, degree).grid)
         found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
+        # What a simulation left of zeros is no size.
+        changed = np.abs(found.states - cut).max(axis=0)
+        rest = (changed > REPLACED * np.abs(cut).max(axis=0)) | (found.scale > np.abs(cut - cut[0]).max(axis=0))
+        if rest.any():
+            units = units_at_rest(field, found.states, parameter, found.period, found.scale, rest)
+            found = evolve(found, scale=units)
         for _ in range(MESHES):
             found = cls.from_orbit(found)
         return found
@@ -302,11 +310,12 @@ class PeriodicOrbit:
 
     @cached_property
     def metric(self) -> Weighted:
-        """Mean square of scaled X, relative T, and p by its effect on X."""
+        """Mean square of scaled X, relative T, and p by its effect on X, or beside X, as p may move no symmetric X."""
         X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
         size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
-        moved = self.equations.flow.derivatives(self.states.T, self.parameter)[1] / self.scale
-        reach = self.period * float(np.sqrt(np.mean(moved**2)))
+        aside = self.states + self.scale * generic_vector(self.states.size).reshape(self.states.shape)
+        moved = [self.equations.flow.derivatives(x.T, self.parameter)[1] / self.scale for x in (self.states, aside)]
+        reach = self.period * float(np.sqrt(np.mean(np.square(moved), axis=(1, 2)).max()))
         return Weighted(size**-2.0, reach**2 if reach > 0.0 else 1.0)
 
     @property

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import eig
@@ -9,8 +12,10 @@ from scipy.optimize import brentq
 
 from continuation.arguments.checks import complain
 from continuation.arrays import Array
+from continuation.contraction import HALVING
 from continuation.evaluation.products import sizes
 from continuation.step.extent import REPLACED
+from problems.orbits.arguments import spread
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
@@ -67,21 +72,44 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
         found: Array = (field(x[:, None] + r * way, p) - field(x[:, None], p)) / r - matrix @ way
         return found
 
-    r = 1.0
-    with np.errstate(all="ignore"):
-        for _ in range(RADII_TRIED):
-            share = float(np.abs(rate @ bent(r)).max())
-            if NONLINEAR <= share <= 1.0:
-                break
-            # Quadratic or cubic terms; outside its domain f is nonlinear enough.
-            r *= 1.0 / min(max(np.sqrt(share / MIDDLE), 0.1), 10.0) if share < np.inf else 0.1
-        else:
-            r = 1.0  # f is linear.
+    r = _nonlinear_at(1.0, lambda r: float(np.abs(rate @ bent(r)).max()))
     # Components at rest follow those that oscillate.
     follow = r * np.abs(np.linalg.lstsq(matrix, bent(r), rcond=None)[0]).max(axis=1)
     q, still = r * q, np.where(x != 0.0, LEAST_MOTION * size, follow)
     scale = np.maximum(np.abs(q), np.where(still > 0.0, still, LEAST_MOTION * size))
     return x, (q * turned[:, None]).real, float(2.0 * np.pi / values[k].imag), scale
+
+
+def _nonlinear_at(guess: float, share_of: Callable[[float], float]) -> float:
+    """The radius at which the nonlinear `share_of` f is between NONLINEAR and 1; the guess if f is linear."""
+    r = guess
+    with np.errstate(all="ignore"):
+        for _ in range(RADII_TRIED):
+            share = share_of(r)
+            if NONLINEAR <= share <= 1.0:
+                return r
+            # Quadratic or cubic terms; outside its domain f is nonlinear enough.
+            r *= 1.0 / min(max(np.sqrt(share / MIDDLE), 0.1), 10.0) if share < np.inf else 0.1
+    return guess
+
+
+def units_at_rest(field: Field, states: Array, p: float, period: float, scale: Array, rest: Array) -> Array:
+    """`scale` with units for components at `rest`: motions that change others, or themselves, in one period."""
+    x = states.T
+    by_x = field.derivatives(x, p)[0]
+
+    def share_of(i: int, r: float) -> float:
+        moved = x.copy()
+        moved[i] += r
+        bent = np.abs(field(moved, p) - field(x, p) - r * by_x[:, :, i].T).max(axis=1)
+        sizes = np.where(rest, np.inf, scale)
+        sizes[i] = r
+        return period * float((bent / sizes).max())
+
+    units = scale.copy()
+    for i in np.flatnonzero(rest).tolist():
+        units[i] = _nonlinear_at(float(scale[i]), partial(share_of, i))
+    return units
 
 
 def _newton(matrix: Array, field: Field, x: Array, p: float) -> Array:
@@ -90,15 +118,22 @@ def _newton(matrix: Array, field: Field, x: Array, p: float) -> Array:
     return found
 
 
+def explained(field: Field, t: Array, x: Array, p: float) -> Array:
+    """The simulation x with a constant for components whose changes are round-off: f does not explain half of them."""
+    slopes, change, mean = field(x.T, p).T, np.diff(x, axis=0), x.mean(axis=0)
+    left = change - 0.5 * np.diff(t)[:, None] * (slopes[1:] + slopes[:-1])
+    noise = np.linalg.norm(left, axis=0) > HALVING * np.linalg.norm(change, axis=0)
+    return np.where(noise, np.where(np.abs(mean) > x.std(axis=0), mean, 0.0), x)
+
+
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
     """A simulation's last period: states at nodes, period and grid.
 
     The mesh equidistributes the mean of time and arc length.
     """
     spline = CubicHermiteSpline(t, x, field(x.T, p).T)
-    end, spread = x[-1], x.std(axis=0)
-    spread = np.where(spread > 0.0, spread, 1.0)
-    normal = field(x[-1:].T, p)[:, 0] / spread**2
+    end, scale = x[-1], spread(x)
+    normal = field(x[-1:].T, p)[:, 0] / scale**2
 
     def ahead(time: float) -> float:
         return float((spline(time) - end) @ normal)
@@ -106,14 +141,14 @@ def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[
     g = (x - end) @ normal
     rising = np.flatnonzero((g[:-2] < 0.0) & (g[1:-1] >= 0.0))
     times = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
-    missed = np.linalg.norm((spline(times) - end) / spread, axis=1) if times.size else np.array([np.inf])
+    missed = np.linalg.norm((spline(times) - end) / scale, axis=1) if times.size else np.array([np.inf])
     if not missed.min() <= NO_RETURN:
         raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, twice round", x)
     begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
     T = float(t[-1]) - begin
     fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)
     states = spline(begin + T * fine)
-    way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(states / spread, axis=0), axis=1)))
+    way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(states / scale, axis=0), axis=1)))
     mesh = np.interp(np.linspace(0.0, 1.0, grid.intervals + 1), 0.5 * (fine + way / way[-1]), fine)
     mesh[0], mesh[-1] = 0.0, 1.0
     made = Grid(mesh, grid.degree)
