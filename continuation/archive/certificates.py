@@ -70,7 +70,7 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
         root = archive.contents.root
         if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
             return None
-        columns = read_arrays(subgroup(subgroup(root, GROUP), str(path)), True, archive.contents.allowance)
+        columns = read_arrays(subgroup(subgroup(root, GROUP), str(path)), archive.contents.allowance)
         _check(columns)
         return Cells(**columns)
     except FAULTS as error:

@@ -146,8 +146,7 @@ def unpack(raw: bytes) -> Checkpoint | None:
             return None
         head, described, arrays = body.split(b"\n", 2)
         tree, run = json.loads(head), dict(json.loads(described))
-        # Version 0.1 wrote no version.
-        if major(str(tree.get("version", "0.1.0"))) != major(__version__):
+        if major(str(tree["version"])) != major(__version__):
             return None
         state = decode(tree["state"], _fetched(arrays), hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}

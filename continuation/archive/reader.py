@@ -219,7 +219,7 @@ class Archive(Sequence[Path]):
         if checkpoint is not None and checkpoint.path == number:
             told = checkpoint.run.get("member")
             row["member"] = number if told is None else int(told)
-            if not self.contents.checked or self.contents.committed.checkpoint == checkpoint.sequence:
+            if self.contents.committed.checkpoint == checkpoint.sequence:
                 row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
                 row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
         return row

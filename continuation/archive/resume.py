@@ -12,20 +12,15 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-import numpy as np
-
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
-from continuation.archive.copies import share_of, write_copy
+from continuation.archive.growing import check_homotopy, copy, share_of
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.store import Store, put
+from continuation.archive.store import Store
 from continuation.archive.tables import kept_whole
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
-from continuation.arrays import Array
-from continuation.counts import Counts
-from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
@@ -205,19 +200,8 @@ def _options(
     return {"box": None, **stored, **given}
 
 
-def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
-    """Raise `ValueError` unless the homotopy's largest residual at u is the stored one."""
-    unknowns = Evaluator(homotopy, Counts()).start().size - 1
-    if unknowns != u.size - 1:
-        raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
-    found = float(np.abs(homotopy.residual(u[:-1].copy(), float(u[-1]))).max())
-    if not found <= 100.0 * stored + 1e-12 * (1.0 + float(np.abs(u).max())):
-        raise ValueError(f"homotopy: expected the archive's residual {stored:.2g} at its last point, found {found:.2g}")
-
-
 def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
-    share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)
-    copy = partial(write_copy, [share], what=what, more={**process(), "parent": parent}, checkpoints=slots)
-    return put(target, copy, replace=replace, grows=True)
+    share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
+    return copy([share], target, what=what, more=more, checkpoints=slot_of(checkpoint), replace=replace, grows=True)

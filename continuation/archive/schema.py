@@ -19,9 +19,6 @@ from continuation.status import Kind, Status
 SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
-UNCHECKED = "continuation-path-1"
-"""The schema without checksums."""
-
 TEXT = 240
 """Bytes of a path's message."""
 
@@ -190,7 +187,25 @@ class Layout:
 
     def row_bytes(self, table: str) -> int:
         """Bytes of a row."""
-        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+        return _row_bytes(self, table)
+
+    def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
+        """All columns of a table; missing ones and cells are filled."""
+        whole = {}
+        for column in self.columns(table):
+            values, shape = block.get(column.name), (rows, *self.width(column))
+            if values is None or values.shape != shape:
+                missing = np.full(shape, column.missing, dtype=column.storage)
+                if values is not None:
+                    missing[:, : values.shape[1]] = values
+                values = missing
+            whole[column.name] = np.ascontiguousarray(values)
+        return whole
+
+
+@lru_cache(maxsize=64)
+def _row_bytes(layout: Layout, table: str) -> int:
+    return sum(column.storage.itemsize * math.prod(layout.width(column)) for column in layout.columns(table))
 
 
 @lru_cache(maxsize=64)
