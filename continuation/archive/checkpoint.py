@@ -132,9 +132,9 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
 
-def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in its slot of a new file."""
-    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
+def slot_of(checkpoint: Checkpoint | None, run: bytes | None = None) -> dict[int, bytes]:
+    """The checkpoint by its slot; `run` as for `pack`."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint, run)}
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
