@@ -6,8 +6,6 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from functools import partial
-from operator import getitem
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
@@ -167,26 +165,21 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
     """The homotopy that the file describes; `known` is the `registry`."""
     tree: Any = checkpoint.run["homotopy"]
-    if not isinstance(tree, dict) or not tree.get("problem"):
-        return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
-    text, arrays = source.problem()
-    return _made(source, "the homotopy", lambda: json.loads(text), arrays.__getitem__, known, "homotopy= or --homotopy")
+    fetch: Callable[[Any], Any] = whole
+    if isinstance(tree, dict) and tree.get("problem"):
+        described, arrays = source.problem()
+        tree, fetch = source.contents.guarded(lambda: json.loads(described)), arrays.__getitem__
+    return _made(source, "the homotopy", tree, fetch, known, "homotopy= or --homotopy")
 
 
 def _made(
-    source: Archive,
-    name: str,
-    tree: Callable[[], Any],
-    fetch: Callable[[Any], Any],
-    known: Mapping[str, Any],
-    hint: str,
+    source: Archive, name: str, tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: str
 ) -> Any:
     try:
-        described = tree()
-        if isinstance(described, dict) and "unstorable" in described:
-            raise UnknownError(described["unstorable"])
-        return decode(described, fetch, known)
-    except (UnknownError, KeyError, TypeError, ValueError, RecursionError) as error:
+        if isinstance(tree, dict) and "unstorable" in tree:
+            raise UnknownError(tree["unstorable"])
+        return decode(tree, fetch, known)
+    except UnknownError as error:
         said = f"{name} cannot be made from the file ({short(error)}); pass {hint}"
         raise ArchiveError(f"{source.file}: {said}") from None
 
@@ -195,8 +188,8 @@ def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
     trees: Any = checkpoint.run.get("options", {})
-    names = [name for name in OPTIONS if name in trees and name not in given]
-    stored = {name: _made(source, name, partial(getitem, trees, name), whole, known, f"{name}=") for name in names}
+    names = [name for name in OPTIONS if isinstance(trees, dict) and name in trees and name not in given]
+    stored = {name: _made(source, name, trees[name], whole, known, f"{name}=") for name in names}
     return {"box": None, **stored, **given}
 
 

@@ -157,11 +157,10 @@ OBSERVED, PARAMETER = "observed_", "homotopy_"
 """Prefixes of scalars of points, and of parameters of paths."""
 
 
-def _names(columns: Iterable[Column]) -> frozenset[str]:
-    return frozenset(column.name for column in columns)
-
-
-TANGENTS, KINKS, ORIGINS = _names(TANGENT_COLUMNS), _names((*TANGENT_COLUMNS, *KINK_COLUMNS)), _names(ORIGIN_COLUMNS)
+TANGENTS, KINKS, ORIGINS = (
+    frozenset(column.name for column in columns)
+    for columns in (TANGENT_COLUMNS, (*TANGENT_COLUMNS, *KINK_COLUMNS), ORIGIN_COLUMNS)
+)
 
 
 @frozen
