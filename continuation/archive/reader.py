@@ -143,6 +143,8 @@ class Archive(Sequence[Path]):
         )
 
     def __repr__(self) -> str:
+        if self.contents.closed:
+            return f"<Archive {self.file}, closed>"
         state = "" if self.closed_by_writer else ", not closed by its writer"
         size = f"{len(self)} paths, {self.points.size} points of {self.layout.unknowns} unknowns"
         return f"<Archive {self.file}: {size}{state}>"
@@ -198,7 +200,7 @@ class Archive(Sequence[Path]):
         return self.contents.problem()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file: what was not read by then raises `ArchiveError`."""
         self.contents.close()
 
     def __enter__(self) -> Archive:

@@ -15,7 +15,7 @@ from continuation.archive.hdf5 import LEAST_BYTES
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp
 
-from .test_archive_hostile import claimed
+from .test_archive_hostile import claimed, resealed
 from .util import OPERATIONS, killed, logged, outcome
 
 MOST_BYTES = 500 << 20
@@ -55,7 +55,7 @@ def many_rows(file):
     for name in [name for name in file if getattr(file[name], "shape", ())[:1] == (7,) and name != "point"]:
         zeros(file, name, (1_000_000, *file[name].shape[1:]), file[name].dtype)
     file["n_points"][0] = 1_000_000
-    claimed(file, points=1_000_000)
+    resealed(file, points=1_000_000)
 
 
 BOMBS = {
