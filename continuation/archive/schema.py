@@ -181,8 +181,7 @@ class Layout:
 
     def width(self, column: Column) -> tuple[int, ...]:
         """The column's dimensions beyond the first."""
-        lengths = {"component": self.unknowns, "controller": self.controller}
-        return tuple(lengths[name] for name in column.dimensions[1:])
+        return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
     def row_bytes(self, table: str) -> int:
         """Bytes of a row."""
