@@ -142,24 +142,20 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
 def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
+    opened: Any = gzip.open if points.suffix == ".gz" else open
     with beside(points) as first, beside(paths) as second:
         for part, table in ((first, archive.points), (second, archive.paths)):
-            _write_text(part, table, points.suffix == ".gz")
+            with opened(part, "xt", encoding="utf-8", newline="") as out:
+                writer = csv.writer(out)
+                for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
+                    columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
+                    writer.writerows([[*columns]] if not start else [])
+                    writer.writerows(zip(*(values.tolist() for values in columns.values())))
+            with part.open("rb") as written:
+                os.fsync(written.fileno())
         publish(second, paths)
         publish(first, points)
     return [points, paths]
-
-
-def _write_text(part: File, table: Table, compressed: bool) -> None:
-    opened: Any = gzip.open if compressed else open
-    with opened(part, "xt", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out)
-        for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
-            columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
-            writer.writerows([[*columns]] if not start else [])
-            writer.writerows(zip(*(values.tolist() for values in columns.values())))
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
@@ -248,7 +244,5 @@ def _keep_aside(file: File) -> None:
     aside = file.with_name(f"{file.name}.damaged")
     try:
         os.link(file, aside)
-    except FileExistsError:
-        raise ArchiveError(f"{file}: is damaged, and would be kept as {aside.name}, which exists already") from None
     except OSError as error:
         raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None
