@@ -21,7 +21,6 @@ from continuation.archive.checks import (
     RECORD_BYTES,
     RECORDS,
     STOP,
-    Committed,
     DamageError,
     Ledger,
     digest,
@@ -146,7 +145,8 @@ class Contents:
         self.layout = Layout(unknowns, cells, _known(self._present))
         for table in TABLES:
             self.allowance.take(f"a row of {table}s", self.layout.row_bytes(table))
-        self.committed = self._read_committed()
+        records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD_BYTES), self.allowance)
+        self.committed = latest(records[()])
         if self._salvage:
             before, rows = self.committed, {table: self._ledger(table).rows for table in TABLES}
             self.committed = evolve(before, points=rows["point"], paths=rows["path"])
@@ -170,10 +170,6 @@ class Contents:
         self._flaw("its attributes are not what was written")
         plain = {k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in found.items()}
         return {name.encode(errors="replace").decode(): value for name, value in plain.items()}
-
-    def _read_committed(self) -> Committed:
-        kind, shape = np.dtype("u1"), (2 * PLACES, RECORD_BYTES)
-        return latest(dataset(self.root, f"{GROUP}/{RECORDS}", kind, shape, self.allowance)[()])
 
     def _ledger(self, table: str) -> Ledger:
         if table not in self._ledgers:
