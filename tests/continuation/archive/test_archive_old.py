@@ -1,4 +1,7 @@
-"""Files of `continuation-path-2` as the version of commit 36e65f7f left them, in each state: read, recovered, used."""
+"""Files of `continuation-path-2` of an earlier state of the library, in each state of a file: read, recovered, used.
+
+`old/make.py` of commit bdd6fa3 wrote them by commit 36e65f7f.
+"""
 
 import json
 import shutil
