@@ -104,19 +104,15 @@ def check_new(file: File) -> None:
         raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
         raise exists(file)
-    refused = {
-        f"there is no directory {file.parent}": not file.parent.is_dir(),
-        f"the name is too long, expected at most {_NAME_BYTES} bytes": len(file.name.encode(errors="surrogatepass"))
-        > _NAME_BYTES,
-        f"the directory {file.parent} may not be written": not os.access(file.parent, os.W_OK),
-    }
-    for what, wrong in refused.items():
-        if wrong:
-            raise ArchiveError(f"{file}: {what}")
-
-
-_NAME_BYTES = 255 - len("..xxxxxxxx.part")
-"""Linux's limit less the part's additions."""
+    said = (
+        f"there is no directory {file.parent}"
+        if not file.parent.is_dir()
+        else f"the directory {file.parent} may not be written"
+        if not os.access(file.parent, os.W_OK)
+        else ""
+    )
+    if said:
+        raise ArchiveError(f"{file}: {said}")
 
 
 def exists(file: File) -> ArchiveExistsError:

@@ -16,7 +16,7 @@ import numpy as np
 from continuation.archive.atomic import ArchiveError, as_file, beside, own, publish, short
 from continuation.archive.codec import read_arrays, write_arrays
 from continuation.archive.contents import FAULTS
-from continuation.archive.hdf5 import StructureError, subgroup
+from continuation.archive.hdf5 import StructureError, member, names
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.resume import stored_homotopy
 from continuation.archive.trust import registry
@@ -68,9 +68,9 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
     """Cells of a stored proof, or None."""
     try:
         root = archive.contents.root
-        if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
+        if GROUP not in names(root) or str(path) not in names(member(root, GROUP)):
             return None
-        columns = read_arrays(subgroup(subgroup(root, GROUP), str(path)), True, archive.contents.allowance)
+        columns = read_arrays(member(root, f"{GROUP}/{path}"), archive.contents.allowance)
         _check(columns)
         return Cells(**columns)
     except FAULTS as error:

@@ -132,9 +132,9 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
 
-def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in its slot of a new file."""
-    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
+def slot_of(checkpoint: Checkpoint | None, run: bytes | None = None) -> dict[int, bytes]:
+    """The checkpoint by its slot; `run` as for `pack`."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint, run)}
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
@@ -146,8 +146,7 @@ def unpack(raw: bytes) -> Checkpoint | None:
             return None
         head, described, arrays = body.split(b"\n", 2)
         tree, run = json.loads(head), dict(json.loads(described))
-        # Version 0.1 wrote no version.
-        if major(str(tree.get("version", "0.1.0"))) != major(__version__):
+        if major(str(tree["version"])) != major(__version__):
             return None
         state = decode(tree["state"], _fetched(arrays), hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}

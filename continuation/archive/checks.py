@@ -47,6 +47,10 @@ class Committed:
     names: int = 0
     checkpoint: int = 0
 
+    def rows(self, table: str) -> int:
+        """Valid rows of ``"point"`` or ``"path"``."""
+        return self.points if table == "point" else self.paths
+
     def pack(self) -> Array:
         """Bytes, with a CRC-32."""
         body = np.array(astuple(self), "<u8").tobytes()
@@ -91,21 +95,14 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
 
 
 class Ledger:
-    """Checksums of a table of `size` rows, by block.
+    """Checksums of a table of `rows` rows, by block, as far as the blocks make sense."""
 
-    For `size` None (file cut off), blocks end at the first invalid one.
-    """
-
-    def __init__(self, rows: Array, columns: Sequence[str], size: int | None) -> None:
-        stops = rows[:, 0].astype("i8") | (rows[:, 1].astype("i8") << 32)
-        bounds = np.concatenate(([0], stops))
-        wrong = np.flatnonzero(np.diff(bounds) <= 0)
-        if size is None:
-            bounds = bounds[: wrong[0] + 1] if wrong.size else bounds
-        elif bounds[-1] != size or wrong.size:
-            raise DamageError("the checksums are damaged")
-        self.bounds, self.rows = bounds, int(bounds[-1])
-        self._sums, self._place = rows[:, STOP:], {name: k for k, name in enumerate(sorted(columns))}
+    def __init__(self, sums: Array, columns: Sequence[str], rows: int) -> None:
+        bounds = np.concatenate(([0], np.ascontiguousarray(sums[:, :STOP]).view("<i8").ravel()))
+        wrong = np.flatnonzero((bounds[1:] <= bounds[:-1]) | (bounds[1:] > rows))
+        self.bounds = bounds[: wrong[0] + 1] if wrong.size else bounds
+        self.rows = int(self.bounds[-1])
+        self._sums, self._place = sums[:, STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
         """Rows of a column, checked; `fetch` reads whole blocks."""

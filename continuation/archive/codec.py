@@ -64,26 +64,26 @@ def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
         set_attributes(stored, {"order": order(array), "checksum": np.uint32(digest(array))})
 
 
-def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, Any]:
+def read_arrays(group: Any, allowance: Allowance) -> dict[str, Any]:
     """Arrays, checked."""
     arrays = {}
     for name in group:
         found = dataset(group, name, None, None, allowance)
         lying: Literal["C", "F"] = "F" if found.attrs.get("order") == "F" else "C"
         arrays[name] = np.asarray(found[()], order=lying)
-        if checked and digest(arrays[name]) != found.attrs["checksum"]:
+        if digest(arrays[name]) != found.attrs["checksum"]:
             raise DamageError(f"the array {name} of its {group.name} is not what was written")
     return arrays
 
 
-def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
+def read_problem(group: Any, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
     """Description and arrays, checked."""
     if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
     description = str(group.attrs["description"])
-    if checked and zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
+    if zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
         raise DamageError("the description of its problem is not what was written")
-    return description, read_arrays(group, checked, allowance)
+    return description, read_arrays(group, allowance)
 
 
 Place = Callable[[str, Any], Any]

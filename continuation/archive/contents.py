@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, TypeVar
@@ -21,7 +21,6 @@ from continuation.archive.checks import (
     RECORD_BYTES,
     RECORDS,
     STOP,
-    Committed,
     DamageError,
     Ledger,
     digest,
@@ -30,7 +29,7 @@ from continuation.archive.checks import (
 )
 from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, names, subgroup
+from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, member, names
 from continuation.archive.schema import (
     EVENT_NAME,
     OBSERVED,
@@ -39,7 +38,6 @@ from continuation.archive.schema import (
     RESUME,
     SCHEMA,
     SLOTS,
-    UNCHECKED,
     Column,
     Layout,
     check_names,
@@ -61,12 +59,12 @@ TABLES = ("point", "path")
 class Contents:
     """An open file; any fault raises `ArchiveError`.
 
-    `limit`: bytes of memory. `salvage`: accept damage outside rows. `checked`: the file has checksums.
-    `flaws`: accepted damage. `cut_off`: committed rows without checksums, by table.
+    `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `cut_off`: points and
+    paths without checksums.
     """
 
     root: Any = None
-    closed_by_writer = True
+    closed_by_writer, closed = True, False
     _image: Image | None = None
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
@@ -78,7 +76,11 @@ class Contents:
             raise
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file for good."""
+        self._release()
+        self.closed = True
+
+    def _release(self) -> None:
         for held in (self.root, self._image):
             if held is not None:
                 held.close()
@@ -86,6 +88,8 @@ class Contents:
 
     def guarded(self, read: Callable[[], _T]) -> _T:
         """The result of `read`, retried under a live writer; faults become `ArchiveError`."""
+        if self.closed:
+            raise ArchiveError(f"{self.file}: the archive was closed; open it again to read more of it")
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
@@ -96,7 +100,7 @@ class Contents:
                 # Whoever salvages holds the file: nobody writes it.
                 if self._salvage or self.closed_by_writer or time.monotonic() > end or not is_held(self.file):
                     raise self.damaged(error) from error
-            self.close()
+            self._release()
             time.sleep(_PAUSE)
 
     def damaged(self, error: BaseException) -> ArchiveError:
@@ -128,25 +132,25 @@ class Contents:
     def _open(self) -> None:
         self._image = image = Image(self.file)
         self.closed_by_writer, self.size, self.descriptor = image.closed_by_writer, image.length, image.descriptor
-        self.flaws, self._datasets, self._ledgers = list[str](), dict[str, Any](), dict[str, Ledger | None]()
+        self.flaws, self._datasets, self._ledgers = list[str](), dict[str, Any](), dict[str, Ledger]()
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
         self.root = file = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
-        self._present = present = names(file)
-        self.checked = GROUP in present
-        _check_schema(self.file, file.attrs, present)
+        self._present = names(file)
+        _check_schema(self.file, file.attrs, self._present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
-        self.layout = _layout(file, present, self.allowance)
-        self._columns = {table: {column.name: column for column in self.layout.columns(table)} for table in TABLES}
-        self._row_bytes = {table: self.layout.row_bytes(table) for table in TABLES}
-        for table, size in self._row_bytes.items():
-            self.allowance.take(f"a row of {table}s", size)
-        self.committed, self.cut_off = self._read_committed(), dict.fromkeys(TABLES, 0)
+        for name in ("y", "controller_state"):
+            self._datasets[name] = dataset(file, name, np.dtype("f8"), (None, None), self.allowance, 0)
+        unknowns, cells = (int(found.shape[1]) for found in self._datasets.values())
+        self.layout = Layout(unknowns, cells, _known(self._present))
+        for table in TABLES:
+            self.allowance.take(f"a row of {table}s", self.layout.row_bytes(table))
+        records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD_BYTES), self.allowance)
+        self.committed = latest(records[()])
         if self._salvage:
-            for table in TABLES:
-                before, ledger = getattr(self.committed, f"{table}s"), self._ledger(table)
-                rows = before if ledger is None else ledger.rows
-                self.committed, self.cut_off[table] = evolve(self.committed, **{f"{table}s": rows}), before - rows
+            before, rows = self.committed, {table: self._ledger(table).rows for table in TABLES}
+            self.committed = evolve(before, points=rows["point"], paths=rows["path"])
+            self.cut_off = before.points - rows["point"], before.paths - rows["path"]
             _ = self.attributes, self.event_names
 
     @cached_property
@@ -161,73 +165,52 @@ class Contents:
 
     def _read_attributes(self) -> dict[str, Any]:
         found: dict[str, Any] = self._or_else("its attributes cannot be read", lambda: dict(self.root.attrs), {})
-        if not self.checked or of_attributes(found) == int(subgroup(self.root, GROUP).attrs["attributes"]):
+        if of_attributes(found) == int(member(self.root, GROUP).attrs["attributes"]):
             return found
         self._flaw("its attributes are not what was written")
         plain = {k: v.encode(errors="replace").decode() if isinstance(v, str) else v for k, v in found.items()}
         return {name.encode(errors="replace").decode(): value for name, value in plain.items()}
 
-    def _read_committed(self) -> Committed:
-        if self.checked:
-            kind, shape = np.dtype("u1"), (2 * PLACES, RECORD_BYTES)
-            return latest(dataset(subgroup(self.root, GROUP), RECORDS, kind, shape, self.allowance)[()])
-        # Paths first: their rows are counted after their points.
-        paths, points = (
-            int(dataset(self.root, f"committed_{name}", np.dtype("i8"), (), self.allowance)[()])
-            for name in ("paths", "points")
-        )
-        if points < 0 or paths < 0:
-            raise DamageError(f"it has {points} points and {paths} paths")
-        return Committed(points=points, paths=paths)
-
-    def _ledger(self, table: str) -> Ledger | None:
-        if table in self._ledgers:
-            return self._ledgers[table]
-        columns, rows, ledger = list(self._columns[table]), getattr(self.committed, f"{table}s"), None
-        if self.checked:
+    def _ledger(self, table: str) -> Ledger:
+        if table not in self._ledgers:
+            rows, columns = self.committed.rows(table), self.layout.columns(table)
             blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
-            sums = self._leading(subgroup(self.root, GROUP), table, np.dtype("u4"), shape, blocks)
-            ledger = Ledger(sums, columns, None if self._salvage else rows)
+            sums = self._leading(f"{GROUP}/{table}", np.dtype("u4"), shape, blocks)
+            ledger = Ledger(sums, [column.name for column in columns], rows)
             if ledger.rows != rows:
-                self._flaw(f"the checksums of {rows - ledger.rows} {table}s are missing")
-                rows = ledger.rows
-        held = rows * self._row_bytes[table] + len(columns) * COLUMN_BYTES
-        self.allowance.take(f"the table of {table}s", held)
-        self._ledgers[table] = ledger
-        return ledger
+                self._flaw(f"the checksums are damaged: those of {rows - ledger.rows} {table}s are missing")
+            held = ledger.rows * self.layout.row_bytes(table) + len(columns) * COLUMN_BYTES
+            self.allowance.take(f"the table of {table}s", held)
+            self._ledgers[table] = ledger
+        return self._ledgers[table]
 
-    def _leading(self, group: Any, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
+    def _leading(self, name: str, kind: Any, shape: tuple[int | None, ...], count: int) -> Array:
         """First rows of a dataset, as far as HDF5 finds chunks."""
-        found = dataset(group, name, kind, shape, self.allowance, count)
-        step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
-        parts: list[Array | None] = [np.empty((0, *found.shape[1:]), found.dtype)]
-        while parts[-1] is not None and (len(parts) - 1) * step < count:
-            rows = slice((len(parts) - 1) * step, min(len(parts) * step, count))
-            parts.append(self._or_else("", partial(found.__getitem__, rows), None))
-        return np.concatenate([part for part in parts if part is not None])
+        found = dataset(self.root, name, kind, shape, self.allowance, count)
+        if not self._salvage:
+            return np.asarray(found[:count])
+        step = found.chunks[0] if found.chunks else max(count, 1)
+        starts = range(0, count, step)
+        parts = [self._or_else("", partial(found.__getitem__, slice(k, min(k + step, count))), None) for k in starts]
+        return np.concatenate([found[:0], *takewhile(lambda part: part is not None, parts)])
 
     def _read_names(self) -> tuple[str, ...]:
         # Raw bytes, since h5netcdf, netCDF4 and h5py decode text differently.
-        count = self.committed.names if self.checked else self.root[EVENT_NAME.name].shape[0]
-        raw = self._leading(self.root, EVENT_NAME.name, EVENT_NAME.storage, (None,), count).astype(EVENT_NAME.storage)
-        if self.checked:
-            sums = self._leading(subgroup(self.root, GROUP), "event", np.dtype("u4"), (None,), count)
-            if len(raw) < count or [digest(raw[k : k + 1]) for k in range(len(raw))] != sums.tolist():
-                self._flaw("the names of its events are not what was written")
+        count = self.committed.names
+        raw = self._leading(EVENT_NAME.name, EVENT_NAME.storage, (None,), count).astype(EVENT_NAME.storage)
+        sums = self._leading(f"{GROUP}/event", np.dtype("u4"), (None,), count)
+        if len(raw) < count or [digest(raw[k : k + 1]) for k in range(len(raw))] != sums.tolist():
+            self._flaw("the names of its events are not what was written")
         named = [name.decode(errors="replace") for name in raw]
         return (*named, *(f"event {k}, whose name is lost" for k in range(len(named), count)))
 
     def table(self, name: str) -> Table:
         """The committed rows of ``"point"`` or ``"path"``."""
-        return Table(self.layout, name, getattr(self.committed, f"{name}s"), partial(self.read, name))
+        return Table(self.layout, name, self.committed.rows(name), partial(self.read, name))
 
-    def read(self, table: str, name: str, rows: slice) -> Array:
+    def read(self, table: str, column: Column, rows: slice) -> Array:
         """Committed rows of a column, checked."""
-        return self.guarded(lambda: self._read(table, name, rows))
-
-    def _read(self, table: str, name: str, rows: slice) -> Array:
-        fetch, ledger = partial(self._fetch, self._columns[table][name]), self._ledger(table)
-        return fetch(rows) if ledger is None else ledger.read(name, rows, fetch)
+        return self.guarded(lambda: self._ledger(table).read(column.name, rows, partial(self._fetch, column)))
 
     def _fetch(self, column: Column, rows: slice) -> Array:
         if column.name not in self._datasets:
@@ -240,24 +223,27 @@ class Contents:
         values: Array = found[rows]
         return values
 
-    def unsound(self, table: str) -> list[tuple[int, int]]:
-        """Blocks of rows with a damaged or unreadable column."""
-        ledger = self._ledger(table)
-        blocks = [] if ledger is None else list(pairwise(ledger.bounds.tolist()))
+    def sound(self, table: str) -> Array:
+        """Which rows of a table can be read, and are what was written."""
+        edges = self._ledger(table).bounds.tolist()
+        sound = np.ones(edges[-1], dtype=bool)
 
         def is_sound(start: int, stop: int) -> bool:
-            rows = slice(start, stop)
-            return self._or_else("", lambda: all(len(self._read(table, n, rows)) for n in self._columns[table]), False)
+            columns, rows = self.layout.columns(table), slice(start, stop)
+            return self._or_else("", lambda: all(len(self.read(table, column, rows)) for column in columns), False)
 
-        several = [blocks[k : k + _BLOCKS] for k in range(0, len(blocks), _BLOCKS)]
-        doubtful = [some for some in several if not is_sound(some[0][0], some[-1][1])]
-        return [block for some in doubtful for block in some if not is_sound(*block)]
+        for k in range(0, len(edges) - 1, _BLOCKS):
+            some = edges[k : k + _BLOCKS + 1]
+            if not is_sound(some[0], some[-1]):
+                for start, stop in pairwise(some):
+                    sound[start:stop] = is_sound(start, stop)
+        return sound
 
     def slots(self) -> list[bytes]:
         """Stored checkpoints, perhaps torn."""
 
         def read() -> list[bytes]:
-            found = dataset(subgroup(self.root, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
+            found = dataset(self.root, f"{RESUME}/slots", np.dtype("u1"), (SLOTS, None), self.allowance)
             return [slot.tobytes() for slot in found[()]]
 
         return self.guarded(read) if RESUME in self._present else []
@@ -266,10 +252,10 @@ class Contents:
         """The problem group."""
 
         def read() -> tuple[str, Mapping[str, Any]]:
-            group = subgroup(self.root, PROBLEM) if PROBLEM in self._present else None
-            return read_problem(group, self.checked, self.allowance)
+            group = member(self.root, PROBLEM) if PROBLEM in self._present else None
+            return read_problem(group, self.allowance)
 
-        nothing = read_problem(None, False, self.allowance)
+        nothing = read_problem(None, self.allowance)
         return self.guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
 
 
@@ -278,33 +264,30 @@ _BLOCKS = 64
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
-    schema = attributes.get("schema")
-    complete = {"committed_points", "committed_paths"} <= present and (schema in (UNCHECKED, None) or GROUP in present)
-    kind, _, version = str(schema).rpartition("-")
+    schema = str(attributes.get("schema", ""))
+    kind, _, version = schema.rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
-    known = kind == ours and version.isdecimal() and len(version) < 9
-    writer = attributes.get("library_version") or "unknown"
     said = (
         "is an HDF5 file, but not an archive of paths (it has no attribute `schema`)"
-        if schema is None and not complete
-        else f"has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}"
-        if not known
-        else f"has the newer schema {schema}, this library reads up to {SCHEMA}; upgrade to continuation "
-        f"{str(writer)[:20]} or later, or read it with h5py or xarray"
-        if int(version) > int(newest)
+        if not schema
+        else f"has the newer schema {schema[:60]}, this library reads up to {SCHEMA}; upgrade to continuation "
+        f"{str(attributes.get('library_version') or 'unknown')[:20]} or later, or read it with h5py or xarray"
+        if kind == ours and version.isdecimal() and (len(version), version) > (len(newest), newest)
+        else f"has the schema {schema[:60]!r}, expected {SCHEMA!r}"
+        if schema != SCHEMA
         else "truncated, its writer ended before the structure was complete"
-        if not complete
+        if not {GROUP, "committed_points", "committed_paths"} <= present
         else ""
     )
     if said:
         raise ArchiveError(f"{name}: {said}")
 
 
-def _layout(file: Any, present: set[str], allowance: Allowance) -> Layout:
+def _known(present: set[str]) -> frozenset[str]:
+    """The optional columns."""
     known = {column.name for column in OPTIONAL} & present
     for prefix in (OBSERVED, PARAMETER):
         own = sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix))
         check_names(prefix, own)
         known |= {prefix + name for name in own}
-    y, state = (dataset(file, name, np.dtype("f8"), (None, None), allowance, 0) for name in ("y", "controller_state"))
-    return Layout(int(y.shape[1]), int(state.shape[1]), frozenset(known))
+    return frozenset(known)

@@ -59,10 +59,11 @@ class Image:
         padded = head.ljust(HEAD_BYTES, b"\0")
         if padded[_VERSION] not in (2, 3):
             return head
+        self.closed_by_writer, stated = head[_VERSION] < 3 or not padded[_IN_USE], stated_length(padded)
+        if self.closed_by_writer and stated == self.length:
+            return head
         if struct.unpack_from("<I", padded, _CRC)[0] != lookup3(padded[:_CRC]):
             raise StructureError("truncated or damaged, HDF5 cannot open it (its head is not sound)")
-        self.closed_by_writer = head[_VERSION] < 3 or not head[_IN_USE]
-        stated = stated_length(head)
         self.missing, self.length = max(stated - self.length, 0), max(stated, self.length)
         length = struct.pack("<Q", self.length)
         closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
@@ -186,12 +187,18 @@ class Allowance:
 
 
 def member(group: Any, name: str) -> Any:
-    """A group or dataset behind a hard link."""
-    raw = name.encode()
-    if not group.id.links.exists(raw) or group.id.links.get_info(raw).type != h5l.TYPE_HARD:
+    """A group or dataset behind hard links; `name` may be a path."""
+    *above, last = name.encode().split(b"/")
+    for part in above:
+        group = member(group, part.decode())
+    try:
+        hard = group.id.links.get_info(last).type == h5l.TYPE_HARD
+    except KeyError:
+        hard = False
+    if not hard:
         raise StructureError(f"it has no {name}, or a link to somewhere else")
     # `group[name]` would reopen the file.
-    found = h5o.open(group.id, raw)
+    found = h5o.open(group.id, last)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 import platform
@@ -94,11 +93,9 @@ def parameters(homotopy: Any) -> dict[str, Any]:
     cls = type(homotopy)
     if attrs.has(cls):
         names = [a.name for a in attrs.fields(cls)]
-    elif dataclasses.is_dataclass(cls):
-        names = [a.name for a in dataclasses.fields(cls)]
     else:
         slots = (getattr(c, "__slots__", ()) for c in cls.__mro__)
-        names = [*(name for own in slots for name in ((own,) if isinstance(own, str) else own))]
+        names = [name for own in slots for name in ((own,) if isinstance(own, str) else own)]
         names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
     public = (name for name in dict.fromkeys(names) if not name.startswith("_"))
     return {name: getattr(homotopy, name) for name in public if hasattr(homotopy, name)}

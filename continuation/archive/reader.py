@@ -143,6 +143,8 @@ class Archive(Sequence[Path]):
         )
 
     def __repr__(self) -> str:
+        if self.contents.closed:
+            return f"<Archive {self.file}, closed>"
         state = "" if self.closed_by_writer else ", not closed by its writer"
         size = f"{len(self)} paths, {self.points.size} points of {self.layout.unknowns} unknowns"
         return f"<Archive {self.file}: {size}{state}>"
@@ -198,7 +200,7 @@ class Archive(Sequence[Path]):
         return self.contents.problem()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file: what was not read by then raises `ArchiveError`."""
         self.contents.close()
 
     def __enter__(self) -> Archive:
@@ -219,7 +221,7 @@ class Archive(Sequence[Path]):
         if checkpoint is not None and checkpoint.path == number:
             told = checkpoint.run.get("member")
             row["member"] = number if told is None else int(told)
-            if not self.contents.checked or self.contents.committed.checkpoint == checkpoint.sequence:
+            if self.contents.committed.checkpoint == checkpoint.sequence:
                 row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
                 row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
         return row

@@ -6,26 +6,19 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
-from functools import partial
-from operator import getitem
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-import numpy as np
-
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
-from continuation.archive.copies import share_of, write_copy
+from continuation.archive.growing import check_homotopy, copy, share_of
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.store import Store, put
+from continuation.archive.store import Store
 from continuation.archive.tables import kept_whole
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
-from continuation.arrays import Array
-from continuation.counts import Counts
-from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
@@ -172,26 +165,21 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
     """The homotopy that the file describes; `known` is the `registry`."""
     tree: Any = checkpoint.run["homotopy"]
-    if not isinstance(tree, dict) or not tree.get("problem"):
-        return _made(source, "the homotopy", lambda: tree, whole, known, "homotopy= or --homotopy")
-    text, arrays = source.problem()
-    return _made(source, "the homotopy", lambda: json.loads(text), arrays.__getitem__, known, "homotopy= or --homotopy")
+    fetch: Callable[[Any], Any] = whole
+    if isinstance(tree, dict) and tree.get("problem"):
+        described, arrays = source.problem()
+        tree, fetch = source.contents.guarded(lambda: json.loads(described)), arrays.__getitem__
+    return _made(source, "the homotopy", tree, fetch, known, "homotopy= or --homotopy")
 
 
 def _made(
-    source: Archive,
-    name: str,
-    tree: Callable[[], Any],
-    fetch: Callable[[Any], Any],
-    known: Mapping[str, Any],
-    hint: str,
+    source: Archive, name: str, tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: str
 ) -> Any:
     try:
-        described = tree()
-        if isinstance(described, dict) and "unstorable" in described:
-            raise UnknownError(described["unstorable"])
-        return decode(described, fetch, known)
-    except (UnknownError, KeyError, TypeError, ValueError, RecursionError) as error:
+        if isinstance(tree, dict) and "unstorable" in tree:
+            raise UnknownError(tree["unstorable"])
+        return decode(tree, fetch, known)
+    except UnknownError as error:
         said = f"{name} cannot be made from the file ({short(error)}); pass {hint}"
         raise ArchiveError(f"{source.file}: {said}") from None
 
@@ -200,24 +188,13 @@ def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
     trees: Any = checkpoint.run.get("options", {})
-    names = [name for name in OPTIONS if name in trees and name not in given]
-    stored = {name: _made(source, name, partial(getitem, trees, name), whole, known, f"{name}=") for name in names}
+    names = [name for name in OPTIONS if isinstance(trees, dict) and name in trees and name not in given]
+    stored = {name: _made(source, name, trees[name], whole, known, f"{name}=") for name in names}
     return {"box": None, **stored, **given}
-
-
-def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
-    """Raise `ValueError` unless the homotopy's largest residual at u is the stored one."""
-    unknowns = Evaluator(homotopy, Counts()).start().size - 1
-    if unknowns != u.size - 1:
-        raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
-    found = float(np.abs(homotopy.residual(u[:-1].copy(), float(u[-1]))).max())
-    if not found <= 100.0 * stored + 1e-12 * (1.0 + float(np.abs(u).max())):
-        raise ValueError(f"homotopy: expected the archive's residual {stored:.2g} at its last point, found {found:.2g}")
 
 
 def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
-    share, slots = share_of(source, last=checkpoint.path, points=rows), slot_of(checkpoint)
-    copy = partial(write_copy, [share], what=what, more={**process(), "parent": parent}, checkpoints=slots)
-    return put(target, copy, replace=replace, grows=True)
+    share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
+    return copy([share], target, what=what, more=more, checkpoints=slot_of(checkpoint), replace=replace, grows=True)

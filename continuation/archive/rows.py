@@ -192,11 +192,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
 
 def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
     """The path's row as a block."""
-    block = {}
-    for column in layout.columns("path"):
-        cell = record.get(column.name, column.missing)
-        cell = text(cell, column.length) if column.length and isinstance(cell, str) else cell
-        block[column.name] = np.array([cell], dtype=column.storage)
-    state = record["controller_state"][: layout.controller]
-    block["controller_state"] = np.array([[*state, *[_NAN] * (layout.controller - len(state))]])
-    return block
+    cells = {**record, "controller_state": record["controller_state"][: layout.controller]}
+    known = [column for column in layout.columns("path") if column.name in cells]
+    own = {c.name: text(cells[c.name], c.length) if c.length else cells[c.name] for c in known}
+    return layout.filled({c.name: np.array([own[c.name]], dtype=c.storage) for c in known}, "path", 1)

@@ -19,9 +19,6 @@ from continuation.status import Kind, Status
 SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
-UNCHECKED = "continuation-path-1"
-"""The schema without checksums."""
-
 TEXT = 240
 """Bytes of a path's message."""
 
@@ -160,11 +157,10 @@ OBSERVED, PARAMETER = "observed_", "homotopy_"
 """Prefixes of scalars of points, and of parameters of paths."""
 
 
-def _names(columns: Iterable[Column]) -> frozenset[str]:
-    return frozenset(column.name for column in columns)
-
-
-TANGENTS, KINKS, ORIGINS = _names(TANGENT_COLUMNS), _names((*TANGENT_COLUMNS, *KINK_COLUMNS)), _names(ORIGIN_COLUMNS)
+TANGENTS, KINKS, ORIGINS = (
+    frozenset(column.name for column in columns)
+    for columns in (TANGENT_COLUMNS, (*TANGENT_COLUMNS, *KINK_COLUMNS), ORIGIN_COLUMNS)
+)
 
 
 @frozen
@@ -185,12 +181,29 @@ class Layout:
 
     def width(self, column: Column) -> tuple[int, ...]:
         """The column's dimensions beyond the first."""
-        lengths = {"component": self.unknowns, "controller": self.controller}
-        return tuple(lengths[name] for name in column.dimensions[1:])
+        return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
     def row_bytes(self, table: str) -> int:
         """Bytes of a row."""
-        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+        return _row_bytes(self, table)
+
+    def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
+        """All columns of a table; missing ones and cells are filled."""
+        whole = {}
+        for column in self.columns(table):
+            values, shape = block.get(column.name), (rows, *self.width(column))
+            if values is None or values.shape != shape:
+                missing = np.full(shape, column.missing, dtype=column.storage)
+                if values is not None:
+                    missing[:, : values.shape[1]] = values
+                values = missing
+            whole[column.name] = np.ascontiguousarray(values)
+        return whole
+
+
+@lru_cache(maxsize=64)
+def _row_bytes(layout: Layout, table: str) -> int:
+    return sum(column.storage.itemsize * math.prod(layout.width(column)) for column in layout.columns(table))
 
 
 @lru_cache(maxsize=64)

@@ -29,17 +29,26 @@ from continuation.archive.schema import EVENT_NAME, LIBVER, NAME, RESUME, SLOTS,
 _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
 
-def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
-    """Write a new file beside `target`, then rename it.
+def put(
+    target: File,
+    make: Callable[[File], Store],
+    fill: Callable[[Store], None] | None = None,
+    *,
+    replace: bool = False,
+    grows: bool = False,
+) -> Store:
+    """Make and fill a new file beside `target`, then rename it.
 
-    `write`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open; otherwise it is synced
+    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open; otherwise it is synced
     first.
     """
     if not replace:
         check_new(target)
     with beside(target) as part:
-        store = write(part)
+        store = make(part)
         try:
+            if fill is not None:
+                fill(store)
             if not grows:
                 store.close(sync=True)
             publish(store.file, target, replace=replace)
@@ -97,9 +106,10 @@ class Store:
         columns = [column.name for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME)]
         own = [f"{GROUP}/point", f"{GROUP}/path", f"{GROUP}/event", _RECORDS, _SLOTS]
         names = {*columns, *own, "point", "event", "committed_points", "committed_paths"}
+        # This opens again all that is open: datasets opened before would take twice as long.
+        self._h5.swmr_mode = True
         # h5py's objects cost several times as much.
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
-        self._h5.swmr_mode = True
 
     def commit(
         self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None

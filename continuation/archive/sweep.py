@@ -28,7 +28,7 @@ from attrs import define, field, frozen
 
 from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
-from continuation.archive.copies import Share, append, share_of_path
+from continuation.archive.growing import Share, append, share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout

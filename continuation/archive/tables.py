@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from continuation.archive.atomic import ArchiveError
-from continuation.archive.schema import COMPONENT, EVENT_NAME, Layout
+from continuation.archive.schema import COMPONENT, EVENT_NAME, Column, Layout
 from continuation.arguments.checks import complain
 
-Fetch = Callable[[str, slice], np.ndarray[Any, Any]]
+Fetch = Callable[[Column, slice], np.ndarray[Any, Any]]
 Block = dict[str, Any]
 """Rows of a table, by column."""
 
@@ -94,10 +94,10 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         if held is None or not start <= rows.start <= rows.stop <= start + len(held):
             start, stop = rows.start, max(rows.stop, min(rows.start + self.at_once, self.size))
             try:
-                held = self._fetch(name, slice(start, stop))
+                held = self._fetch(self.columns[name], slice(start, stop))
             except ArchiveError:
                 # Rows beyond the request may be damaged.
-                held = self._fetch(name, rows)
+                held = self._fetch(self.columns[name], rows)
             self._read[name] = start, held
         return held[rows.start - start : rows.stop - start]
 
@@ -114,8 +114,8 @@ def joined(blocks: Sequence[Block]) -> Block:
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
-def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
-    return columns[name][rows]
+def _part(columns: Mapping[str, Any], column: Column, rows: slice) -> Any:
+    return columns[column.name][rows]
 
 
 def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:

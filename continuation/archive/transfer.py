@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from itertools import groupby, pairwise
+from itertools import groupby, pairwise, starmap
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
@@ -20,12 +20,11 @@ from attrs import evolve
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
 from continuation.archive.checkpoint import slot_of
 from continuation.archive.contents import TABLES, Contents
-from continuation.archive.copies import Share, filled, leading, share_of, sourced, write_copy
+from continuation.archive.growing import Share, copy, leading, share_of, sourced
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
 from continuation.archive.schema import TEXT, text
-from continuation.archive.store import put
 from continuation.archive.tables import ROWS_AT_ONCE, Table, flat
 from continuation.arguments.checks import complain
 from continuation.path import Path
@@ -61,7 +60,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
         shares = [share_of(archive) for archive in archives]
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         _refuse_duplicates(archives, shares)
-        put(whole, partial(write_copy, shares, what=f"merged from {len(archives)} files: {names}", more=process()))
+        copy(shares, whole, what=f"merged from {len(archives)} files: {names}", more=process())
     return whole
 
 
@@ -89,7 +88,7 @@ def gather(files: Sequence[File], target: File) -> None:
             share.paths["source"][:] = b""
             whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
             made.append(_of_size(whole, head.layout.unknowns, target))
-        put(target, partial(write_copy, made, what=f"a sweep of {len(places)} paths", more=process()))
+        copy(made, target, what=f"a sweep of {len(places)} paths", more=process())
 
 
 def _of_size(share: Share, unknowns: int, target: File) -> Share:
@@ -132,8 +131,7 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     with open_archive(file) as archive:
         if name.suffix in (".nc", ".nc4", ".h5"):
             check_new(name)
-            what = f"exported from {archive.file.name}"
-            put(name, partial(write_copy, [share_of(archive)], what=what, compression=compression))
+            copy([share_of(archive)], name, what=f"exported from {archive.file.name}", compression=compression)
             return [name]
         for suffix in (".csv", ".csv.gz"):
             if name.name.endswith(suffix):
@@ -144,24 +142,20 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
 def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
+    opened: Any = gzip.open if points.suffix == ".gz" else open
     with beside(points) as first, beside(paths) as second:
         for part, table in ((first, archive.points), (second, archive.paths)):
-            _write_text(part, table, points.suffix == ".gz")
+            with opened(part, "xt", encoding="utf-8", newline="") as out:
+                writer = csv.writer(out)
+                for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
+                    columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
+                    writer.writerows([[*columns]] if not start else [])
+                    writer.writerows(zip(*(values.tolist() for values in columns.values())))
+            with part.open("rb") as written:
+                os.fsync(written.fileno())
         publish(second, paths)
         publish(first, points)
     return [points, paths]
-
-
-def _write_text(part: File, table: Table, compressed: bool) -> None:
-    opened: Any = gzip.open if compressed else open
-    with opened(part, "xt", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out)
-        for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
-            columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
-            writer.writerows([[*columns]] if not start else [])
-            writer.writerows(zip(*(values.tolist() for values in columns.values())))
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
@@ -189,11 +183,11 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     name = as_file("file", file)
     with ExitStack() as stack:
         contents = stack.enter_context(closing(Contents(name, salvage=True)))
-        lost = {table: contents.unsound(table) for table in TABLES}
-        damaged, slots = any(lost.values()) or any(contents.cut_off.values()), dict[int, bytes]()
+        sound = {table: contents.sound(table) for table in TABLES}
+        dropped, slots = int(np.sum(~sound["point"])) + contents.cut_off[0], dict[int, bytes]()
+        damaged = bool(dropped or np.sum(~sound["path"]) + contents.cut_off[1])
         if damaged or contents.flaws:
-            shares = _salvaged(contents, lost)
-            dropped = sum(stop - start for start, stop in lost["point"]) + contents.cut_off["point"]
+            shares = _salvaged(contents, sound)
             flaws = "; ".join(contents.flaws) or "damaged"
             what = f"recovered: {flaws}; {dropped} points were not what was written"
         else:
@@ -201,16 +195,15 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
             if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
                 return name
             shares, what = [share_of(archive)], "recovered after its writer was killed"
-            open_ = shares[0].paths["status"] == int(Status.TRACING)
-            _interrupted(shares[0].paths, open_, "Its writer was killed.")
+            _interrupted(shares[0].paths, shares[0].paths["status"] == int(Status.TRACING), "Its writer was killed.")
             slots = slot_of(archive.checkpoint())
         real = File(os.path.realpath(name))
         stack.enter_context(closing(own(real, contents.descriptor, contents.attributes.get("process"), force=force)))
-        if not len(shares[0].paths["path"]) and damaged:
+        if damaged and len(shares) == 1:
             raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
         if damaged:
             _keep_aside(real)
-        put(real, partial(write_copy, shares, what=what, checkpoints=slots), replace=True)
+        copy(shares, real, what=what, checkpoints=slots, replace=True)
     return name
 
 
@@ -219,43 +212,37 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
     paths["message"][which] = text(f"{Status.INTERRUPTED} {why}", TEXT)
 
 
-def _salvaged(contents: Contents, lost: Mapping[str, Sequence[tuple[int, int]]]) -> list[Share]:
-    committed, layout = contents.committed, contents.layout
-    points, paths = contents.table("point"), contents.table("path")
-    sound = {"point": np.ones(committed.points, dtype=bool), "path": np.ones(committed.paths, dtype=bool)}
-    for table, spans in lost.items():
-        for start, stop in spans:
-            sound[table][start:stop] = False
-    runs, shares = dict(_runs(points, sound["point"])), []
+def _salvaged(contents: Contents, sound: Mapping[str, Any]) -> list[Share]:
+    """Nothing, then the sound rows of each path, up to its first damaged one."""
+    layout, points, paths = contents.layout, contents.table("point"), contents.table("path")
+    some = partial(Share, layout, contents.event_names, points=points, origin=contents)
+    runs, shares = dict(_runs(points, sound["point"])), [some(layout.filled({}, "path", 0), rows=slice(0, 0))]
     for number in sorted({*runs, *np.flatnonzero(sound["path"]).tolist()}):
         rows = runs.get(number, slice(0, 0))
         row = row_columns({**record_of(Path(), None, ()), "path": number, "member": number, "n_points": -1}, layout)
-        if number < committed.paths and sound["path"][number]:
+        if number < paths.size and sound["path"][number]:
             row = {name: values.copy() for name, values in paths.block(slice(number, number + 1)).items()}
         if row["n_points"][0] != rows.stop - rows.start:
             row["n_points"][:] = rows.stop - rows.start
             _interrupted(row, 0, "The rest of it was damaged.")
-        shares.append(Share(layout, contents.event_names, row, points, rows, number, contents))
-    nothing = filled({}, layout, "path", 0)
-    return shares or [Share(layout, contents.event_names, nothing, points, slice(0, 0), 0, contents)]
+        shares.append(some(row, rows=rows, first=number))
+    return shares
 
 
 def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
     edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1"))).reshape(-1, 2)
-    for start, stop in edges.tolist():
-        paths, kinds = (points.some(name, slice(start, stop)) for name in ("path_index", "kind"))
-        changes = np.concatenate(([0], np.flatnonzero(np.diff(paths)) + 1, [stop - start])).tolist()
+    for rows in starmap(slice, edges.tolist()):
+        paths, kinds = (points.some(name, rows) for name in ("path_index", "kind"))
+        changes = [0, *(np.flatnonzero(np.diff(paths)) + 1).tolist(), len(paths)]
         for first, last in pairwise(changes):
             # The end of a path alone is useless.
             if kinds[first] == Kind.START:
-                yield int(paths[first]), slice(start + first, start + last)
+                yield int(paths[first]), slice(rows.start + first, rows.start + last)
 
 
 def _keep_aside(file: File) -> None:
     aside = file.with_name(f"{file.name}.damaged")
     try:
         os.link(file, aside)
-    except FileExistsError:
-        raise ArchiveError(f"{file}: is damaged, and would be kept as {aside.name}, which exists already") from None
     except OSError as error:
         raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None

@@ -16,12 +16,12 @@ from typing import Any
 from attrs import define, field, frozen
 
 from continuation.archive.atomic import ArchiveError, new_file
-from continuation.archive.checkpoint import Checkpoint, describe_run, pack
+from continuation.archive.checkpoint import Checkpoint, describe_run, slot_of
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import StoredSteps
 from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
-from continuation.archive.schema import ACCEPTED, COUNT_NAMES, LOCATED, SLOTS, check_names
+from continuation.archive.schema import COUNT_NAMES, check_names
 from continuation.archive.store import Store, put
 from continuation.archive.tables import joined, kept_whole
 from continuation.arguments.checks import complain, integer, number
@@ -54,7 +54,7 @@ class OpenPath:
     run: bytes | None = None
     last: Mark | None = None
     resume: Mark | None = None
-    skipped: Step | None = None
+    skipped: Row | None = None
 
 
 class PathLog:
@@ -159,16 +159,19 @@ class PathLog:
         """See `continuation.Observer`."""
         path = self._path(tracer)
         store = self._store or self._make(tracer, step.u.size - 1, tuple(step.observed))
+        if step.u.size - 1 != store.layout.unknowns:
+            held, found = store.layout.unknowns, step.u.size - 1
+            raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {found}")
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
             stored: Any = StoredSteps(self.file, path.number, tracer.path.steps)
             tracer.path.steps = stored
-        path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
+        events = [*takewhile(lambda e: e.step == step.index, reversed(tracer.path.events))]
+        found_rows = rows_at(step, events[::-1], store.layout)
+        path.skipped = found_rows.pop() if step.kind == Kind.REGULAR and step.index % self._save_every else None
+        self._rows[1].extend(found_rows)
         if path.skipped is not None:
             # A resumed trace needs the row.
             return
-        ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
-        for row in rows_at(step, ending[::-1], store.layout):
-            self._add(row)
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
             # The path may still end at this point, so a trace resumes one point earlier.
@@ -180,9 +183,7 @@ class PathLog:
             self._commit()
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """See `continuation.Observer`."""
-        self._path(tracer)
-        self._add(Row(event, event, LOCATED, event.tangent))
+        """Do nothing: rows are written with the step after the event."""
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits, and closes the file without ``with``."""
@@ -191,7 +192,7 @@ class PathLog:
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         if path.skipped is not None:
-            self._add(Row(path.skipped, None, ACCEPTED, path.skipped.tangent))
+            self._rows[1].append(path.skipped)
         row = record_of(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
         if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
@@ -238,12 +239,6 @@ class PathLog:
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
         return path
 
-    def _add(self, row: Row) -> None:
-        if self._store is not None and row.point.u.size - 1 != self._store.layout.unknowns:
-            held, found = self._store.layout.unknowns, row.point.u.size - 1
-            raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {found}")
-        self._rows[1].append(row)
-
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> Store:
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
@@ -262,15 +257,20 @@ class PathLog:
     def _commit(self) -> None:
         store, path = self._store, self._open
         assert store is not None
-        points, checkpoints = None, {}
+        points, checkpoints = None, dict[int, bytes]()
         # The commit that Ctrl-C interrupted may be complete.
         start = store.committed.points
         rows = self._rows[1][start - self._rows[0] :]
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
-            sequence = store.committed.checkpoint + 1
-            checkpoints = {sequence % SLOTS: self._checkpoint(path, path.resume, sequence)}
+            if path.run is None:
+                homotopy, described = self._known
+                known = described if homotopy is path.tracer.homotopy else None
+                path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
+            (state, counts, held), seconds = path.resume, path.seconds + path.tracer.seconds
+            named, sequence = dict(zip(COUNT_NAMES, counts)), store.committed.checkpoint + 1
+            checkpoints = slot_of(Checkpoint(sequence, path.number, held, state, named, seconds, {}), path.run)
         ended = [
             row_columns({**row, "source": f"{store.identifier} {number} {self.file.name}"}, store.layout)
             for number, row in self._ended.items()
@@ -287,12 +287,3 @@ class PathLog:
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
         self._commit_at = time.monotonic() + self._limits.seconds
-
-    def _checkpoint(self, path: OpenPath, mark: Mark, sequence: int) -> bytes:
-        if path.run is None:
-            homotopy, described = self._known
-            known = described if homotopy is path.tracer.homotopy else None
-            path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
-        state, counts, rows = mark
-        named, seconds = dict(zip(COUNT_NAMES, counts)), path.seconds + path.tracer.seconds
-        return pack(Checkpoint(sequence, path.number, rows, state, named, seconds, {}), path.run)

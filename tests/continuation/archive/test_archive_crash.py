@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from continuation import Budget, Status, Tracer, trace
-from continuation.archive import ArchiveError, open_archive, recover, resume
+from continuation.archive import open_archive, recover, resume
 from continuation.archive.store import Store
 from problems.bifurcation import FreudensteinRoth
 
@@ -120,19 +120,3 @@ def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
     assert found.status is Status.INTERRUPTED
     assert np.array_equal(read(tmp_path / "run.h5").u, found.u)
     assert np.array_equal(resume(tmp_path / "run.h5").u, path.u)
-
-
-def test_a_full_disk_is_one_clear_line(tmp_path, monkeypatch):
-    put = Store._put
-
-    def full(dataset, start, values):
-        if start >= 6:
-            raise OSError("Can't write data (file write failed: errno = 28, 'No space left on device')\nmore")
-        put(dataset, start, values)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Store, "_put", staticmethod(full))
-        with pytest.raises(ArchiveError, match=r"run.h5: could not be written \(.*No space left.*; what was"):
-            trace(FreudensteinRoth(), archive=logged(tmp_path / "run.h5", 6))
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.points.size == 6

@@ -26,7 +26,7 @@ def foreign(file, **attributes):
 
 def incomplete(file):
     with h5py.File(file, "x") as opened:
-        opened.attrs["schema"] = "continuation-path-1"
+        opened.attrs["schema"] = "continuation-path-2"
         opened["y"] = np.zeros((0, 2))
 
 

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from contextlib import suppress
 
 import attrs
 import h5py
@@ -10,7 +11,9 @@ import pytest
 
 from continuation import Budget, TargetValue, trace
 from continuation.archive import ArchiveError, export, open_archive, recover, resume
-from continuation.archive.checks import Committed
+from continuation.archive.checks import Committed, of_attributes, seal
+from continuation.archive.contents import _known
+from continuation.archive.schema import Layout
 from problems.bifurcation import ExponentialCosine
 
 from .util import OPERATIONS, logged, outcome, read
@@ -23,17 +26,25 @@ def base(tmp_path_factory):
     return file
 
 
-def unchecked(file):
-    """An archive of the first version: without checksums, nothing but its structure stands in the way of harm."""
-    del file["checks"]
-    file.attrs["schema"] = "continuation-path-1"
-
-
-def claimed(file, points):
-    """A commit of so many points, with a checksum of its own."""
+def claimed(file, **counts):
+    """A commit of so many rows, with a checksum of its own."""
     records = file["checks"]["commits"]
     numbers = max(np.frombuffer(record.tobytes()[:-4], "<u8").tolist() for record in records[:])
-    records[:] = [attrs.evolve(Committed(*numbers), points=points).pack()] * 4
+    records[:] = [attrs.evolve(Committed(*numbers), **counts).pack()] * 4
+
+
+def resealed(file, **counts):
+    """Checksums of what is there now, as far as it can be read: who can write a file can write them."""
+    records = file["checks"]["commits"]
+    *_, last = sorted(np.frombuffer(record.tobytes()[:-4], "<u8").tolist() for record in records[:])
+    rows = {"point": counts.get("points", last[1]), "path": last[2]}
+    for table, count in rows.items():
+        columns = Layout(1, more=_known(set(file))).columns(table)
+        sums = seal({column.name: file[column.name][:count] for column in columns}, 0)
+        file["checks"][table].resize((1, len(sums)))
+        file["checks"][table][0] = sums
+    file["checks"].attrs["attributes"] = np.uint32(of_attributes(dict(file.attrs)))
+    claimed(file, point_blocks=1, path_blocks=1, **counts)
 
 
 def replaced(file, name, value):
@@ -104,9 +115,9 @@ HARM = {
 }
 
 
-@pytest.mark.parametrize("checked", [True, False], ids=["checked", "unchecked"])
+@pytest.mark.parametrize("sealed", [False, True], ids=["damaged", "sealed"])
 @pytest.mark.parametrize("harm", HARM)
-def test_one_line_or_nothing_amiss(tmp_path, base, harm, checked):
+def test_one_line_or_nothing_amiss(tmp_path, base, harm, sealed):
     secret, right, refused = tmp_path / "secret.h5", read(base).u, 0
     shutil.copy(base, secret)
     for name, operation in OPERATIONS.items():
@@ -114,39 +125,38 @@ def test_one_line_or_nothing_amiss(tmp_path, base, harm, checked):
         shutil.copy(base, file)
         with h5py.File(file, "r+", libver="latest") as opened:
             HARM[harm](opened, secret)
-            if not checked and "schema" not in harm:
-                unchecked(opened)
+            if sealed:
+                with suppress(Exception):
+                    resealed(opened)
         complaint, found = outcome(operation, file)
         refused += bool(complaint)
         assert "\n" not in complaint
-        if checked and name == "read" and not complaint:
+        if not sealed and name == "read" and not complaint:
             assert np.array_equal(found[0], right)
         for said in (complaint, str(found)):
             assert "\x1b" not in said
             said.encode()
     harmless = ("rows that are not there", "names without end", "a checkpoint that is not there")
-    assert refused or not checked or harm in harmless
+    assert refused or sealed or harm in harmless
 
 
 def test_points_that_are_claimed_with_a_checksum(tmp_path, base):
     shutil.copy(base, tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5", "r+", libver="latest") as opened:
-        claimed(opened, 10**12)
+        claimed(opened, points=10**12)
     with open_archive(tmp_path / "run.h5") as archive, pytest.raises(ArchiveError, match="the checksums are damaged"):
         archive.points["y"]
 
 
-def test_an_archive_of_the_first_version_is_read_and_resumed(tmp_path, base):
-    shutil.copy(base, tmp_path / "run.h5")
-    with h5py.File(tmp_path / "run.h5", "r+", libver="latest") as opened:
-        unchecked(opened)
-    path = trace(ExponentialCosine(3))
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert not archive.contents.checked
-        assert np.array_equal(archive.path(0).u, path.u[:13])
-    assert np.array_equal(resume(tmp_path / "run.h5", budget=Budget()).u, path.u)
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.contents.checked
+def test_a_closed_archive_says_that_it_is_closed(base):
+    archive = open_archive(base)
+    assert len(archive.points["arclength"]) == 14
+    archive.close()
+    archive.close()
+    for asked in (lambda: archive.points["y"], lambda: archive.path(0), archive.problem, lambda: archive.status(0)):
+        with pytest.raises(ArchiveError, match=r"base.h5: the archive was closed; open it again"):
+            asked()
+    assert repr(archive) == f"<Archive {base}, closed>"
 
 
 def test_what_is_compressed_has_a_limit(tmp_path, base):

@@ -1,6 +1,6 @@
-"""Files that version 0.1.0 left, in each state that it could leave one in: read, recovered, used.
+"""Files of `continuation-path-2` of an earlier state of the library, in each state of a file: read, recovered, used.
 
-`old/make.py` of commit bdd6fa3 wrote them by commit 10905ca.
+`old/make.py` of commit bdd6fa3 wrote them by commit 36e65f7f.
 """
 
 import json
@@ -58,8 +58,11 @@ def test_read_as_its_own_version_read_it_recovered_exported_and_merged(tmp_path,
     assert len(export(file, tmp_path / "new.csv")) == 2
 
 
-def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_path, old):
+def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_path, old, monkeypatch):
     file = Path(shutil.copy(old / "budget.h5", tmp_path))
+    again = resume(file, archive=tmp_path / "more.h5", budget=Budget())
+    assert again.endpoint.lam == trace(Cusp()).endpoint.lam
+    monkeypatch.setattr("continuation.archive.checkpoint.__version__", "1.0.0")
     said = r"no state that version .* resumes .*major version.*trace\(homotopy, start=open_archive\(.*\[0\]\)$"
     with pytest.raises(ArchiveError, match=said):
         resume(file, budget=Budget())
