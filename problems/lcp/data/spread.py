@@ -44,8 +44,8 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
     else:
-        A = problem.A
-        both = np.concatenate([np.maximum(np.maximum.reduce(A, k), -np.minimum.reduce(A, k)) for k in (0, 1)])
+        sizes = np.abs(problem.A)
+        both = np.concatenate([np.maximum.reduce(sizes, axis=0), np.maximum.reduce(sizes, axis=1)])
     return least(both), largest(both)
 
 

@@ -17,7 +17,7 @@ from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
 from problems.lcp.data.spread import extreme
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
-from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search.exclusion import TRIED, decide
 from problems.lcp.search.outcome import Outcome, Solution
@@ -48,7 +48,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
-        exact = not undecided or exact_nearby(search.problem, end.certificate.x, end.certificate.w)
+        exact = not undecided or end.certificate.exact
         return Outcome.SOLVED if exact else Outcome.SOLVED_TO_PRECISION
     if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
         return Outcome.UNSOLVABLE
@@ -135,9 +135,8 @@ def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solutio
         return found
     found = _at(found, small.x(rest.x), tolerance, rounded)
     # Elimination rounded q.
-    if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
-        exact = exact_nearby(problem, found.x)
-        found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
+    if found.outcome is Outcome.SOLVED and found.certificate is not None and problem.n <= LARGEST_DECIDED:
+        found = found if found.certificate.exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
     return found
 
 

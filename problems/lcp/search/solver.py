@@ -35,6 +35,7 @@ from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
+from problems.lcp.search.at_once import at_once
 from problems.lcp.search.judge import answer, beyond_floats, exactly, of_program, units_of_its_own, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.padded import Padded, show
@@ -156,7 +157,12 @@ def solve(
     if scaled is not None:
         start = None if start is None else scaled.u(start)
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    structure = Structure(problem if scaled is None else scaled.problem)
+    current = problem if scaled is None else scaled.problem
+    if automatic and finish and not (path or beyond) and start is None and near is None and archive is None:
+        with Silence(), one_thread:
+            if (found := at_once(current, tolerance)) is not None:
+                return found if scaled is None else unscaled(problem, scaled, found, tolerance)
+    structure = Structure(current)
     log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
     search = Search(
         structure,
