@@ -20,7 +20,8 @@ from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.search.outcome import Outcome, Solution
 
 LARGEST = 100
-"""Largest order: up to there calls of numpy take longer than arithmetic, beyond Cholesky's half of it counts."""
+"""Largest order, also of sparse matrices that `solve` makes dense: there calls take longer than arithmetic. A grid with
+n = 100 takes 0.25 ms, 1.7 sparse; a tridiagonal matrix with n = 200 takes 2.1 and 1.1."""
 
 ZERO = "q >= 0, so x = 0 is a solution."
 SETTLED = "Solved by active sets alone, before any path."

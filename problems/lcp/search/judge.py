@@ -140,6 +140,12 @@ def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solutio
     return found
 
 
+def stored_as(problem: MixedLCP, found: Solution) -> Solution:
+    """The answer to a problem whose dense twin was solved."""
+    end = found.certificate
+    return evolve(found, problem=problem, certificate=None if end is None else evolve(end, problem=problem))
+
+
 def of_program(program: Program, found: Solution) -> Solution:
     """The answer to a program."""
     parts = [found.message]

@@ -10,6 +10,7 @@ from os import PathLike
 from typing import Any, Unpack
 
 import numpy as np
+from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
@@ -35,8 +36,17 @@ from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
-from problems.lcp.search.at_once import at_once
-from problems.lcp.search.judge import answer, beyond_floats, exactly, of_program, units_of_its_own, unscaled, with_fixed
+from problems.lcp.search.at_once import LARGEST, at_once
+from problems.lcp.search.judge import (
+    answer,
+    beyond_floats,
+    exactly,
+    of_program,
+    stored_as,
+    units_of_its_own,
+    unscaled,
+    with_fixed,
+)
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Asked, Nearby, Search
@@ -148,6 +158,9 @@ def solve(
         left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
         left["archive"] = archive if small.kept.size else None
         return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
+    if problem.sparse and problem.n <= LARGEST and sparse == "auto":
+        dense = evolve(problem, A=problem.A.toarray())
+        return stored_as(problem, solve(dense, homotopy, **_given(locals()), **options))
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
     scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
