@@ -31,13 +31,10 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
     indices = indices[np.isfinite(distance[indices])]
     if indices.size:
         inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
-        sizes = np.abs(terms.x[indices])
-        moved = distance[indices] != x[indices]
-        if moved.any():
-            with np.errstate(all="ignore"):
-                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.scaled else np.inf
-            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
-            sizes = np.where(moved, known, sizes)
+        sizes = np.abs(distance[indices])
+        if terms.scaled:
+            # In the units of terms.x, the mantissas of x.
+            sizes = np.minimum(np.ldexp(sizes, -np.frexp(x[indices])[1]), np.finfo(float).max)
         with np.errstate(under="ignore"):
             if sp.issparse(terms.A):
                 columns = abs(sp.csr_array(terms.A)[:, indices])

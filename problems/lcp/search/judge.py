@@ -16,7 +16,7 @@ from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
 from problems.lcp.data.spread import extreme
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search.exclusion import TRIED, decide
@@ -115,18 +115,13 @@ def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solutio
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
     said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
     rounded = _rounded(rest, tolerance)
-    found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
-    if found.exhaustion is not None:
-        found = evolve(found, exhaustion=exhaust(problem))
-    if found.farkas is not None:
-        y = [0] * problem.n
-        for i, value in zip(small.kept, found.farkas.y):
-            y[i] = value
-        found = evolve(found, farkas=multiplier(problem, y))
-    if found.float_farkas is not None:
-        whole = np.zeros(problem.n)
-        whole[small.kept] = found.float_farkas.y
-        found = evolve(found, float_farkas=evolve(found.float_farkas, y=whole))
+    proof = infeasibility(problem) if rest.farkas is not None or rest.float_farkas is not None else None
+    found = evolve(
+        rest, problem=problem, message=f"{rest.message} {said}",
+        exhaustion=None if rest.exhaustion is None else exhaust(problem),
+        farkas=proof if isinstance(proof, Farkas) else None,
+        float_farkas=proof if isinstance(proof, FloatFarkas) else None,
+    )  # fmt: skip
     exhausted = found.exhaustion is not None and not found.exhaustion.solvable
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is None and not exhausted:
         message = f"{Outcome.NOT_FOUND} Its proof fails for the rounding of what fixed unknowns add. {found.message}"

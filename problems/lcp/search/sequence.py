@@ -18,12 +18,11 @@ from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, active_state, square_matrix
 from problems.lcp.data.scaling import Scaled
-from problems.lcp.pivoting.almost import Ended
-from problems.lcp.pivoting.starts import covering, unit_of
+from problems.lcp.pivoting.starts import unit_of
 from problems.lcp.search.at_once import at_once
 from problems.lcp.search.judge import answer, units_of_its_own, unscaled
 from problems.lcp.search.outcome import Solution
-from problems.lcp.search.pivots import LARGEST_TABLE, most_pivots
+from problems.lcp.search.pivots import LARGEST_TABLE, from_nearby
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
@@ -127,18 +126,14 @@ class Solver:
         return found if found.solved else None
 
     def _pivoted(self, search: Search) -> bool:
-        """Follow LCP(q + t (q before - q), A) from t = 1."""
-        problem = search.problem
+        """Pivot from the q before."""
+        problem, rows = search.problem, 0 if self._scaled is None else self._scaled.rows
         assert isinstance(problem, LCP)
-        if problem.n > LARGEST_TABLE:
-            return False
-        rows = 0 if self._scaled is None else self._scaled.rows
-        begins = [(np.ldexp(before, rows) - problem.q, basis) for before, basis in self._bases[::-1]]
-        for d, basis in [*begins, (np.full(problem.n, unit_of(problem)), None)]:
-            path = covering(problem, d, basis)
-            reached = path is not None and path.run(most_pivots(problem.n)) is Ended.REACHED
-            if path is not None and reached and search.settle(active_state(path.active)):
-                self._bases = [(np.ldexp(problem.q, -rows), path.active)]
+        begins: list[tuple[Array, Mask | None]] = [(np.ldexp(q, rows) - problem.q, at) for q, at in self._bases[::-1]]
+        begins.append((np.full(problem.n, unit_of(problem)), None))
+        for d, basis in begins if problem.n <= LARGEST_TABLE else ():
+            if (last := from_nearby(search, d, basis)) is not None:
+                self._bases = [(np.ldexp(problem.q, -rows), last)]
                 return True
         return False
 

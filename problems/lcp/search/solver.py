@@ -91,7 +91,7 @@ def solve(
         A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
         zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem, from whose data a piecewise linear path is followed.
+        Solution of a nearby problem: its active set is tried, then without bounds pivots from its data.
     finish : bool
         Whether active sets are tried, before and along paths.
     path : bool
