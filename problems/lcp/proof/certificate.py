@@ -84,21 +84,33 @@ class Certificate:
     def clearly_exact(self) -> bool:
         """Whether floats with error bounds prove a solution near x on its face."""
         problem, x, w, terms = self.problem, self.x, self.w, self._terms
-        if not problem.standard or terms is None or terms.scaled or least(x) < 0.0:
+        if terms is None or terms.scaled or least(room := self._room) < 0.0:
             return False
-        inside = x.nonzero()[0]
-        if not inside.size:
-            return least(problem.q) >= 0.0
-        A: Array = problem.A.toarray() if problem.sparse else problem.A
-        block = A if inside.size == x.size else A[inside][:, inside]
-        bound = error_bound(w, terms.size, x.size + 1)
-        left = (np.abs(w) + bound)[inside]
-        defect, moved = drift(block, inverses(block), x[inside], left, terms.size[inside], largest(x))
-        clear = w - bound - 4.0 * largest(moved) * terms.size
-        clear[inside] = 1.0
-        # `largest` passes over what is not finite.
-        known = finite(defect) and finite(moved)
-        return known and largest(defect) < 0.5 and largest(moved) < 0.2 and least(clear) > 0.0
+        inside = room.nonzero()[0]
+        if not problem.standard:
+            w = np.where(problem.fixed, np.inf, np.where(x == problem.lower, w, -w))
+        if not x.any():
+            return not inside.size and least(w) >= 0.0  # w = q
+        clear = w - (bound := error_bound(self.w, terms.size, x.size + 1))
+        if inside.size:
+            A: Array = problem.A.toarray() if problem.sparse else problem.A
+            block, near = A if inside.size == x.size else A[inside][:, inside], np.abs(x[inside])
+            left, most = (np.abs(self.w) + bound)[inside], largest(near)
+            if least(near) == 0.0:
+                return False
+            defect, moved = drift(block, inverses(block), near, left, terms.size[inside], most)
+            # `largest` passes over what is not finite.
+            if not (finite(defect) and finite(moved) and largest(defect) < 0.5 and largest(moved) < 0.2):
+                return False
+            clear -= 4.0 * largest(moved) * terms.size
+            clear[inside] = 1.0 if problem.standard else room[inside] - 4.0 * largest(moved) * near
+        return least(clear) > 0.0
+
+    @property
+    def _room(self) -> Array:
+        """Distances from the nearer bounds."""
+        x, problem = self.x, self.problem
+        return x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
 
     @property
     @_quiet

@@ -1,8 +1,8 @@
 """The first active sets of a small dense LCP, before a search is made.
 
 On a face x and w follow from one linear system; then an index belongs to the next face where x_i > w_i (Newton's method
-on min(x, w)). If nothing changes, the point is judged as everywhere. If not fewer indices change than before, the sets
-may cycle, and the search takes over.
+on min(x, w)). If nothing changes, the point is judged as everywhere. If twice no fewer indices change than at best, the
+sets may cycle, and the search takes over.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def at_once(problem: MixedLCP, tolerance: float, active: Mask | None = None, tol
     n = problem.n
     if not isinstance(problem, LCP) or problem.sparse or n > LARGEST or problem.A[0, 0] == 0.0:
         return None
-    began, A, q, counts, wrong = time.perf_counter(), problem.A, problem.q, Counts(), n + 1
+    began, A, q, counts, fewest, vain = time.perf_counter(), problem.A, problem.q, Counts(), n + 1, 0
     active = q < 0.0 if active is None else active
     while True:
         x, inside = np.zeros(n), active.nonzero()[0]
@@ -49,10 +49,11 @@ def at_once(problem: MixedLCP, tolerance: float, active: Mask | None = None, tol
         w = A.dot(x) + q
         w[inside] = 0.0
         following = x > w
-        before, wrong = wrong, int(np.count_nonzero(following != active))
+        wrong = int(np.count_nonzero(following != active))
         if wrong == 0:
             break
-        if wrong >= before:
+        fewest, vain = (wrong, vain) if wrong < fewest else (fewest, vain + 1)
+        if vain == 2:
             return None
         active = following
     found = certified(problem, x)
