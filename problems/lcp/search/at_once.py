@@ -1,8 +1,8 @@
 """The first active sets of a small dense LCP, before a search is made.
 
 On a face x and w follow from one linear system; then an index belongs to the next face where x_i > w_i (Newton's method
-on min(x, w)). If nothing changes, the point is judged as everywhere. If twice no fewer indices change than at best, the
-sets may cycle, and the search takes over.
+on min(x, w)). If nothing changes, the point is judged as everywhere. If no fewer indices change than at best three
+times, the sets may cycle, and the search takes over.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def at_once(problem: MixedLCP, tolerance: float, active: Mask | None = None, tol
         if wrong == 0:
             break
         fewest, vain = (wrong, vain) if wrong < fewest else (fewest, vain + 1)
-        if vain == 2:
+        if vain == 3:  # of 300 P-matrices, n = 20, 225 are solved so, 154 after two, 274 after five
             return None
         active = following
     found = certified(problem, x)

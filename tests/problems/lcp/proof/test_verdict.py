@@ -62,7 +62,7 @@ def test_what_floats_prove_is_true(make):
 
 
 def test_what_floats_prove_with_bounds_is_true():
-    """Pieces of boxes, planted from integers, some of them off by a little; rationals agree wherever floats are sure."""
+    """Pieces of boxes, planted from integers, some of them off by a little: rationals agree."""
     r = np.random.default_rng(5)
     proved = 0
     for _ in range(200):
