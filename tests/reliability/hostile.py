@@ -176,7 +176,7 @@ def solver(w: World) -> Iterator[Call]:
     limits = {"seed": "from 0", "budget": "budget", "tolerance": "tolerance of a solution"}
     search = {"homotopy": "name of a homotopy", "guess": "guess", "finish": "truth", "path": "truth",
               "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
-              "executor": "executor", "x0": "start of an LCP", "sparse": "name of a factorisation"}  # fmt: skip
+              "x0": "start of an LCP", "sparse": "name of a factorisation"}  # fmt: skip
     by_path = {"problem": w.problem, "homotopy": "kkt"}
     larger = lcp.solve(lcp.LCP(np.eye(3), -np.ones(3)))
     along = {"problem": w.problem, "d": np.ones(2)}

@@ -21,6 +21,11 @@ State = NDArray[np.int8]
 
 LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
+OF_MATRIX = ("units", "range", "symmetric")
+"""Cached results that another q keeps."""
+
+_ANOTHER_ORDER = "q: expected {} numbers, one a row of A, found {}"
+
 
 def _q(value: Any) -> Array:
     nothing = (isinstance(value, (list, tuple)) and not value) or getattr(value, "shape", None) == (0,)
@@ -37,7 +42,7 @@ def square_matrix(value: Any) -> Matrix:
     return matrix
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class MixedLCP:
     """Find x in [lower, upper] with w = A x + q >= 0 where x = lower, w <= 0 where x = upper, and w = 0 between.
 
@@ -70,22 +75,22 @@ class MixedLCP:
     upper: Array = field(default=None)
     primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
-    """Cached results by name."""
+    """Cached results by name; see `OF_MATRIX`."""
 
     @q.validator
     def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
         if q.size != self.A.shape[0]:
-            raise ValueError(f"q: expected {self.A.shape[0]} numbers, one a row of A, found {q.size}")
+            raise ValueError(_ANOTHER_ORDER.format(self.A.shape[0], q.size))
 
     def __attrs_post_init__(self) -> None:
         object.__setattr__(self, "lower", bound_vector("lower", self.lower, self.q.size, -math.inf))
         object.__setattr__(self, "upper", bound_vector("upper", self.upper, self.q.size, math.inf))
         ordered_bounds(self.lower, self.upper)
 
-    @cached_property
+    @property
     def n(self) -> int:
         """The order of A."""
-        return int(self.q.size)
+        return self.q.size
 
     @property
     def sparse(self) -> bool:
@@ -269,7 +274,7 @@ def _all(value: float, n: int) -> Array:
     return np.broadcast_to(value, n)
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class LCP(MixedLCP):
     """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i.
 
@@ -297,16 +302,23 @@ class LCP(MixedLCP):
     def __attrs_post_init__(self) -> None:
         """Nothing to check."""
 
+    @property
+    def standard(self) -> bool:
+        """Always."""
+        return True
+
     def with_q(self, q: Any) -> LCP:
-        """LCP(q, A) for another q, with the cached units of A.
+        """LCP(q, A) for another q, with what is known of A.
 
         Parameters
         ----------
         q : array_like, shape (n,)
         """
-        other = LCP(self.A, q)
-        if "units" in self.known:
-            other.known["units"] = self.known["units"]
+        vector, other = _q(q), object.__new__(LCP)
+        if vector.size != self.n:
+            raise ValueError(_ANOTHER_ORDER.format(self.n, vector.size))
+        known = {name: self.known[name] for name in OF_MATRIX if name in self.known}
+        vars(other).update(vars(self) | {"q": vector, "known": known})
         return other
 
 

@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
+from problems.lcp.data.spread import alike, largest_entries, near_one
 
 Exponents = NDArray[np.int64]
 
@@ -73,7 +73,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     ----------
     Curtis and Reid, J. Inst. Maths Applics 10, 1972; Ruiz, RAL-TR-2001-034.
     """
-    if not problem.standard and level(problem):
+    if not problem.standard and alike(problem) and near_one(problem):
         return None
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -104,10 +104,12 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     """
     if not alike(problem):
         return None, False
-    most = largest_entries(problem)[1]
-    if EXTREME**-0.5 <= most <= EXTREME**0.5:
+    if near_one(problem):
         return None, True
-    rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
+    rows, columns = (
+        np.full(problem.n, 1 - int(np.frexp(largest_entries(problem)[1])[1])),
+        np.zeros(problem.n, dtype=np.int64),
+    )
     q = _times(problem.q, rows)
     scaled = _by(problem, rows, columns, q) if np.isfinite(q).all() else None
     return (scaled, True) if scaled is not None and scaled.exact else (None, False)

@@ -10,18 +10,13 @@ from problems.lcp.data.problem import MixedLCP
 EXTREME = 1e90
 """Products of three entries between this and its inverse are floats."""
 
-LEVELLED = 16.0
-"""Problems with bounds stay unscaled if rows' and columns' largest entries are within this factor of each other and of
-1: scaling takes 0.25 of 0.45 s (n = 1000)."""
-
 UNIT_SPREAD = 256.0
-"""LCPs stay unscaled for active sets and pivots within this factor: units take 0.5 of 1.3 ms (n = 60)."""
+"""Problems stay unscaled within this factor: units take 0.5 of 1.3 ms (n = 60), 0.25 of 0.45 s (n = 1000)."""
 
 
-def level(problem: MixedLCP) -> bool:
-    """Whether largest entries are within `LEVELLED` of each other and of 1."""
-    least, most = largest_entries(problem)
-    return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
+def near_one(problem: MixedLCP) -> bool:
+    """Whether A's largest entry is neither extreme nor its square."""
+    return bool(EXTREME**-0.5 <= largest_entries(problem)[1] <= EXTREME**0.5)
 
 
 def alike(problem: MixedLCP) -> bool:
@@ -44,8 +39,8 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
     else:
-        A = problem.A
-        both = np.concatenate([np.maximum(np.maximum.reduce(A, k), -np.minimum.reduce(A, k)) for k in (0, 1)])
+        sizes = np.abs(problem.A)
+        both = np.concatenate([np.maximum.reduce(sizes, axis=0), np.maximum.reduce(sizes, axis=1)])
     return least(both), largest(both)
 
 

@@ -14,7 +14,6 @@ from continuation.counts import Counts
 from continuation.kinks.pivots import ZERO_COMPONENT
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
-from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.ties import Corner, turn
 from problems.lcp.parametric.walk import FLAT, Walk
@@ -152,12 +151,6 @@ class Trail:
         self.points.append(first)
         self.tangents.append(unit)
         return True
-
-
-def state_at(walk: Walk, last: float, most: int) -> State | None:
-    """The pieces at t = `last` after at most `most` corners, or None."""
-    status, _ = Trail(np.ones(walk.problem.n + 1)).follow(walk, last, Budget(steps=most))
-    return walk.state if status is Status.REACHED_TARGET else None
 
 
 def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array, largest, least
+from continuation.arrays import Array, finite, largest, least
 from continuation.linear.silence import without_warnings
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.compensated import Terms, row_terms
+from problems.lcp.proof.compensated import Terms, error_bound, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
 from problems.lcp.proof.off import DROWNED, drowned_part, shares_in_rows
-from problems.lcp.proof.pieces import SMALLEST_NORMAL
+from problems.lcp.proof.pieces import SMALLEST_NORMAL, drift, inverses
 from problems.lcp.proof.rational import IntegerRow, block_of, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
@@ -37,7 +38,7 @@ MOST_MADE_UP = 2.0**-50
 _quiet = without_warnings(over="ignore", under="ignore", invalid="ignore")
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Certificate:
     """How well x solves the problem.
 
@@ -66,6 +67,50 @@ class Certificate:
     w: Array
     relative_residual: float
     drowned: float
+    _terms: Terms | None = field(default=None, repr=False)
+
+    @cached_property
+    def exact(self) -> bool:
+        """Whether an exact solution exists on the face of x or an adjacent one.
+
+        References
+        ----------
+        Rump, Acta Numerica 19, 2010, section 10.
+        """
+        return self.clearly_exact or certify_exactly(self.problem, self.x).solves
+
+    @property
+    @_quiet
+    def clearly_exact(self) -> bool:
+        """Whether floats with error bounds prove a solution near x on its face."""
+        problem, x, w, terms = self.problem, self.x, self.w, self._terms
+        if terms is None or terms.scaled or least(room := self._room) < 0.0:
+            return False
+        inside = room.nonzero()[0]
+        if not problem.standard:
+            w = np.where(problem.fixed, np.inf, np.where(x == problem.lower, w, -w))
+        if not x.any():
+            return not inside.size and least(w) >= 0.0  # w = q
+        clear = w - (bound := error_bound(self.w, terms.size, x.size + 1))
+        if inside.size:
+            A: Array = problem.A.toarray() if problem.sparse else problem.A
+            block, near = A if inside.size == x.size else A[inside][:, inside], np.abs(x[inside])
+            left, most = (np.abs(self.w) + bound)[inside], largest(near)
+            if least(near) == 0.0:
+                return False
+            defect, moved = drift(block, inverses(block), near, left, terms.size[inside], most)
+            # `largest` passes over what is not finite.
+            if not (finite(defect) and finite(moved) and largest(defect) < 0.5 and largest(moved) < 0.2):
+                return False
+            clear -= 4.0 * largest(moved) * terms.size
+            clear[inside] = 1.0 if problem.standard else room[inside] - 4.0 * largest(moved) * near
+        return least(clear) > 0.0
+
+    @property
+    def _room(self) -> Array:
+        """Distances from the nearer bounds."""
+        x, problem = self.x, self.problem
+        return x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
 
     @property
     @_quiet
@@ -152,21 +197,29 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     """
     terms = row_terms(problem, x)
     relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
+    # What shares in rows of a positive x are is asked only where w is off.
+    off = np.abs(np.where(x == 0.0, np.minimum(relative, 0.0), relative))
+    worst = largest(off)
+    if not (problem.standard and worst <= ROUND_OFF and least(x) >= 0.0):
+        off = _counted(problem, terms, x, _defects(problem, terms, x, relative))
+        worst = largest(off)
+    return Certificate(problem, x, terms.in_units(terms.w), worst, drowned_part(problem, terms, off), terms)
+
+
+def _defects(problem: MixedLCP, terms: Terms, x: Array, relative: Array) -> Array:
     above = x - problem.lower
     shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         below = problem.upper - x
         relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
-    off = np.abs(np.minimum(shares, relative))
-    w, worst = np.ldexp(terms.w, terms.exponents), largest(_counted(problem, terms, x, off))
-    return Certificate(problem, x, w, worst, drowned_part(problem, terms, off))
+    return np.abs(np.minimum(shares, relative))
 
 
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """Defects; zero where rounding of subnormal x_j explains them."""
     if largest(off) <= ROUND_OFF:
         return off
-    asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
+    asked = (off > ROUND_OFF) & (np.abs(terms.in_units(terms.w)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)

@@ -61,21 +61,30 @@ class Terms:
     x: Array
     w: Array
     size: Array
-    exponents: NDArray[Any]
+    exponents: NDArray[Any] | int = 0
+
+    @property
+    def scaled(self) -> bool:
+        """Whether some row is divided."""
+        return isinstance(self.exponents, np.ndarray)
+
+    def in_units(self, values: Array) -> Array:
+        """Values of rows, in the problem's units."""
+        return np.ldexp(values, self.exponents) if self.scaled else values
 
 
 @without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """The rows of A x + q without overflow or underflow."""
     w, size, _ = _rows(problem, x)
-    none = np.zeros(problem.n, dtype=np.int64)
-    if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
-        return Terms(problem.A, x, w, size, none)
-    doubtful, small = ~(size <= LARGEST_TERMS), size < 1.0 / LARGEST_TERMS
-    if small.any():
-        doubtful |= small & _filled(problem, x)
-    if not doubtful.any():
-        return Terms(problem.A, x, w, size, none)
+    if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
+        small = size < 1.0 / LARGEST_TERMS
+        if (~(size <= LARGEST_TERMS) | (small & _filled(problem, x))).any():
+            return _divided(problem, x)
+    return Terms(problem.A, x, w, size)
+
+
+def _divided(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     mantissas, powers = np.frexp(x)
     stored = sp.csr_array(problem.A) if problem.sparse else problem.A
     entries, entry_powers = np.frexp(stored.data if problem.sparse else stored)
@@ -127,10 +136,11 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
     """Sums of products plus constants along the first axis: rounded sums, errors, magnitude sums."""
-    product, lost = _two_product(entries, factors)
-    terms = np.concatenate([constants[None], product])
+    terms = np.empty((len(entries) + 1, *constants.shape))
+    terms[0] = constants
+    lost = _two_product(entries, factors, terms[1:])
     partial = np.add.accumulate(terms, axis=0)
-    lost += _lost(partial[:-1], product, partial[1:])
+    lost += _lost(partial[:-1], terms[1:], partial[1:])
     return partial[-1], np.add.reduce(lost, axis=0), np.add.reduce(np.abs(terms), axis=0)
 
 
@@ -178,7 +188,8 @@ def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array, in
         everywhere = k < ordered[-1]
         rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = A.indptr[:-1][rows] + k
-        product, error = _two_product(A.data[position], x[A.indices[position]])
+        product = np.empty_like(position, dtype=float)
+        error = _two_product(A.data[position], x[A.indices[position]], product)
         after = total[rows] + product
         lost[rows] += error + _lost(total[rows], product, after)
         total[rows] = after
@@ -192,15 +203,17 @@ def _lost(a: Array, b: Array, total: Array) -> Array:
     return (a - (total - virtual)) + (b - virtual)
 
 
-def _two_product(a: Array, b: Array) -> tuple[Array, Array]:
-    """The rounded product and its error (Dekker)."""
-    product = a * b
-    a_high, b_high = _high(a), _high(b)
-    a_low, b_low = a - a_high, b - b_high
-    error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
-    return product, error
-
-
-def _high(a: Array) -> Array:
-    leading: Array = (np.ascontiguousarray(a).view(np.int64) & _HIGH_BITS).view(np.float64)
-    return leading
+def _two_product(a: Array, b: Array, product: Array) -> Array:
+    """Put the rounded product into `product`; return its error (Dekker)."""
+    # One array for both: a call of numpy takes as long as 500 products.
+    both = np.empty((2, *product.shape))
+    both[0], both[1] = a, b
+    high = (both.view(np.int64) & _HIGH_BITS).view(np.float64)
+    (a_high, b_high), (a_low, b_low) = high, both - high
+    np.multiply(both[0], both[1], out=product)
+    error: Array = a_high * b_high
+    error -= product
+    error += a_high * b_low
+    error += a_low * b_high
+    error += a_low * b_low
+    return error

@@ -25,17 +25,16 @@ CLEAR_OF_ZERO = 1e-13
 
 def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
     """Signed distances from a bound as largest shares in a row's terms; infinite where not asked."""
-    shares = np.where(distance == 0.0, 0.0, np.inf)
-    indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
+    there = distance == 0.0
+    shares = np.where(there, 0.0, np.inf)
+    indices = (asked & ~there).nonzero()[0]
+    indices = indices[np.isfinite(distance[indices])]
     if indices.size:
         inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
-        sizes = np.abs(terms.x[indices])
-        moved = distance[indices] != x[indices]
-        if moved.any():
-            with np.errstate(all="ignore"):
-                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
-            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
-            sizes = np.where(moved, known, sizes)
+        sizes = np.abs(distance[indices])
+        if terms.scaled:
+            # In the units of terms.x, the mantissas of x.
+            sizes = np.minimum(np.ldexp(sizes, -np.frexp(x[indices])[1]), np.finfo(float).max)
         with np.errstate(under="ignore"):
             if sp.issparse(terms.A):
                 columns = abs(sp.csr_array(terms.A)[:, indices])
@@ -51,12 +50,11 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
     """See `Certificate.drowned`. `off` are defects relative to the terms."""
-    moved = np.count_nonzero(terms.exponents)
-    q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q
+    q = np.ldexp(problem.q, -terms.exponents) if terms.scaled else problem.q
     asked = off * terms.size > DROWNED * np.abs(q)
     if not np.count_nonzero(asked):
         return 0.0
-    if not moved:
+    if not terms.scaled:
         constants = np.abs(q)
         clear = float((off * terms.size)[asked].max()) <= CLEAR_OF_ZERO * float(
             constants[constants > 0.0].min(initial=np.inf)

@@ -11,19 +11,20 @@ Rump, Acta Numerica 19, 2010, section 10.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
 
 TOGETHER = 1024
 """Pieces in one array: a few megabytes."""
 
-SUM_OF_TERMS_ROUNDING = 4.0 * float(np.finfo(float).eps)
+SUM_OF_TERMS_ROUNDING = 4.0 * EPS
 """Over twice the error of a sum of k + 4 terms, per k + 4 (Higham, section 3.5)."""
 
 SMALLEST_NORMAL = float(np.finfo(float).tiny)
@@ -99,8 +100,20 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
     return asked
 
 
+def drift(B: Array, R: Array, x: Array, left: Array, size: Array, most: Any) -> tuple[Array, Array]:
+    """How far x > 0, one or a stack, is from y with B y = B x - left: |y - x| <= m x / (1 - d) if d = max off < 1.
+
+    Returns off = |I - R B| x / x and |R| left / x, whose maximum is m: then B is nonsingular. `size` bounds |B| x,
+    `most` bounds x.
+    """
+    n, sizes = x.shape[-1], np.abs(R)
+    # Twice the rounding of the product (Higham, section 3.5), and what underflow loses.
+    lost = 2.0 * (n + 4) * EPS * _times(sizes, size) + n * n * SMALLEST_NORMAL * (1.0 + most)
+    return (_times(np.abs(R @ B - identity(n)), x) + lost) / x, _times(sizes, left) / x
+
+
 def _times(A: Array, v: Array) -> Array:
-    product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
+    product: Array = A.dot(v.T).T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
     return product
 
 

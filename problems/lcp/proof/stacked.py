@@ -9,8 +9,8 @@ from continuation.arrays import Array
 from problems.lcp.proof.certificate import ROUND_OFF
 from problems.lcp.proof.compensated import LARGEST_TERMS, error_bound, summed
 from problems.lcp.proof.off import DROWNED
-from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
-from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
+from problems.lcp.proof.pieces import all_faces, drift, identity, in_doubt, inverses
+from problems.lcp.proof.verdict import LARGEST_DECIDED
 
 POINT_CORRECTIONS = 2
 """Corrections with w in twice the working precision."""
@@ -37,7 +37,8 @@ def judged(
         As in `Certificate`.
     """
     n = q.shape[1]
-    inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
+    block = np.where(active[:, :, None] & active[:, None, :], A, identity(n))
+    inverse = inverses(block)
     by_columns, x, w = np.ascontiguousarray(A.transpose(2, 0, 1)), np.zeros_like(q), q
     for _ in range(1 + POINT_CORRECTIONS):
         moved = x - np.where(active, (inverse @ np.where(active, w, 0.0)[..., None])[..., 0], 0.0)
@@ -53,8 +54,12 @@ def judged(
     # Other rows need scaling.
     solves &= (size.max(axis=1) <= LARGEST_TERMS) & ((size >= 1.0 / LARGEST_TERMS).all(axis=1))
     if n <= LARGEST_DECIDED:
-        exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
-        solves &= exact | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
+        on, bound = x > 0.0, error_bound(w, size, n + 1)
+        there, left, most = np.where(on, [x, np.abs(w) + bound, size], [[[1.0]], [[0.0]], [[1.0]]])
+        defect, moved = drift(block, inverse, there, left, most, x.max(axis=1, keepdims=True))
+        near = (defect < 0.5) & (moved < 0.2)
+        clear = (on == active) & near & (on | (w - bound > 4.0 * moved.max(axis=1, keepdims=True) * size))
+        solves &= clear.all(axis=1) | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
     return solves, x, np.abs(np.minimum(x, w)).max(axis=1), worst
 
 

@@ -17,10 +17,10 @@ from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.problem import MixedLCP, State, active_state
 from problems.lcp.proof.verdict import to_precision
-from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, pivotable
+from problems.lcp.search.at_once import SETTLED, ZERO
+from problems.lcp.search.pivots import by_guess, pivotable
 from problems.lcp.search.search import Search
 
-SETTLED = "Solved by active sets alone, before any path."
 SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
@@ -43,7 +43,7 @@ class ActiveSets:
         search, problem = self.search, self.search.problem
         if zero_solves(problem):
             search.accept(problem.near_zero)
-            return "q >= 0, so x = 0 is a solution." if problem.standard else "The point nearest to zero is a solution."
+            return ZERO if problem.standard else "The point nearest to zero is a solution."
         if search.finish is None:
             return ""
         return next((said for said, found in self._attempts(search.finish, int(work)) if found), "")
@@ -52,7 +52,7 @@ class ActiveSets:
         search, problem, asked = self.search, self.search.problem, self.search.asked
         if asked.near is not None:
             state = problem.states(asked.near.x, asked.near.w)
-            found = search.settle(state) or (problem.n <= LARGEST_TABLE and by_guess(search, asked.near))
+            found = search.settle(state) or (pivotable(search) and by_guess(search, asked.near))
             yield "Solved from the solution of a problem nearby, before any path.", found
         if asked.x0 is not None:
             yield SETTLED, search.settle(problem.states(asked.x0, problem.w(asked.x0)), Policy(steps))

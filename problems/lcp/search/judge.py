@@ -16,8 +16,8 @@ from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
 from problems.lcp.data.spread import extreme
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
-from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search.exclusion import TRIED, decide
 from problems.lcp.search.outcome import Outcome, Solution
@@ -48,7 +48,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
-        exact = not undecided or exact_nearby(search.problem, end.certificate.x, end.certificate.w)
+        exact = not undecided or end.certificate.exact
         return Outcome.SOLVED if exact else Outcome.SOLVED_TO_PRECISION
     if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
         return Outcome.UNSOLVABLE
@@ -115,18 +115,13 @@ def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solutio
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
     said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
     rounded = _rounded(rest, tolerance)
-    found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
-    if found.exhaustion is not None:
-        found = evolve(found, exhaustion=exhaust(problem))
-    if found.farkas is not None:
-        y = [0] * problem.n
-        for i, value in zip(small.kept, found.farkas.y):
-            y[i] = value
-        found = evolve(found, farkas=multiplier(problem, y))
-    if found.float_farkas is not None:
-        whole = np.zeros(problem.n)
-        whole[small.kept] = found.float_farkas.y
-        found = evolve(found, float_farkas=evolve(found.float_farkas, y=whole))
+    proof = infeasibility(problem) if rest.farkas is not None or rest.float_farkas is not None else None
+    found = evolve(
+        rest, problem=problem, message=f"{rest.message} {said}",
+        exhaustion=None if rest.exhaustion is None else exhaust(problem),
+        farkas=proof if isinstance(proof, Farkas) else None,
+        float_farkas=proof if isinstance(proof, FloatFarkas) else None,
+    )  # fmt: skip
     exhausted = found.exhaustion is not None and not found.exhaustion.solvable
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is None and not exhausted:
         message = f"{Outcome.NOT_FOUND} Its proof fails for the rounding of what fixed unknowns add. {found.message}"
@@ -135,10 +130,15 @@ def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solutio
         return found
     found = _at(found, small.x(rest.x), tolerance, rounded)
     # Elimination rounded q.
-    if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
-        exact = exact_nearby(problem, found.x)
-        found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
+    if found.outcome is Outcome.SOLVED and found.certificate is not None and problem.n <= LARGEST_DECIDED:
+        found = found if found.certificate.exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
     return found
+
+
+def stored_as(problem: MixedLCP, found: Solution) -> Solution:
+    """The answer to a problem whose dense twin was solved."""
+    end = found.certificate
+    return evolve(found, problem=problem, certificate=None if end is None else evolve(end, problem=problem))
 
 
 def of_program(program: Program, found: Solution) -> Solution:

@@ -6,12 +6,11 @@ no solution.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from itertools import repeat
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from attrs import define, evolve, frozen
+from attrs import define, evolve
 
 from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg
@@ -33,7 +32,7 @@ from problems.lcp.homotopies.starts import random_start
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import stationary
-from problems.lcp.search.padded import Padded, show
+from problems.lcp.search.padded import Padded
 from problems.lcp.search.search import Candidate, Search
 
 RESTART_STEPS = 60
@@ -46,9 +45,6 @@ tenth of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
 """Last increment of a restart: the finish is exact."""
-
-AT_ONCE = 64
-"""Restarts handed over together, more than one machine's workers."""
 
 Patience = Callable[[Step], str]
 """Maps a step to the reason to give up, or ""."""
@@ -86,49 +82,16 @@ def follow(
     return tracer.path
 
 
-@frozen(eq=False)
-class Restart:
-    """The k-th restart, which another process can trace."""
-
-    structure: Structure
-    name: str
-    seed: int
-    k: int
-    tolerance: float | None
-    options: Mapping[str, Any]
-
-    def homotopy(self) -> LCPHomotopy:
-        """The homotopy at its start."""
-        problem = self.structure.problem
-        start = random_start(problem, np.random.default_rng([self.seed, self.k]))
-        return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
-
-    def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
-        """Trace the path until it ends or is given up."""
-        homotopy, parts, longest, finish = self.homotopy(), {"preset": SEARCH, "examine": True}, np.inf, None
-        if self.tolerance is not None:
-            finish, longest = Finish(Faces(self.structure), self.tolerance), RESTART_STEPS + homotopy.n
-            parts |= {"tolerance": LOOSE, "examine": False}
-        return follow(homotopy, finish, budget, lambda step: unending(step, longest) or exhausted(), observers,
-                      **{**parts, **self.options})  # fmt: skip
-
-
 def unending(step: Step, longest: float) -> str:
     """The reason to give up so long a path, or ""."""
     late = step.kind == Kind.REGULAR and step.index >= longest
     return f"it has not ended after {step.index} steps" if late else ""
 
 
-def light(path: Path) -> Path:
+def light(path: Path) -> None:
     """Reduce a path in place to its two ends."""
     if path.steps:
         path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
-    return path
-
-
-def trace_light(restart: Restart, budget: Budget) -> Path:
-    """Trace a restart in a worker."""
-    return light(restart.trace(budget))
 
 
 @define(eq=False)
@@ -216,32 +179,24 @@ class Paths:
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
     def _restarted(self, name: str, count: int) -> int:
-        search, asked = self.search, self.search.asked
-        tolerance = None if search.finish is None else search.tolerance
-        together = 1 if asked.executor is None else AT_ONCE
-        for begin in range(0, count, together):
-            if search.exhausted or (together > 1 and search.seconds > search.budget.seconds):
-                return begin
-            numbers = range(begin, min(begin + together, count))
-            tasks = [Restart(search.structure, name, asked.seed, k, tolerance, asked.options) for k in numbers]
-            for taken, path in enumerate(self._traced(tasks), begin + 1):
-                self.add(path)
-                if search.solved:
-                    return taken
-                light(path)
+        """Trace paths until one solves; return their number. The k-th depends on the seed and k alone."""
+        search, asked, structure, parts, longest = self.search, self.search.asked, self.search.structure, {}, np.inf
+        if search.finish is not None:
+            parts, longest = {"tolerance": LOOSE}, RESTART_STEPS + search.problem.n
+        for k in range(count):
+            if search.exhausted:
+                return k
+            start = random_start(search.problem, np.random.default_rng([asked.seed, k]))
+            homotopy = HOMOTOPIES[name].at(search.problem, start, structure, refine=search.finish is None)
+            options = {"preset": SEARCH, "examine": search.finish is None, **parts, **asked.options}
+            finish = None if search.finish is None else Finish(Faces(structure), search.tolerance)
+            path = follow(homotopy, finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
+                          self._observers(), **options)  # fmt: skip
+            self.add(path)
+            if search.solved:
+                return k + 1
+            light(path)
         return count
-
-    def _traced(self, tasks: list[Restart]) -> Iterator[Path]:
-        search, asked = self.search, self.search.asked
-        if asked.executor is None:
-            yield tasks[0].trace(self._left(), lambda: search.exhausted, self._observers())
-            return
-        # Workers spend CPU time, so the wall clock limits them.
-        left = evolve(self._left(), seconds=max(search.budget.seconds - search.seconds, 1e-3))
-        for task, path in zip(tasks, asked.executor.map(trace_light, tasks, repeat(left))):
-            if asked.log is not None:
-                show(path, task.homotopy(), Padded.of(asked.log, search.problem))
-            yield path
 
     def _observers(self) -> tuple[Observer, ...]:
         asked = self.search.asked

@@ -8,13 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
+from continuation.arrays import Array
 from problems.lcp.active_set.face import Mask
 from problems.lcp.data.problem import LCP, active_state
-from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.start import from_solution
-from problems.lcp.parametric.trail import state_at
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
 from problems.lcp.pivoting.starts import Game, covering, unit_of
 from problems.lcp.proof.farkas import infeasibility
@@ -119,24 +117,25 @@ def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool
 
 
 def by_guess(search: Search, guess: Nearby) -> bool:
-    """Follow LCP(q + t (q' - q), A) from t = 1 to 0 (Cottle, Pang and Stone, section 4.5).
+    """Follow LCP(q + t (q' - q), A) from t = 1 to 0; the guess x solves LCP(q', A) with q' = w - A x."""
+    problem, x = search.problem, np.maximum(guess.x, 0.0)
+    w = np.where(x > 0.0, 0.0, np.maximum(guess.w, 0.0))
+    return from_nearby(search, w - problem.w(x), x > 0.0) is not None
 
-    With q' = w - A x the guess x solves LCP(q', A). Returns whether x was reached.
+
+def from_nearby(search: Search, d: Array, active: Mask | None) -> Mask | None:
+    """Pivot from t = 1, whose solution has this active set, or from infinity; return the last basis if it solves.
+
+    References
+    ----------
+    Cottle, Pang and Stone, section 4.5.
     """
     problem = search.problem
-    x = problem.clipped(guess.x)
-    low, high = x <= problem.lower, x >= problem.upper
-    w = np.where(low & ~problem.fixed, np.maximum(guess.w, 0.0), np.where(high, np.minimum(guess.w, 0.0), 0.0))
-    dense = problem.A.toarray() if problem.sparse else problem.A
-    d = w - (dense @ x + problem.q)
-    if not np.isfinite(d).all():
-        return False
-    try:
-        walk = from_solution(evolve(problem, A=dense), d, np.zeros(problem.n), x, 1.0, -1.0)
-    except SingularBasisError:
-        return False
-    state = None if walk is None else state_at(walk, 0.0, most_pivots(problem.n))
-    return state is not None and search.settle(state)
+    assert isinstance(problem, LCP)
+    path = covering(problem, d, active) if np.isfinite(d).all() else None
+    if path is None or path.run(most_pivots(problem.n)) is not Ended.REACHED:
+        return None
+    return path.active if search.settle(active_state(path.active)) else None
 
 
 def constraints(problem: LCP) -> Mask:

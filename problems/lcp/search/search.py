@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from concurrent.futures import Executor
 from functools import cached_property
 from typing import Any
 
@@ -44,7 +43,6 @@ class Asked:
     near: Nearby | None = None
     restarts: int = 0
     seed: int = 0
-    executor: Executor | None = None
     shown: bool = False
     log: PathLog | None = None
     progress: bool = False

@@ -10,21 +10,24 @@ from attrs import define, field
 
 from continuation.arrays import Array, Matrix
 from continuation.budget import Budget
+from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
 from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
+from problems.lcp.data.problem import LCP, active_state, square_matrix
 from problems.lcp.data.scaling import Scaled
-from problems.lcp.pivoting.almost import Ended
-from problems.lcp.pivoting.starts import covering, unit_of
+from problems.lcp.pivoting.starts import unit_of
+from problems.lcp.search.at_once import at_once
 from problems.lcp.search.judge import answer, units_of_its_own, unscaled
 from problems.lcp.search.outcome import Solution
-from problems.lcp.search.pivots import LARGEST_TABLE, most_pivots
+from problems.lcp.search.pivots import LARGEST_TABLE, from_nearby
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
+
+NEARBY = "Solved by the active set of a problem nearby, corrected."
 
 WARM = Policy(steps=1)
 """Corrections before pivots: the slowest step of a stack of boxes takes 5 ms with 0 to 2, 9 ms with 4."""
@@ -84,13 +87,18 @@ class Solver:
             For bad input, naming the argument.
         """
         problem = LCP(self.A, q) if self._first is None else self._first.with_q(q)
+        self._first = self._first or problem
         guess = self._active if active is None else _mask(active, problem.n)
-        with np.errstate(all="ignore"):
-            found = None if problem.n == 0 else self._nearby(problem, guess)
+        found = None
+        if problem.n:
+            with Silence():
+                found = self._nearby(problem, guess)
         if found is None:
             found = solve(problem, tolerance=self.tolerance, **options)
-            if found.solved and found.x is not None:
-                self._active = found.x > 0.0
+        if found.solved and found.x is not None:
+            self._active = found.x > 0.0
+            # The last basis may be singular.
+            self._bases[1:] = [(problem.q, self._active)]
         return found
 
     def _nearby(self, problem: LCP, guess: Mask | None) -> Solution | None:
@@ -104,40 +112,33 @@ class Solver:
                 return None
             assert isinstance(scaled.problem, LCP)
             current = scaled.problem.with_q(moved)
-        finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
-        search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
-        message = "Solved by the active set of a problem nearby, corrected."
-        if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
-            if not self._pivoted(search):
-                return None
-            message = "Solved by pivots along a path from a problem nearby."
-        found = answer(search, message)
+        found = at_once(current, self.tolerance, guess, NEARBY)
+        if found is None:
+            finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
+            search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
+            message = NEARBY
+            if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
+                if not self._pivoted(search):
+                    return None
+                message = "Solved by pivots along a path from a problem nearby."
+            found = answer(search, message)
         found = found if scaled is None else unscaled(problem, scaled, found, self.tolerance)
-        if not found.solved:
-            return None
-        assert finish.tried.last is not None
-        self._active = finish.tried.last == BETWEEN
-        # The last basis may be singular.
-        self._bases[1:] = [(current.q, self._active)]
-        return found
+        return found if found.solved else None
 
     def _pivoted(self, search: Search) -> bool:
-        """Follow LCP(q + t (q before - q), A) from t = 1."""
-        problem = search.problem
+        """Pivot from the q before."""
+        problem, rows = search.problem, 0 if self._scaled is None else self._scaled.rows
         assert isinstance(problem, LCP)
-        if problem.n > LARGEST_TABLE:
-            return False
-        begins = [(before - problem.q, basis) for before, basis in self._bases[::-1]]
-        for d, basis in [*begins, (np.full(problem.n, unit_of(problem)), None)]:
-            path = covering(problem, d, basis)
-            reached = path is not None and path.run(most_pivots(problem.n)) is Ended.REACHED
-            if path is not None and reached and search.settle(active_state(path.active)):
-                self._bases = [(problem.q, path.active)]
+        begins: list[tuple[Array, Mask | None]] = [(np.ldexp(q, rows) - problem.q, at) for q, at in self._bases[::-1]]
+        begins.append((np.full(problem.n, unit_of(problem)), None))
+        for d, basis in begins if problem.n <= LARGEST_TABLE else ():
+            if (last := from_nearby(search, d, basis)) is not None:
+                self._bases = [(np.ldexp(problem.q, -rows), last)]
                 return True
         return False
 
     def _learn(self, problem: LCP) -> None:
-        self._first, scaled = problem, units_of_its_own(problem, roughly=True)
+        scaled = units_of_its_own(problem, roughly=True)
         self._scaled = scaled if scaled is not None and scaled.exact else None
         self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import Executor
 from contextlib import nullcontext
 from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
 
 import numpy as np
+from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
-from continuation.arguments.checks import check_flag, instance_with
+from continuation.arguments.checks import check_flag
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.counts import Counts
@@ -35,7 +35,17 @@ from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
-from problems.lcp.search.judge import answer, beyond_floats, exactly, of_program, units_of_its_own, unscaled, with_fixed
+from problems.lcp.search.at_once import LARGEST, at_once
+from problems.lcp.search.judge import (
+    answer,
+    beyond_floats,
+    exactly,
+    of_program,
+    stored_as,
+    units_of_its_own,
+    unscaled,
+    with_fixed,
+)
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Asked, Nearby, Search
@@ -66,7 +76,6 @@ def solve(
     tolerance: float = 1e-10,
     archive: str | PathLike[str] | None = None,
     progress: bool = False,
-    executor: Executor | None = None,
     sparse: str = "auto",
     **options: Unpack[PartOptions],
 ) -> Solution:
@@ -82,7 +91,7 @@ def solve(
         A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
         zeros and first tries the set x0 > A x0 + q.
     guess : Solution, optional
-        Solution of a nearby problem, from whose data a piecewise linear path is followed.
+        Solution of a nearby problem: its active set is tried, then without bounds pivots from its data.
     finish : bool
         Whether active sets are tried, before and along paths.
     path : bool
@@ -97,12 +106,9 @@ def solve(
     tolerance : float
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
-        A new HDF5 file for all traced paths; of restarts over an executor only the ends. Without paths it holds the
-        solution as the KKT path's end.
+        A new HDF5 file for all traced paths. Without paths it holds the solution as the KKT path's end.
     progress : bool
         One progress bar per path (needs tqdm).
-    executor : concurrent.futures.Executor, optional
-        For the restarts.
     sparse : str
         Factorisation of sparse active sets: "superlu", "cholmod" (needs cvxopt), or "auto". The message names it.
     {parts}
@@ -135,7 +141,7 @@ def solve(
         known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
     check_method("sparse", sparse)
-    _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
+    _check_arguments(tolerance, restarts, seed, budget, options, finish=finish, path=path, progress=progress)
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
@@ -147,6 +153,9 @@ def solve(
         left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
         left["archive"] = archive if small.kept.size else None
         return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
+    if problem.sparse and problem.n <= LARGEST and sparse == "auto":
+        dense = evolve(problem, A=problem.A.toarray())
+        return stored_as(problem, solve(dense, homotopy, **_given(locals()), **options))
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
     scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
@@ -156,26 +165,24 @@ def solve(
     if scaled is not None:
         start = None if start is None else scaled.u(start)
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    structure = Structure(problem if scaled is None else scaled.problem)
+    current = problem if scaled is None else scaled.problem
     log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
-    search = Search(
-        structure,
-        Finish(Faces(structure, factoring=exchanging(sparse)), tolerance) if finish else None,
-        tolerance,
-        budget if budget is not None else default_budget(problem),
-        Asked(homotopy, start, near, restarts, seed, executor, path, log, progress, dict(options)),
-        scaled,
-    )
-    with Silence(), one_thread, log if log is not None else nullcontext():
-        if beyond:
-            found = beyond_floats(problem, tolerance)
-        else:
+    with Silence(), one_thread, nullcontext() if log is None else log:
+        found = beyond_floats(problem, tolerance) if beyond else None
+        if found is None and automatic and finish and not path and start is None and near is None:
+            found = at_once(current, tolerance)
+        if found is None:
+            structure = Structure(current)
+            tried = Finish(Faces(structure, factoring=exchanging(sparse)), tolerance) if finish else None
+            asked = Asked(homotopy, start, near, restarts, seed, path, log, progress, dict(options))
+            budget = default_budget(problem) if budget is None else budget
+            search = Search(structure, tried, tolerance, budget, asked, scaled)
             settled = settled_by(search, NAMED if not automatic else PATHS if path else AUTOMATIC)
             found = answer(search, _account(search, settled))
             if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION:
                 found = exactly(search, found)
-            found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
-        if not search.paths and log is not None:
+        found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
+        if log is not None and not found.paths:
             _archive_without_path(log, found)
         return found
 
@@ -197,13 +204,11 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 
 
 def _check_arguments(
-    tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
+    tolerance: Any, restarts: Any, seed: Any, budget: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
     check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
-    if executor is not None:
-        instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
     check_seed(seed)
     for name, flag in flags.items():
         check_flag(name, flag)

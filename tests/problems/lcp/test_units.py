@@ -145,7 +145,7 @@ def test_rows_beyond_the_range_of_floats_are_as_exact_as_others(seed, sparse):
     terms = row_terms(lcp.LCP(sp.csr_array(A) if sparse else A, q), x)
     for i in range(n):
         products = [Fraction(a) * Fraction(b) for a, b in zip(A[i], x)] + [Fraction(q[i])]
-        unit = Fraction(2) ** int(terms.exponents[i])
+        unit = Fraction(2) ** int(np.broadcast_to(terms.exponents, n)[i])
         size = sum(map(abs, products))
         assert abs(Fraction(terms.w[i]) * unit - sum(products)) <= size * Fraction(1, 2**52)
         assert abs(Fraction(terms.size[i]) * unit - size) <= size * Fraction(1, 2**50)

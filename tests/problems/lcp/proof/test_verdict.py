@@ -6,7 +6,7 @@ import scipy.sparse as sp
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.proof.verdict import _clearly_exact, exact_nearby
+from problems.lcp.proof.certificate import certify
 from problems.lcp.reference.enumeration import solve_by_enumeration
 
 Outcome = lcp.Outcome
@@ -40,8 +40,9 @@ def test_what_the_last_digit_decides_is_solved_to_precision_alone():
     ],
 )
 def test_rationals_decide_what_floats_do_not_prove(A, q, x, exact):
-    assert not _clearly_exact(LCP(A, q), np.array(x))
-    assert exact_nearby(LCP(A, q), np.array(x)) is exact
+    certificate = certify(LCP(A, q), np.array(x))
+    assert not certificate.clearly_exact
+    assert certificate.exact is exact
 
 
 @pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
@@ -54,7 +55,25 @@ def test_what_floats_prove_is_true(make):
         x = np.where(r.random(n) < 0.6, r.integers(1, 5, n) * 2.0 ** r.integers(-20, 20, n), 0.0)
         q = np.where(x > 0.0, 0.0, r.integers(-1, 3, n)) - A @ x + r.choice([0.0, 1e-14, -1e-9], n)
         problem = LCP(make(A), q)
-        if _clearly_exact(problem, x):
+        if certify(problem, x).clearly_exact:
             proved += 1
             assert any(np.allclose(x, s.point, rtol=0.6) for s in solve_by_enumeration(problem).solutions)
+    assert proved > 20
+
+
+def test_what_floats_prove_with_bounds_is_true():
+    """Pieces of boxes, planted from integers, some of them off by a little: rationals agree."""
+    r = np.random.default_rng(5)
+    proved = 0
+    for _ in range(200):
+        n = int(r.integers(1, 4))
+        A, lower = r.integers(-3, 4, (n, n)) * 2.0 ** r.integers(-20, 20, n), r.integers(-2, 1, n).astype(float)
+        upper = lower + r.integers(0, 3, n)
+        x = lower + (upper - lower) * r.choice([0.0, 0.5, 1.0], n)
+        w = np.where(x == lower, 1.0, np.where(x == upper, -1.0, 0.0)) * r.integers(0, 3, n)
+        problem = lcp.MixedLCP(A, w - A @ x + r.choice([0.0, 1e-14, -1e-9], n), lower, upper)
+        certificate = certify(problem, x)
+        if certificate.clearly_exact:
+            proved += 1
+            assert lcp.certify_exactly(problem, x).solves
     assert proved > 20

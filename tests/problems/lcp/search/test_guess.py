@@ -43,7 +43,7 @@ def test_the_path_from_the_nearby_problem_is_followed_up_to_the_largest_table(mo
     A, q, random = moving(9)
     found, problem = solve(LCP(A, q)), LCP(A, q + random.normal(size=20))
     for largest, nearby in ((20, True), (19, False)):
-        monkeypatch.setattr("problems.lcp.search.active_sets.LARGEST_TABLE", largest)
+        monkeypatch.setattr("problems.lcp.search.pivots.LARGEST_TABLE", largest)
         assert ("nearby" in solve(problem, guess=found).message) is nearby
 
 

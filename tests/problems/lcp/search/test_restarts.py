@@ -1,8 +1,6 @@
-"""Restarts: reproducible, in any order, over an executor, and given up when they are not worth following."""
+"""Restarts: reproducible, and given up when they are not worth following."""
 
-import itertools
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -10,7 +8,6 @@ import pytest
 import continuation
 from problems import lcp
 from problems.lcp.homotopies.starts import LOG_DEVIATION, START_DISTANCES, typical_units
-from problems.lcp.search.paths import Restart
 
 PLANTED = 30
 
@@ -22,11 +19,6 @@ def planted(seed, n=PLANTED):
     x = np.maximum(rng.standard_normal(n), 0.0)
     w = np.where(x == 0.0, np.abs(rng.standard_normal(n)), 0.0)
     return lcp.LCP(A, w - A @ x)
-
-
-def restart(problem, k, **changes):
-    settings = {"name": "kkt", "seed": 0, "tolerance": 1e-10, "options": {}} | changes
-    return Restart(structure=lcp.Structure(problem), k=k, **settings)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -45,14 +37,6 @@ def test_starts_are_centred_positive_and_at_their_distance(seed):
     assert 0.4 <= second[0] / first[0] <= 2.5
 
 
-def test_a_restart_depends_on_seed_and_number_alone():
-    problem = planted(2)
-    first, again = (restart(problem, 3).trace(continuation.Budget()) for _ in range(2))
-    np.testing.assert_array_equal(first.u, again.u)
-    for other in (restart(problem, 4), restart(problem, 3, seed=1)):
-        assert not np.array_equal(other.homotopy().origin.x0, restart(problem, 3).homotopy().origin.x0)
-
-
 def test_the_first_path_leaves_time_for_others(monkeypatch):
     monkeypatch.setattr("problems.lcp.search.paths.RESTART_STEPS", 4.5 - PLANTED)
     monkeypatch.setattr("problems.lcp.search.reflections.Sets.of", lambda problem: None)
@@ -66,46 +50,24 @@ def test_the_first_path_leaves_time_for_others(monkeypatch):
         assert "it has not ended" not in found.paths[0].message
 
 
-def test_restarts_are_the_same_again_and_over_an_executor():
+def test_restarts_are_the_same_again_and_depend_on_the_seed():
     problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
-    first, again = (lcp.solve(problem, "kkt", restarts=300, seed=5) for _ in range(2))
-    with ThreadPoolExecutor(2) as executor:
-        spread = lcp.solve(problem, "kkt", restarts=300, seed=5, executor=executor)
-    for found in (first, again, spread):
+    first, again, other = (lcp.solve(problem, "kkt", restarts=300, seed=seed) for seed in (5, 5, 6))
+    for found in (first, again):
         assert lcp.certify(problem, found.x).solves(1e-10)
         np.testing.assert_array_equal(found.x, first.x)
         assert len(found.paths) == len(first.paths)
         assert f"random start {len(found.paths) - 1} (seed 5)" in found.message
         assert found.path is found.paths[-1]
-    assert all(len(path) <= 2 for path in spread.paths[1:])
+    assert all(len(path) <= 2 for path in first.paths[1:-1])
+    assert not np.array_equal(other.paths[1].steps[0].u, first.paths[1].steps[0].u)
 
 
-def test_an_executor_stops_at_the_count():
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
-    with ThreadPoolExecutor(2) as executor:
-        solution = lcp.solve(problem, "kkt", restarts=5, executor=executor)
+def test_restarts_end_at_their_count():
+    solution = lcp.solve(lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), "kkt", restarts=5)
     assert solution.outcome is lcp.Outcome.STATIONARY
     assert len(solution.paths) == 6
     assert "Restarts from random starts: 5" in solution.message
-
-
-def test_workers_have_what_is_left_of_the_budget():
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
-    first = lcp.solve(problem, "kkt").counts.factorizations
-    budget = continuation.Budget(factorizations=first + 3)
-    with ThreadPoolExecutor(2) as executor:
-        found = lcp.solve(problem, "kkt", restarts=5, executor=executor, budget=budget)
-    assert {path.status for path in found.paths[1:]} == {continuation.Status.BUDGET_EXHAUSTED}
-
-
-def test_over_an_executor_the_clock_on_the_wall_counts(monkeypatch):
-    """Ten minutes pass between any two looks at it, and none of the processor's."""
-    now = itertools.count(0.0, 600.0)
-    monkeypatch.setattr("problems.lcp.search.search.time.perf_counter", lambda: next(now))
-    problem, budget = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), continuation.Budget(seconds=1800.0)
-    with ThreadPoolExecutor(2) as executor:
-        solution = lcp.solve(problem, "kkt", restarts=200, executor=executor, budget=budget)
-    assert len(solution.paths) < 201
 
 
 def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):

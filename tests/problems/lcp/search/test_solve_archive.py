@@ -1,7 +1,5 @@
 """The archive of `solve`: it holds every path, the answer where there is none, and changes nothing of what is done."""
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import pytest
 
@@ -23,15 +21,8 @@ RESTARTED = lcp.LCP(
 
 
 @pytest.mark.parametrize("problem", [PD, BIMATRIX, RESTARTED], ids=["no path", "a path", "restarts"])
-@pytest.mark.parametrize("workers", [0, 1])
-def test_an_archive_changes_nothing_of_what_is_done(problem, workers, tmp_path):
-    def solved(file):
-        if not workers:
-            return lcp.solve(problem, restarts=3, archive=file)
-        with ThreadPoolExecutor(workers) as executor:
-            return lcp.solve(problem, restarts=3, archive=file, executor=executor)
-
-    without, with_archive = solved(None), solved(tmp_path / "run.h5")
+def test_an_archive_changes_nothing_of_what_is_done(problem, tmp_path):
+    without, with_archive = (lcp.solve(problem, restarts=3, archive=file) for file in (None, tmp_path / "run.h5"))
     assert with_archive.message == without.message
     assert with_archive.counts == without.counts
     np.testing.assert_array_equal(with_archive.x, without.x)
