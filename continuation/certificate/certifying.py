@@ -42,9 +42,6 @@ NEARER = 0.25
 """Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
 boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
 
-LARGE_NUMBERS = 4_000_000
-"""Length of a 32 MB array, the largest with the effect below."""
-
 
 @frozen(eq=False)
 class Node:
@@ -105,8 +102,6 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
     """A proof, its engine, and pieces of each observed number, beginning with the parameter's rate."""
-    # Once a large array was freed, glibc keeps freed memory; requesting pages otherwise takes a third of a proof.
-    np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
         tubes, gaps = TubeSearch(engine, homotopy, path, look).run()

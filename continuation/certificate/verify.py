@@ -27,9 +27,6 @@ NOWHERE = "where the parameter turns is not known"
 POINT_DISTANCE = 1e-4
 """Allowed distance of points and events from the curve, in steps; events are located to 1e-6."""
 
-PARAMETER_STEPS = 30
-"""Newton steps from a cell's middle."""
-
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
     """The proof by tested cells in order; `gaps` so far, `found` pieces of the parameter's rate."""
@@ -185,7 +182,8 @@ def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
     """Cell index + parameter of an event; arclength tells only the step."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
     begin, end = path.arclength[step - 1 : step + 1]
-    for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
+    here = (begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end) & np.isfinite(event.u).all()
+    for k in np.flatnonzero(here).tolist():
         cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
         if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
@@ -197,11 +195,9 @@ def _parameter(cell: Cells, u: Array) -> Array:
     """About where c . (p(t) - u) = 0: the cubic advances in a proved cell."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
-    cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
-    t, slope = 0.5, cubic.deriv()
-    for _ in range(PARAMETER_STEPS):
-        t = min(max(t - cubic(t) / slope(t), 0.0), 1.0)
-    return np.array([t])
+    roots = np.roots([float(cell.chart[0] @ row[0]) for row in rows])
+    inside = np.clip(roots.real, 0.0, 1.0)
+    return inside[np.argmin(np.abs(roots - inside), keepdims=True)]
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
