@@ -15,7 +15,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, joined
+from continuation.certificate.cells import OVERHANG, PARTS, Cells, Index, Slabs, at_node, joined
 from continuation.certificate.engine import Engine, Judged, up_by
 from continuation.certificate.folds import Look, Piece, signs, turning, turns
 from continuation.certificate.krawczyk import ByIntervals
@@ -28,9 +28,6 @@ from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
 """Distances from an arc's end, in lengths of the last cell, at which a switch's sign is tried."""
-
-ARC_PARTS = 4
-"""Parts of a slab: a switch that vanishes at both ends has a sign in between."""
 
 NO_KINK = "a kink is listed where there is none"
 NOT_LISTED = "a kink that the path does not list"
@@ -152,12 +149,12 @@ def _look_at(switches: ByIntervals) -> Look:
     """Return a function that observes the parameter's rate, switches, and their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
-        owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
-        box, t = slabs.halved(ARC_PARTS).box(radius[owner]), judged.tangent(radius, radius)[owner]
+        owner = np.repeat(np.arange(len(slabs)), PARTS)
+        box, t = slabs.halved(PARTS).box(radius[owner]), judged.tangent(radius, radius)[owner]
         image = switches.image(with_gradient(box.lo, box.hi))
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, radius.shape[1])), t[..., None])
-        both = (x.T.reshape(-1, len(slabs), ARC_PARTS) for x in (signs(image.c[0]), signs(slope[..., 0])))
+        both = (x.T.reshape(-1, len(slabs), PARTS) for x in (signs(image.c[0]), signs(slope[..., 0])))
         return [*turning(judged, slabs, radius), *zip(*both)]
 
     return look

@@ -17,6 +17,10 @@ Index = NDArray[np.intp]
 OVERHANG = 1e-3
 """Overlap of a tube with its neighbours, relative to its length."""
 
+PARTS = 4
+"""Parts of a slab that are looked at apart: for H on the cubic, whose remainder is of third order, and for signs of
+what may vanish inside. With eight, proofs of 75 paths have 2 % fewer boxes and take 6 % longer."""
+
 
 @frozen(eq=False)
 class Cells:

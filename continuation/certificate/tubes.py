@@ -21,9 +21,6 @@ STILL_ULPS = 1024.0
 FIRST_RADII = 0.05
 """First radii, in slab lengths; derivatives widen in proportion."""
 
-CELL_TESTS = 6
-"""Most tests of a cell."""
-
 CONTRACTING = 0.6
 """Bound of |I - Y G'| above which slabs are halved: it falls with their length."""
 
@@ -84,7 +81,7 @@ def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[list[Piece]]] = [[] for _ in range(count)]
     pending = np.arange(count)
-    for _ in range(CELL_TESTS):
+    for _ in range(engine.most):
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
