@@ -83,7 +83,7 @@ def trace(
         check_flag(name, flag)
     proof = None
     if certified:
-        from continuation.certificate.shortened import provable
+        from continuation.certificate.certifying import provable
 
         options, proof = provable(homotopy, options)
     watching = list(observers)

@@ -19,8 +19,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import PARTS, Slabs, cell_sizes
-from continuation.certificate.engine import Engine, SupportsProofEngine, up_by
-from continuation.certificate.inverse import inverses, times
+from continuation.certificate.engine import Engine, SupportsProofEngine, inverses, times, up_by
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient

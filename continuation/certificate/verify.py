@@ -197,7 +197,7 @@ def _parameter(cell: Cells, u: Array) -> Array:
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
     roots = np.roots([float(cell.chart[0] @ row[0]) for row in rows])
     inside = np.clip(roots.real, 0.0, 1.0)
-    return inside[np.argmin(np.abs(roots - inside), keepdims=True)]
+    return np.asarray(inside[np.argmin(np.abs(roots - inside), keepdims=True)])
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:

@@ -122,16 +122,13 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
             x for x in dict.fromkeys(part + other) if x in later.replace(".", "")
         )
         kept = both if k < len(parts) else output
-        total, part = _contracted(f"{own}{part},{own}{other}->{own}{kept}", total, array), kept
+        contract = partial(np.einsum, f"{own}{part},{own}{other}->{own}{kept}")
+        algebra = common((total, array))
+        total, part = wrap(product(algebra, sums_of_products(contract), total.c, array.c), algebra), kept
     if len(parts) == 1:
         spec = f"{own}{part}->{own}{output}"
         return wrap(added(lambda x: np.einsum(spec, x), total.c, total.size), total.algebra)
     return total
-
-
-def _contracted(spec: str, a: Any, b: Any) -> Any:
-    algebra = common((a, b))
-    return wrap(product(algebra, sums_of_products(partial(np.einsum, spec)), a.c, b.c), algebra)
 
 
 # Assembly
