@@ -17,9 +17,10 @@ Index = NDArray[np.intp]
 OVERHANG = 1e-3
 """Overlap of a tube with its neighbours, relative to its length."""
 
-PARTS = 4
+PARTS = 8
 """Parts of a slab that are looked at apart: for H on the cubic, whose remainder is of third order, and for signs of
-what may vanish inside. With eight, proofs of 75 paths have 2 % fewer boxes and take 6 % longer."""
+what may vanish inside. With four, 75 paths have 2 % more boxes in 6 % less time, and two turning points 1e-10 apart are
+not told apart."""
 
 
 @frozen(eq=False)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Iterator
-from concurrent.futures import Executor, Future
-from itertools import islice
+from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
@@ -33,9 +32,6 @@ WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.D
 
 LEAVES = 0.1
 """Distance of guesses from known solutions, relative to their spread."""
-
-PATHS_AHEAD = 64
-"""Largest number of submitted paths."""
 
 
 @frozen(eq=False)
@@ -94,11 +90,8 @@ class BranchSearch:
     @property
     def found(self) -> Diagram:
         """The diagram so far."""
-        said = (
-            f"Not complete: {'; '.join(dict.fromkeys(self.missing))}."
-            if self.missing
-            else "Complete: nothing is left open."
-        )
+        said = "; ".join(dict.fromkeys(self.missing))
+        said = f"Not complete: {said}." if said else "Complete: nothing is left open."
         return Diagram(self.branches, points_of(self.branches, self.junctions), not self.missing, said, self.counts)
 
     def _guesses(self, known: list[Array]) -> list[Array]:
@@ -161,26 +154,17 @@ class BranchSearch:
         return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
-        ready: deque[Future[Path] | None] = deque()
-        following = iter(tasks if self.executor is not None else ())
+        ready = [None if self.executor is None else self.executor.submit(_path, *self._asked(task)) for task in tasks]
         try:
-            for task in tasks:
-                for other in islice(following, PATHS_AHEAD - len(ready)):
-                    assert self.executor is not None
-                    idle = other.ray in other.used
-                    ready.append(None if idle else self.executor.submit(_path, *self._asked(other)))
-                future, path = ready.popleft() if ready else None, None
-                if future is not None:
-                    path = future.result()
-                elif task.ray not in task.used:
-                    path = _path(*self._asked(task))
-                if path is not None:
+            for task, future in zip(tasks, ready):
+                path = None
+                if future is not None or task.ray not in task.used:
+                    path = _path(*self._asked(task)) if future is None else future.result()
                     self.counts = self.counts + path.counts
                 yield None if task.ray in task.used else path
         finally:
-            for future in ready:
-                if future is not None:
-                    future.cancel()
+            for future in filter(None, ready):
+                future.cancel()
 
     def _asked(self, task: Task) -> tuple[Any, ...]:
         return self.homotopy, task.start, task.direction, self.options, task.weights
