@@ -14,7 +14,7 @@ from typing import Any, Protocol, Unpack, runtime_checkable
 import numpy as np
 from attrs import evolve, field, frozen
 
-from continuation.arguments.checks import check_flag, complain, instance_with, is_number, real_vector
+from continuation.arguments.checks import check_flag, expect, instance_with, is_number, real_vector
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
@@ -213,8 +213,7 @@ class Followed:
         event : LocatedEvent or Step
         """
         number = event.index if isinstance(event, Step) else event.step if isinstance(event, LocatedEvent) else -1
-        if not 0 <= number < len(self.path):
-            raise complain(ValueError, "event", "an event or a step of this path", event)
+        expect(0 <= number < len(self.path), "event", "an event or a step of this path", event)
         # The last point of a part has the part's unknowns.
         ends = np.cumsum([len(path) - 1 for path in self.paths])
         return self.homotopies[int(np.searchsorted(ends, number))]
@@ -251,8 +250,7 @@ def follow(
     """
     instance_with("homotopy", homotopy, ("renewed", "renewed_at"), "a homotopy that can be renewed")
     check_names(options)
-    if not isinstance(every, int) or isinstance(every, bool) or every < 1:
-        raise complain(ValueError, "every", "a positive integer", every)
+    expect(isinstance(every, int) and not isinstance(every, bool) and every >= 1, "every", "a positive integer", every)
     given = checked(options)["budget"] or Budget()
     homotopies, left, asked = [homotopy], given.steps, dict[str, Any](options)
     paths: list[Path] = []
@@ -299,11 +297,15 @@ def solve_at(homotopy: Any, lam: float, guess: Any = None, tolerance: float | To
     """
     evaluator = Evaluator(homotopy, Counts())
     start = evaluator.start()
-    if not is_number(lam) or not math.isfinite(lam):
-        raise complain(TypeError if not is_number(lam) else ValueError, "lam", "a finite number", lam)
+    expect(
+        is_number(lam) and math.isfinite(lam),
+        "lam",
+        "a finite number",
+        lam,
+        TypeError if not is_number(lam) else ValueError,
+    )
     y = start[:-1] if guess is None else np.atleast_1d(real_vector("guess", guess))
-    if y.ndim != 1 or not np.isfinite(y).all():
-        raise complain(ValueError, "guess", "a vector of finite numbers", guess)
+    expect(y.ndim == 1 and np.isfinite(y).all(), "guess", "a vector of finite numbers", guess)
     u = np.append(y, lam)
     if u.size != start.size:
         raise ValueError(f"guess: expected {start.size - 1} numbers, found {u.size - 1}")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from continuation.adapters.given import Adapted, filled, library, started
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import Pattern
 
@@ -32,8 +32,7 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
         If `function` does not fit.
     """
     ca = library("casadi")
-    if not isinstance(function, ca.Function):
-        raise complain(TypeError, "function", "a casadi.Function of (y, lam)", function)
+    expect(isinstance(function, ca.Function), "function", "a casadi.Function of (y, lam)", function, TypeError)
     y0, lam0 = started(start)
     n = y0.size
     inputs = [function.size_in(k) for k in range(function.n_in())]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arguments.checks import POSITIVE_FINITE, complain, real_vector
+from continuation.arguments.checks import POSITIVE_FINITE, expect, real_vector
 from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -25,11 +25,15 @@ SAME_SOLUTION_DISTANCE = 1e-6
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
-    if not isinstance(known, Iterable) or isinstance(known, str):
-        raise complain(TypeError, "known", "several solutions, as in a list", known)
+    expect(
+        isinstance(known, Iterable) and not isinstance(known, str),
+        "known",
+        "several solutions, as in a list",
+        known,
+        TypeError,
+    )
     vectors = tuple(np.atleast_1d(real_vector("known", y)) for y in known)
-    if not all(np.isfinite(y).all() for y in vectors):
-        raise complain(ValueError, "known", "finite numbers", known)
+    expect(all(np.isfinite(y).all() for y in vectors), "known", "finite numbers", known)
     return vectors
 
 
