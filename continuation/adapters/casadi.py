@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.adapters.given import Adapted, filled, library, started
+from continuation.adapters.given import Adapted, library, matrix_of, started
 from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import Pattern
@@ -51,7 +51,7 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
 
     def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
         H_y, H_lam = slope(y, lam)
-        return filled(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
+        return matrix_of(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
 
     again = partial(from_casadi, target=target), (function, start)
     return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)

@@ -58,7 +58,7 @@ def started(start: Any) -> tuple[Array, float]:
     return np.atleast_1d(real_vector("start", start[0])).astype(float), float(lam0.item())
 
 
-def filled(pattern: Pattern, entries: Array) -> Matrix:
+def matrix_of(pattern: Pattern, entries: Array) -> Matrix:
     """The matrix with these entries: dense if small or a quarter full."""
     n = pattern.n
     if n >= SPARSE_FROM and 4 * entries.size <= n * n:

@@ -12,10 +12,10 @@ from continuation.arrays import Array
 from continuation.auditing.length import metric_of
 from continuation.auditing.retrace import Halved
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.cells import Cells, cell_between, joined
 from continuation.certificate.closing import NEXT_TO_END, made
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Look, Piece, turning
+from continuation.certificate.folds import Observe, Piece, turning
 from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tubes import Tubes, check, search
@@ -102,7 +102,7 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
     return _smooth(homotopy, path, cells, turning)[0]
 
 
-def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
+def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tuple[Proof, Engine, list[list[Piece]]]:
     """A proof, its engine, and pieces of each observed number, beginning with the parameter's rate."""
     engine = engine_of(homotopy)
     if cells is None:
@@ -132,7 +132,7 @@ class TubeSearch:
     engine: Engine
     homotopy: Any
     path: Path
-    look: Look
+    look: Observe
 
     def run(self) -> tuple[Tubes, list[Gap]]:
         """Proved cells in order, and gaps."""
@@ -206,7 +206,7 @@ def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
 
 
 def _cell(a: Node, b: Node) -> Cells:
-    return between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
+    return cell_between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:

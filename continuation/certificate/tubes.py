@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
-from continuation.certificate.folds import Look, Piece, pieces
+from continuation.certificate.folds import Observe, Piece, pieces
 from continuation.certificate.links import INFLATION, NODE_ULPS, largest_by_cell, settled
-from continuation.numbers.ends import EPS, Mask
+from continuation.numbers.ends import Mask
 
 LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
@@ -66,12 +66,12 @@ class Tubes:
         return [[piece for part in parts for piece in part] for parts in zip(*placed)]
 
 
-def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Find radii and slabs; `cells.radius` holds unit lengths."""
     return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
 
 
-def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
     least = LEAST_RADIUS * scale + NODE_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
@@ -114,7 +114,7 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def check(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Test cells with their own tubes."""
     found = []
     for place in together(engine, cells):

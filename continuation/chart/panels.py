@@ -72,12 +72,12 @@ def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) 
     axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
     axes.tick_params(axis="y", length=0.0)
     plain_ticks(axes.xaxis)
-    tidy(axes)
+    gridded(axes)
     axes.grid(axis="y", visible=False)
     return figure, axes
 
 
-def tidy(axes: Axes) -> None:
+def gridded(axes: Axes) -> None:
     """Remove the frame; add a light grid."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(which="major", color="0.9", linewidth=0.6)

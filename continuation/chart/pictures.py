@@ -13,12 +13,12 @@ from continuation.chart.panels import (
     Axes,
     Figure,
     Mark,
+    gridded,
     looks_of,
     name_ends,
     panels,
     plain_ticks,
     rows_of_marks,
-    tidy,
     to_round_off,
 )
 from continuation.chart.results import WORK, Results, Row, by_size, excess, some
@@ -102,7 +102,7 @@ class Lines:
         else:
             plain_ticks(axes.xaxis)
         plain_ticks(axes.yaxis)
-        tidy(axes)
+        gridded(axes)
         name_ends(axes, [(*points[-1], name, look["color"]) for name, look, points in lines if points])
         absent = [name.split(" (")[0] for name, _, points in lines if not points and "failed" in name]
         if absent:

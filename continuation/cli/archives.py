@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from continuation.arguments import plugins
-from continuation.cli.making import found, homotopy_of
+from continuation.cli.making import homotopy_of, plug_in
 from continuation.cli.parser import (
     FAILURE,
     SUCCESS,
@@ -123,7 +123,7 @@ def _named(path: str) -> Any:
     from continuation.archive.trust import registry
 
     try:
-        trusted = found(path)
+        trusted = plug_in(path)
         registry([trusted])
     except (TypeError, ValueError, plugins.PluginError) as error:
         reason = str(error).removeprefix("trust: ")

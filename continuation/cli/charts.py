@@ -9,7 +9,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from continuation.arguments import plugins
-from continuation.cli.making import found
+from continuation.cli.making import plug_in
 from continuation.cli.parser import SUCCESS, Subparsers, add_command, argument, new_folder
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         print("\n".join(names))
         return SUCCESS
     chosen = names if arguments.name == EVERY else [arguments.name]
-    makers = [found(name, plugins.STUDIES) for name in chosen]
+    makers = [plug_in(name, plugins.STUDIES) for name in chosen]
     folder = new_folder("--output", arguments.output)
     for study in chain.from_iterable(make(arguments.size, arguments.compare) for make in makers):
         results = run_study(study, partial(_watch, study.name) if sys.stderr.isatty() else None)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from continuation.arguments import plugins
-from continuation.cli.making import found, homotopy_of
+from continuation.cli.making import homotopy_of, plug_in
 from continuation.cli.parser import (
     FAILURE,
     SUCCESS,
@@ -74,7 +74,7 @@ def _list(arguments: argparse.Namespace) -> int:
     known = {**plugins.available(), **scenes}
     if arguments.name is not None:
         described = plugins.describe(
-            found(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
+            plug_in(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
         )
         print(_entry(arguments.name, described, known.get(arguments.name)))
         print("".join(f"\n{entry}\n" for entry in described.references), end="")

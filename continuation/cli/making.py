@@ -12,7 +12,7 @@ from continuation.arguments import plugins
 from continuation.cli.parser import UsageError
 
 
-def found(name: str, group: str = plugins.GROUP) -> plugins.Factory:
+def plug_in(name: str, group: str = plugins.GROUP) -> plugins.Factory:
     """The plug-in of a name; ``module:object`` may be in the working directory."""
     if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
@@ -23,7 +23,7 @@ def homotopy_of(
     name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None, group: str = plugins.GROUP
 ) -> tuple[Any, Mapping[str, Any]]:
     """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults."""
-    factory = found(name, group)
+    factory = plug_in(name, group)
     written = {option.name: option.annotation for option in plugins.options(factory)}
     values = {key: value for key, value in (known or {}).items() if key in written}
     typed: set[str] = set()

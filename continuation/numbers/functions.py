@@ -13,7 +13,7 @@ from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 from continuation.arrays import clipped
 from continuation.numbers.algebra import product
 from continuation.numbers.ends import added
-from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
+from continuation.numbers.truncated import Truncated, combined, common, gather, parts_of, wrap
 from continuation.numbers.ufuncs import sums_of_products
 
 # Reductions
@@ -137,13 +137,13 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
 def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
     parts = [x.ravel() for x in parts_of(arrays)] if axis is None else parts_of(arrays)
     along = normalize_axis_index(axis or 0, parts[0].ndim)
-    return joined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
+    return combined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
 
 
 def _stack(arrays: Any, axis: int = 0) -> Any:
     parts = parts_of(arrays)
     along = normalize_axis_index(axis, parts[0].ndim + 1)
-    return joined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
+    return combined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
 
 
 def _where(condition: Any, x: Any, y: Any) -> Any:
@@ -152,7 +152,7 @@ def _where(condition: Any, x: Any, y: Any) -> Any:
     condition, parts = np.asarray(condition), parts_of([x, y])
     ndim = max(condition.ndim, *(part.ndim for part in parts))
     parts = [part.reshape((1,) * (ndim - part.ndim) + part.shape) for part in parts]
-    return joined(lambda arrays, own: np.where(condition, *arrays), parts)
+    return combined(lambda arrays, own: np.where(condition, *arrays), parts)
 
 
 def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:

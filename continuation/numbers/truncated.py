@@ -204,7 +204,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
         parts = [gather(part, one) for part in x]
         if any(isinstance(part, Truncated) for part in parts):
-            return joined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
+            return combined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
         x = parts
     elif isinstance(x, np.ndarray) and x.dtype == object and isinstance(x[()], Truncated):
         return x[()]
@@ -239,7 +239,7 @@ def alike(parts: Any) -> list[Store]:
     ]
 
 
-def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
+def combined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
     """Combine arrays by `join(arrays, own)`."""
     own = parts[0].OWN
     return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))

@@ -11,7 +11,7 @@ from continuation.plot.drawing import (
     COLOURS,
     MOST_COMPONENTS,
     Axes,
-    Curve,
+    Drawing,
     Drawn,
     axes_or_new,
     check_path,
@@ -65,7 +65,7 @@ def plot_components(
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
     parts = stable_parts(path)
     curves = [
-        Curve(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
+        Drawing(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
         for k, (i, label) in enumerate(zip(chosen, labels))
     ]
     axes = draw(axes, curves, against, legend)

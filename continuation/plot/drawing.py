@@ -51,7 +51,7 @@ Parts: TypeAlias = tuple[Sequence[float], bool] | None
 
 
 @frozen(eq=False)
-class Curve:
+class Drawing:
     """One number along a path.
 
     Attributes
@@ -127,7 +127,7 @@ def stable_parts(path: Drawn) -> Parts:
     return edges, bool(stable[0])
 
 
-def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool) -> Axes:
+def draw(axes: Axes | None, curves: Sequence[Drawing], against: str, legend: bool) -> Axes:
     """Draw curves with events; with `legend` also names and arrows."""
     if against not in ("lam", "arclength"):
         raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
@@ -170,7 +170,7 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
     return axes
 
 
-def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
+def _mark(axes: Axes, curves: Sequence[Drawing], lam: bool, named: bool) -> None:
     """Mark events; name the first of each name, with their number, and early ends."""
     from matplotlib.lines import Line2D
 
@@ -180,7 +180,7 @@ def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
         for k, event in enumerate(path.events):
             x, heights = event.lam if lam else event.arclength, [float(curve.at[k]) for curve in mine]
             # Round-off of events must not set the scale, as by `plot`.
-            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **sign(event)))
+            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **mark_of(event)))
             many = sum(other.name == event.name for other in path.events)
             if named and event.name not in said:
                 _say(axes, f"{event.name} ({many})" if many > 1 else event.name, x, max(heights))
@@ -274,6 +274,6 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
         axes.invert_xaxis()
 
 
-def sign(event: Any) -> dict[str, Any]:
+def mark_of(event: Any) -> dict[str, Any]:
     """Mark of an event."""
     return MARKS.get(event.kind, OTHER)

@@ -8,7 +8,7 @@ import numpy as np
 
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.predictors.taylor import series_reach
-from continuation.testing.subject import Subject, agree, random_directions, reporting, require
+from continuation.testing.subject import Subject, compare, random_directions, reporting, require
 
 COMPARED_ORDER = 6
 """Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3."""
@@ -45,7 +45,7 @@ def differential(subject: Subject) -> None:
                 found = subject.homotopy.differential(place.y, place.lam, v.copy())
             size = np.abs(reference)
             allowed = DERIVATIVE_ERROR * (size @ np.abs(v)) + CANCELLED_ENTRY * float(size.max())
-            agree("differential", place, "component", found, reference @ v, allowed)
+            compare("differential", place, "component", found, reference @ v, allowed)
 
 
 def bordered(subject: Subject) -> None:
@@ -64,7 +64,7 @@ def bordered(subject: Subject) -> None:
                 # term, which may be round-off.
                 largest = np.abs(whole).max(axis=1) * float(sizes.max())
                 allowed = SOLVE_ERROR * (np.abs(whole) @ sizes + np.abs(b) + 1e-7 * largest)
-                agree("bordered", place, "the solution's equation", found, b, allowed)
+                compare("bordered", place, "the solution's equation", found, b, allowed)
             sign = system.sign
             said = f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}"
             require(sign in (-1, 0, 1), said)
@@ -84,9 +84,9 @@ def taylor(subject: Subject) -> None:
         require(c.shape == shape, said)
         for k, expected in ((0, point.u), (1, point.tangent)):
             allowed = CANCELLED_ENTRY * float(np.abs(expected).max())
-            agree("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
+            compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
         allowed = DERIVATIVE_ERROR * np.abs(c[2:]).max(axis=1) + 1e-12
-        agree("taylor", place, "border . c of coefficient 2 +", c[2:] @ point.border, np.zeros(len(c) - 2), allowed)
+        compare("taylor", place, "border . c of coefficient 2 +", c[2:] @ point.border, np.zeros(len(c) - 2), allowed)
         h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
         powers = np.arange(COMPARED_ORDER + 1)
         with reporting("residual", f"{place.where}, {h:.3g} along the series"):

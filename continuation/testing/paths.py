@@ -24,7 +24,7 @@ from continuation.budget import Budget
 from continuation.status import Status
 from continuation.testing.derivatives import DERIVATIVE_ERROR
 from continuation.testing.protocol import same_residual
-from continuation.testing.subject import Place, Subject, agree, random_directions, reporting, require
+from continuation.testing.subject import Place, Subject, compare, random_directions, reporting, require
 
 
 def max_step(subject: Subject) -> None:
@@ -48,7 +48,7 @@ def max_step(subject: Subject) -> None:
                 rest = (1.0 - share) / factor * whole
                 left = longest(place, place.u + share * whole * v, factor * v)
                 said = f"after {share:g} of {whole:.6g} along v what is left along {factor:g} v, number"
-                agree("max_step", place, said, [left], [rest], DERIVATIVE_ERROR * whole)
+                compare("max_step", place, said, [left], [rest], DERIVATIVE_ERROR * whole)
             said = f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that"
             require(subject.finite(Place("", place.u + 0.999 * whole * v)), said)
         still = longest(place, place.u, np.zeros_like(place.u))

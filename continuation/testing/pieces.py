@@ -12,7 +12,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
 from continuation.testing.protocol import answers
-from continuation.testing.subject import Place, Subject, agree, random_directions, reporting, require
+from continuation.testing.subject import Place, Subject, compare, random_directions, reporting, require
 
 SAME_VALUE = 1e4
 """Allowed difference of two formulas, in round-off."""
@@ -68,7 +68,7 @@ def pieces(subject: Subject) -> None:
             round_off = np.max([np.abs(look - wanted) for look in looks], axis=0) / MOVED_ULPS
         shown = "".join("+" if sign > 0 else "-" for sign in signs[:40]) + ("..." if len(signs) > 40 else "")
         what = f"the piece {shown} differs from the map: number"
-        agree("piece", place, what, found, wanted, SAME_VALUE * round_off + np.finfo(float).tiny)
+        compare("piece", place, what, found, wanted, SAME_VALUE * round_off + np.finfo(float).tiny)
 
 
 def derivatives_of_pieces(subject: Subject) -> None:

@@ -17,7 +17,7 @@ from continuation.testing.subject import (
     CheckFailure,
     Place,
     Subject,
-    agree,
+    compare,
     dense,
     random_directions,
     reporting,
@@ -131,9 +131,9 @@ def repeatable(subject: Subject) -> None:
         asked = [(place, _asked(subject, place, name)) for place in subject.places]
         for place, (answer, before) in asked:
             changes = "an answer changes when the method is called again (return new arrays): number"
-            agree(name, place, changes, _numbers(name, answer, place), before)
+            compare(name, place, changes, _numbers(name, answer, place), before)
             differs = "a second call with the same arguments differs from the first: number"
-            agree(name, place, differs, _asked(subject, place, name)[1], before)
+            compare(name, place, differs, _asked(subject, place, name)[1], before)
 
 
 def picklable(subject: Subject) -> None:
@@ -152,7 +152,7 @@ def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
     for place in subject.places:
         with reporting(f"residual of {what}", place.where):
             found, wanted = (h.residual(place.y, place.lam) for h in (other, subject.homotopy))
-        agree(name, place, f"{what} has another residual: number", found, wanted)
+        compare(name, place, f"{what} has another residual: number", found, wanted)
 
 
 _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "observe", "switches")
@@ -173,7 +173,7 @@ def _asked(subject: Subject, place: Place, name: str) -> tuple[Any, Array]:
     given = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
     with reporting(name, place.where):
         answer = getattr(subject.homotopy, name)(*given)
-    agree(name, place, "it changes its arguments: number", np.hstack(given), np.hstack(arguments))
+    compare(name, place, "it changes its arguments: number", np.hstack(given), np.hstack(arguments))
     return answer, _numbers(name, answer, place)
 
 

@@ -198,7 +198,7 @@ class Subject:
         return np.column_stack([dense(H_y, place.u.size - 1), np.asarray(H_lam, dtype=float)])
 
 
-def agree(name: str, place: Place, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
+def compare(name: str, place: Place, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
     """End a check unless numbers have one shape and agree, by default bit for bit."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
     shapes = f"expected shape {expected.shape}, found {found.shape}"
