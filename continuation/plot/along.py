@@ -68,7 +68,7 @@ def plot_components(
         Drawing(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
         for k, (i, label) in enumerate(zip(chosen, labels))
     ]
-    axes = draw(axes, curves, against, legend)
+    axes = draw(axes, [curves], against, legend)
     unknowns = int(np.isfinite(path.u[:, :-1]).any(axis=0).sum())
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
