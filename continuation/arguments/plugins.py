@@ -88,7 +88,7 @@ class Plugin:
         try:
             factory: Factory = point.load()
         except (Exception, SystemExit) as error:  # Imports may raise anything.
-            who = f"{self.origin} " if self.origin != self.name else ""
+            who = f"{self.origin} " if point.value != self.name else ""
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {who}cannot be loaded: {reason}") from error
         found = type(factory).__name__
