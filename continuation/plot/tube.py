@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
+from continuation.plot.drawing import COLOURS, SMOOTHNESS, Axes, axes_or_new, tidy
 from continuation.point.segment import cubic
-
-POINTS = 12
-"""Points per cell."""
 
 VISIBLE = 0.004
 """Least drawn radius in picture widths: most tubes are thinner than a line."""
@@ -23,7 +20,7 @@ def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, a
     from matplotlib.collections import PolyCollection
 
     rows = zip(cells.begin, cells.end, cells.slope_begin, cells.slope_end)
-    cubics = [[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, POINTS)] for row in rows]
+    cubics = [[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, SMOOTHNESS)] for row in rows]
     curves = np.array(cubics)[:, :, [-1, component]]
     wide = np.maximum(cells.radius[:, [-1, component]], VISIBLE * np.ptp(curves, axis=(0, 1)))[:, None]
     lo = np.minimum(curves[:, 1:], curves[:, :-1]) - wide
@@ -31,7 +28,7 @@ def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, a
     corners = [np.stack([x[..., 0], y[..., 1]], axis=-1) for x, y in ((lo, lo), (hi, lo), (hi, hi), (lo, hi))]
     boxes = np.stack(corners, axis=2).reshape(-1, 4, 2)
     axes.add_collection(PolyCollection(list(boxes), color=COLOURS[0], alpha=0.35, linewidth=0.0))
-    axes.plot(*curves.reshape(-1, 2).T, ".-", markevery=POINTS, color=COLOURS[0], linewidth=0.8)
+    axes.plot(*curves.reshape(-1, 2).T, ".-", markevery=SMOOTHNESS, color=COLOURS[0], linewidth=0.8)
     begins, ends = ([gap[k] for gap in gaps] for k in (0, 1))
     beside = np.isin(cells.place[:, 1], begins) | np.isin(cells.place[:, 0], ends)
     axes.plot(*curves[beside][:, [0, -1]].reshape(-1, 2).T, "x", color=COLOURS[1])

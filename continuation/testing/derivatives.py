@@ -1,4 +1,4 @@
-"""Checks of derivatives."""
+"""Checks of derivatives: six digits, which difference quotients have and wrong formulas have not."""
 
 from __future__ import annotations
 
@@ -6,19 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Subject, compare, random_directions, reporting, require
 
 COMPARED_ORDER = 6
 """Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3."""
-
-SOLVE_ERROR = 1e-8
-"""Largest relative residual of a bordered solve: half of the digits."""
-
-DERIVATIVE_ERROR = 1e-6
-"""Largest relative error of a derivative, coefficient or step: difference quotients satisfy it, wrong formulas do
-not."""
 
 CANCELLED_ENTRY = 1e-10
 """Error of a cancelling entry, relative to the largest."""
@@ -44,7 +38,7 @@ def differential(subject: Subject) -> None:
             with reporting("differential", place.where):
                 found = subject.homotopy.differential(place.y, place.lam, v.copy())
             size = np.abs(reference)
-            allowed = DERIVATIVE_ERROR * (size @ np.abs(v)) + CANCELLED_ENTRY * float(size.max())
+            allowed = SIX_DIGITS * (size @ np.abs(v)) + CANCELLED_ENTRY * float(size.max())
             compare("differential", place, "component", found, reference @ v, allowed)
 
 
@@ -63,7 +57,7 @@ def bordered(subject: Subject) -> None:
                 # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible
                 # term, which may be round-off.
                 largest = np.abs(whole).max(axis=1) * float(sizes.max())
-                allowed = SOLVE_ERROR * (np.abs(whole) @ sizes + np.abs(b) + 1e-7 * largest)
+                allowed = ROOT_OF_ROUND_OFF * (np.abs(whole) @ sizes + np.abs(b) + 1e-7 * largest)
                 compare("bordered", place, "the solution's equation", found, b, allowed)
             sign = system.sign
             said = f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}"
@@ -85,7 +79,7 @@ def taylor(subject: Subject) -> None:
         for k, expected in ((0, point.u), (1, point.tangent)):
             allowed = CANCELLED_ENTRY * float(np.abs(expected).max())
             compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
-        allowed = DERIVATIVE_ERROR * np.abs(c[2:]).max(axis=1) + 1e-12
+        allowed = SIX_DIGITS * np.abs(c[2:]).max(axis=1) + 1e-12
         compare("taylor", place, "border . c of coefficient 2 +", c[2:] @ point.border, np.zeros(len(c) - 2), allowed)
         h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
         powers = np.arange(COMPARED_ORDER + 1)

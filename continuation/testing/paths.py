@@ -18,11 +18,9 @@ from continuation.archive import resume
 from continuation.archive.codec import problem_data
 from continuation.archive.trust import decode, registry
 from continuation.archive.writer import PathLog
-from continuation.arrays import Array
-from continuation.auditing import audit
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.budget import Budget
 from continuation.status import Status
-from continuation.testing.derivatives import DERIVATIVE_ERROR
 from continuation.testing.protocol import same_residual
 from continuation.testing.subject import Place, Subject, compare, random_directions, reporting, require
 
@@ -48,7 +46,7 @@ def max_step(subject: Subject) -> None:
                 rest = (1.0 - share) / factor * whole
                 left = longest(place, place.u + share * whole * v, factor * v)
                 said = f"after {share:g} of {whole:.6g} along v what is left along {factor:g} v, number"
-                compare("max_step", place, said, [left], [rest], DERIVATIVE_ERROR * whole)
+                compare("max_step", place, said, [left], [rest], SIX_DIGITS * whole)
             said = f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that"
             require(subject.finite(Place("", place.u + 0.999 * whole * v)), said)
         still = longest(place, place.u, np.zeros_like(place.u))
