@@ -19,6 +19,7 @@ from continuation.archive.codec import problem_data
 from continuation.archive.trust import decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import SIX_DIGITS, Array
+from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.status import Status
 from continuation.testing.protocol import same_residual
