@@ -197,11 +197,11 @@ class Bounded:
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
         """See `Judged.pace`, with c . t = 1. Slabs without a sign are cut: images of wide boxes become a tenth."""
-        slope = self.tangent(radius, tube)[:, -1:]
-        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], SLAB_PARTS, axis=3)
+        slope, most = self.tangent(radius, tube)[:, -1:], 2 * SLAB_PARTS
+        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], most, axis=3)
         with np.errstate(all="ignore"):
             asked = (self._image(radius) < radius).all(axis=1) & ~(slope.lo * slope.hi > 0.0)[:, 0]
-        for cuts in (1, SLAB_PARTS):
+        for cuts in (1, most):
             if not asked.any():
                 break
             r = np.repeat(radius[asked], cuts, axis=0)
@@ -212,7 +212,7 @@ class Bounded:
                 r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
                 judged = self.engine.judge(parts, r)
             found = np.array([[x.lo, x.hi] for x in judged.turned(r)])
-            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), SLAB_PARTS // cuts, axis=3)
+            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), most // cuts, axis=3)
             asked &= ~(ends[:, 0] * ends[:, 1] > 0.0).any(axis=0).all(axis=1)
         return Ends(*ends[0]), Ends(*ends[1])
 
