@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve
+from scipy.optimize import brentq
 
 from continuation.arrays import EPS, Array
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
@@ -195,9 +196,9 @@ def _parameter(cell: Cells, u: Array) -> Array:
     """About where c . (p(t) - u) = 0: the cubic advances in a proved cell."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
-    roots = np.roots([float(cell.chart[0] @ row[0]) for row in rows])
-    inside = np.clip(roots.real, 0.0, 1.0)
-    return np.asarray(inside[np.argmin(np.abs(roots - inside), keepdims=True)])
+    cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
+    t = 0.0 if cubic(0.0) >= 0.0 else 1.0 if cubic(1.0) <= 0.0 else brentq(cubic, 0.0, 1.0, xtol=EPS)
+    return np.array([t])
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
