@@ -23,7 +23,7 @@ INFLATION = 1.1
 """Factor from image to next radii: fixed points are approached from above."""
 
 NODE_ULPS = 32.0
-"""Least box, in ulps: round-off alone must not fill it."""
+"""Least box, and least radius of a tube, in ulps: round-off alone must not fill it."""
 
 
 @frozen(eq=False)

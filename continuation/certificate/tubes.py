@@ -9,14 +9,11 @@ from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Observe, Piece, pieces
-from continuation.certificate.links import INFLATION, largest_by_cell, settled
+from continuation.certificate.links import INFLATION, NODE_ULPS, largest_by_cell, settled
 from continuation.numbers.ends import Mask
 
 LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
-
-STILL_ULPS = 1024.0
-"""Least radius of components that stand still, in ulps: events, too, lie in the tube (curves of folds)."""
 
 FIRST_RADII = 0.05
 """First radii, in slab lengths; derivatives widen in proportion."""
@@ -76,7 +73,7 @@ def search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
 
 def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
-    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    least = LEAST_RADIUS * scale + NODE_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[list[Piece]]] = [[] for _ in range(count)]

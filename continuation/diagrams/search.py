@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from typing import Any
 
@@ -13,12 +13,12 @@ from attrs import define, evolve, field, frozen
 from continuation.archive.growing import Growing
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array
+from continuation.branch_switching import metric_at
 from continuation.counts import Counts
-from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
+from continuation.diagrams.branches import LABELS, Branch, Diagram, Special, from_point
 from continuation.diagrams.deflation import others, same_solution
 from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import PointIndex
-from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
 from continuation.metric import Inherited
 from continuation.path import LocatedEvent, Path
@@ -256,3 +256,29 @@ class BranchSearch:
 def _through(behind: Path, ahead: Path) -> Path:
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)
+
+
+def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
+    """Junctions, turning points, Hopf points and kinks, in branch order."""
+    labels: Counter[str] = Counter()
+    found: list[tuple[str, LocatedEvent, list[int]]] = []
+    places: PointIndex[tuple[str, list[int]]] = PointIndex()
+
+    def entry(label: str, event: LocatedEvent) -> list[int]:
+        through: list[int] = []
+        found.append((label, event, through))
+        places.add(event.u, metric_at(event), (label, through))
+        labels[label[:2]] += 1
+        return through
+
+    origins = {j.label: entry(j.label, j.event) for j in sorted(junctions, key=lambda j: j.number) if j.label}
+    for k, branch in enumerate(branches):
+        for event in branch.path.events:
+            if event.kind not in LABELS:
+                continue
+            kind = LABELS[event.kind]
+            same = [through for label, through in places.near(event.u) if label.startswith(kind)]
+            (same[0] if same else entry(f"{kind}{1 + labels[kind]}", event)).append(k)
+        if branch.origin:
+            origins[branch.origin].append(k)
+    return [Special(label, event, tuple(dict.fromkeys(through))) for label, event, through in found]
