@@ -161,6 +161,6 @@ class Proof:
         -------
         matplotlib axes
         """
-        from continuation.plot.tube import plot_tube
+        from continuation.plot.along import plot_tube
 
         return plot_tube(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)
