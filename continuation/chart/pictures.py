@@ -165,7 +165,7 @@ ACCURACY = (
 
 @frozen
 class Dumbbell:
-    """Best outside method against ours, a row for each problem, sorted by ratio; colours show errors.
+    """Best outside method, named in a remark, against ours, a row for each problem by ratio; colours show errors.
 
     The best is the quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
 
@@ -200,14 +200,6 @@ class Dumbbell:
         marked = [(name, [self._mark(row) for row in rows], said) for name, rows, said in lines]
         figure, axes = rows_of_marks(results.title, marked)
         axes.set_xlabel(WORK[self.work])
-        if not self.every:
-            axes.margins(x=0.35)
-            for k, (_, rows, _) in enumerate(lines):
-                for row in rows[1:]:
-                    side = -1 if row.work(self.work) < rows[0].work(self.work) else 1
-                    looks = {"ha": "right" if side < 0 else "left", "va": "center", "color": "0.35"}
-                    where = (row.work(self.work), -k), (7 * side, 0)
-                    axes.annotate(row.method, *where, textcoords="offset points", fontsize="x-small", **looks)
         key = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *((name, "s", c) for name, _, c in ACCURACY)]
         handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in key]
         figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False, fontsize="small",
@@ -226,10 +218,11 @@ class Dumbbell:
             last = max((row.rung for row in rows), default=math.nan)
             ranked = sorted((row for row in rows if row.rung == last), key=lambda row: row.work(self.work))
             ours, best = ([row for row in ranked if row.outside is outside][:1] for outside in (False, True))
-            ratio = best[0].work(self.work) / ours[0].work(self.work) if best and ours else math.nan
-            much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
-            alone = "no rival" if ours else "ours failed"
-            said = f"{much} quicker" if ratio >= 1.0 else f"{much} slower" if ratio < 1.0 else alone
+            ratio, said = math.nan, "no rival" if ours else "ours failed"
+            if best and ours:
+                ratio = best[0].work(self.work) / ours[0].work(self.work)
+                much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
+                said = f"{much} {'quicker' if ratio >= 1.0 else 'slower'} than {best[0].method}"
             found.append((math.inf if math.isnan(ratio) else -ratio, (problem, ours + best, said)))
         return [line for _, line in sorted(found, key=lambda pair: pair[0])]
 
