@@ -15,7 +15,6 @@ from continuation.chart.panels import (
     Mark,
     gridded,
     looks_of,
-    name_ends,
     panels,
     plain_ticks,
     rows_of_marks,
@@ -92,8 +91,14 @@ class Lines:
         return method + (f" ({failed} of {len(rows)} failed)" if failed else ""), look, points
 
     def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
-        for _, look, points in lines:
-            axes.plot(*np.reshape(points, (-1, 2)).T, **look)
+        drawn = [
+            (points[-1][1], axes.plot(*np.reshape(points, (-1, 2)).T, label=name, **look)[0])
+            for name, look, points in lines
+            if points
+        ]
+        # The key has the order of the curves' ends.
+        key = [line for _, line in sorted(drawn, key=lambda pair: -pair[0])]
+        axes.legend(handles=key, loc="upper left", bbox_to_anchor=(1.0, 1.03), frameon=False, fontsize="small")
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.margins(x=0.06, y=0.08)
@@ -103,7 +108,6 @@ class Lines:
             plain_ticks(axes.xaxis)
         plain_ticks(axes.yaxis)
         gridded(axes)
-        name_ends(axes, [(*points[-1], name, look["color"]) for name, look, points in lines if points])
         absent = [name.split(" (")[0] for name, _, points in lines if not points and "failed" in name]
         if absent:
             text = f"failed: {', '.join(absent)}"
