@@ -92,9 +92,9 @@ class Lines:
 
     def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
         drawn = [
-            (points[-1][1], axes.plot(*np.reshape(points, (-1, 2)).T, label=name, **look)[0])
+            (points[-1][1] if points else 0.0, axes.plot(*np.reshape(points, (-1, 2)).T, label=name, **look)[0])
             for name, look, points in lines
-            if points
+            if points or "failed" in name
         ]
         # The key has the order of the curves' ends.
         key = [line for _, line in sorted(drawn, key=lambda pair: -pair[0])]
@@ -108,10 +108,6 @@ class Lines:
             plain_ticks(axes.xaxis)
         plain_ticks(axes.yaxis)
         gridded(axes)
-        absent = [name.split(" (")[0] for name, _, points in lines if not points and "failed" in name]
-        if absent:
-            text = f"failed: {', '.join(absent)}"
-            axes.annotate(text, (0.02, 0.02), xycoords="axes fraction", fontsize="x-small", color="0.4")
 
 
 @frozen
