@@ -80,12 +80,11 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     from continuation.plot import plot_steps
 
     figure = Figure(figsize=(6.5, 4.0) if path is None else (7.0, 6.0), layout="constrained")
-    ratios = [1] if path is None else [3, 1]
-    panels = figure.subplots(len(ratios), 1, height_ratios=ratios, squeeze=False)[:, 0]
-    draw(panels[0])
     figure.suptitle(title, fontsize="medium")
+    grid = figure.add_gridspec(1 if path is None else 2, 1, height_ratios=[1] if path is None else [3, 1])
+    draw(figure.add_subplot(grid[0]))
     if path is not None:
-        plot_steps(path, panels[1])
+        plot_steps(path, figure.add_subplot(grid[1]))
     picture = BytesIO()
     figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
     # A full disk must not destroy the old file.

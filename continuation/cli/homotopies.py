@@ -49,8 +49,8 @@ def register(subparsers: Subparsers) -> None:
         argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib"),
         argument("--progress", action="store_true", help="show the progress on stderr"),
         argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller"),
-        argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none"),
-        argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement"),
+        argument("--target", metavar="LAM", type=_target, default="homotopy", help="where the path is to end, or none"),
+        argument("--direction", type=int, choices=(-1, 1), default=0, help="of the parameter's first movement"),
         argument("--tolerance", metavar="EPS", type=above_zero, default=1e-8, help="default: 1e-8"),
         argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point"),
         argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000"),
@@ -117,19 +117,16 @@ def _trace(arguments: argparse.Namespace) -> int:
         check_picture("--plot", arguments.plot)
     log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
     limits = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
-    options: dict[str, Any] = {"budget": Budget(**{name: value for name, value in limits.items() if value is not None})}
-    if arguments.target is not None:
-        options["target"] = None if math.isnan(arguments.target) else arguments.target
-    if arguments.turning_points is not None:
-        options["events"] = [TurningPoint(terminal=arguments.turning_points)]
     path = trace(
         homotopy,
         archive=log,
         progress=arguments.progress,
         preset=getattr(presets, arguments.preset.upper()),
+        target=arguments.target,
         tolerance=arguments.tolerance,
-        direction=arguments.direction or 0,
-        **options,
+        direction=arguments.direction,
+        events=[TurningPoint(terminal=arguments.turning_points)] if arguments.turning_points else [],
+        budget=Budget(**{name: value for name, value in limits.items() if value is not None}),
     )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
@@ -190,7 +187,7 @@ def _check(arguments: argparse.Namespace) -> int:
     return FAILURE if failed else SUCCESS
 
 
-def _number_or_none(text: str) -> float:
-    if text.lower() == "none":
-        return math.nan
+def _target(text: str) -> float | str | None:
+    if text.lower() in ("none", "homotopy"):
+        return None if text.lower() == "none" else "homotopy"
     return parsed(text, float, math.isfinite, "a finite number or none")
