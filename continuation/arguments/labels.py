@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from types import SimpleNamespace
 from typing import Any
 
 from attrs import field, frozen
@@ -57,9 +58,8 @@ class Labels:
             if isinstance(text, str) and text:
                 with suppress(ValueError, RecursionError):
                     found[name] = text if name == "parameter_name" else json.loads(text)
-        made = type("Said", (), found)
         try:
-            said = cls.of(made)
+            said = cls.of(SimpleNamespace(**found))
         except TypeError:
             return cls()
         texts = (said.parameter_name, *said.names, *said.units, *said.units.values())

@@ -13,7 +13,7 @@ from continuation.arrays import EPS, Array
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import RANGE, Piece, located, turns
+from continuation.certificate.folds import RANGE, Piece, located, signs, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.numbers.ends import Mask, thin
@@ -120,13 +120,12 @@ def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
 
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
     """Add signs at first and last point."""
-    signs = []
-    for node, k in ((start, 0), (at, -1)):
-        lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
-        signs.append(int(np.sign(lo)) if lo * hi > 0.0 and (node.radius[k] <= cells.radius[k]).all() else 0)
-    first, last = signs
-    end = float(len(cells))
-    return [*([Piece(0.0, 0.0, first, 0)] if first else []), *found, *([Piece(end, end, last, 0)] if last else [])]
+    ends = []
+    for node, k, place in ((start, 0, 0.0), (at, -1, float(len(cells)))):
+        rate = int(signs(node.tangent[k, -1]))
+        known = rate and (node.radius[k] <= cells.radius[k]).all()
+        ends.append([Piece(place, place, rate, 0)] if known else [])
+    return [*ends[0], *found, *ends[1]]
 
 
 def _turning(

@@ -99,8 +99,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, str]:
-    from continuation.archive import ArchiveError, ArchiveExistsError
-
     if isinstance(error, BrokenPipeError):
         # The reader (head, a pager) has closed.
         return SUCCESS, ""
@@ -110,6 +108,8 @@ def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, st
         return INTERRUPTED, f"{str(error) or 'interrupted'}{where}"
     if isinstance(error, UsageError | plugins.PluginError):
         return BAD_INPUT, str(error)
+    from continuation.archive import ArchiveError, ArchiveExistsError
+
     names, (first, _, complaint) = arguments.names, str(error).partition(":")
     if isinstance(error, ArchiveError):
         typed = names.get("new", "FILE") if isinstance(error, ArchiveExistsError) else names.get("old", "FILE")
