@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from continuation.path import LocatedEvent, Path, Step
     from continuation.path.interrupted import Interrupted
     from continuation.predictors import Predictor
-    from continuation.renewal import Followed, follow
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
     from continuation.step.guard import Guard
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from continuation.step.settings import Settings
     from continuation.step.tracer import Observer, Tracer
     from continuation.tolerance import Tolerance
-    from continuation.tracing import solve_at, trace, trace_both
+    from continuation.tracing import Followed, follow, solve_at, trace, trace_both
 
 _HOMES = {
     "adapters": "from_casadi from_jax from_sympy",
@@ -68,14 +67,13 @@ _HOMES = {
     "path": "LocatedEvent Path Step",
     "predictors": "Predictor",
     "step.presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
-    "renewal": "Followed follow",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
     "step.options": "Options",
     "step.settings": "Settings",
     "step.tracer": "Observer Tracer",
     "tolerance": "Tolerance",
-    "tracing": "solve_at trace trace_both",
+    "tracing": "Followed follow solve_at trace trace_both",
 }
 
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}

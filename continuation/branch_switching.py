@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.arguments.checks import complain, is_number
+from continuation.arguments.checks import expect, is_number
 from continuation.arrays import Array
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
@@ -80,8 +80,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
 
     Raises `TypeError` or `ValueError` if the event is no simple branch point, `ArithmeticError` without rays.
     """
-    if not isinstance(event, LocatedEvent):
-        raise complain(TypeError, "event", "a located event of a path", event)
+    expect(isinstance(event, LocatedEvent), "event", "a located event of a path", event, TypeError)
     if event.kind != Kind.BRANCH_POINT:
         raise ValueError(f"event: expected a branch point, found {event.name!r}")
     evaluator = Evaluator(homotopy, Counts())
@@ -130,8 +129,7 @@ def switch_branch(
     ArithmeticError
         If no point of the other branch is found.
     """
-    if not is_number(step) or not 0.0 < step < np.inf:
-        raise complain(ValueError, "step", "a positive finite number", step)
+    expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     if isinstance(event, LocatedEvent) and event.kind == Kind.KINK:
         return _out_of_kink(event, ray)
     if ray is not None:
@@ -171,6 +169,5 @@ def _out_of_kink(kink: LocatedEvent, ray: int | None) -> tuple[tuple[Array, Arra
     rays = kink.rays if kink.rays is not None else np.empty((0, kink.u.size))
     if ray is None:
         return tuple((kink.u.copy(), v.copy()) for v in rays[2:])
-    if not isinstance(ray, Integral) or not 0 <= ray < len(rays):
-        raise complain(ValueError, "ray", f"the number of one of its {len(rays)} rays", ray)
+    expect(isinstance(ray, Integral) and 0 <= ray < len(rays), "ray", f"the number of one of its {len(rays)} rays", ray)
     return ((kink.u.copy(), rays[ray].copy()),)

@@ -15,7 +15,7 @@ from attrs import astuple, define, field, frozen
 from attrs.validators import optional
 
 from continuation.arguments.checks import integer, one_of, sign
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.locate import root
@@ -38,9 +38,6 @@ CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SING
 
 SPECTRA_KEPT = 12
 """Enough for an arc and an event."""
-
-ON_AXIS = 1e-6
-"""Largest relative real part of a Hopf pair."""
 
 ZERO_RESOLVED = 1e-14
 """Relative real part that is round-off."""
@@ -202,7 +199,7 @@ class BoundHopf:
             return None
         at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
         pairs = self.at(at.u).pairs
-        return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
+        return at if (np.abs(pairs.real) <= SIX_DIGITS * np.abs(pairs)).any() else None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
         """Whether an arc's events explain its change in unstable eigenvalues."""

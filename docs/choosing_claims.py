@@ -1,4 +1,7 @@
-"""What docs/choosing.md states, as tests by the names that the page gives them; parameters are the studies' names."""
+"""What docs/choosing.md states of engines, LCPs and sizes: conditions on the results of a study, by name.
+
+`CLAIMS[study][name]` is a function of the results; `choosing_scenes` has those of scenes.
+"""
 
 import math
 from statistics import median
@@ -7,24 +10,13 @@ from continuation import chart
 
 SERIES = ("Taylor + series range", "Pade + series range")
 IN_XY = ("Wang", "Yu", "Xu", "Zhao", "Kojima")
+PRESETS = ("DEFAULT", "FAST", "CONSERVATIVE", "SERIES")
+REUSE = "bordered, reuse 0.2 (DEFAULT)"
 
 
-class Charts:
-    """The stored results of a folder by study, read when asked for."""
-
-    def __init__(self, folder):
-        self.folder, self._read = folder, {}
-
-    def __getitem__(self, study):
-        if study not in self._read:
-            self._read[study] = chart.read(self.folder / f"{study}.json")
-        return self._read[study]
-
-
-def total(results, method, work="factorizations", **where):
-    """Work over all runs of a method that succeeded, optionally at one rung or on one problem."""
-    rows = [row for row in results.of(method=method) if all(getattr(row, k) == v for k, v in where.items())]
-    return sum(row.work(work) for row in rows if not row.failed)
+def total(results, method, **where):
+    """Factorisations over all runs of a method that succeeded, optionally at one rung or on one problem."""
+    return sum(row.work("factorizations") for row in results.of(method=method, **where) if not row.failed)
 
 
 def ratio(results, a, b, work="factorizations"):
@@ -40,214 +32,168 @@ def ratio(results, a, b, work="factorizations"):
 
 def solved(results, method, **where):
     """Fraction of a method's runs that succeeded."""
-    rows = [row for row in results.of(method=method) if all(getattr(row, k) == v for k, v in where.items())]
+    rows = results.of(method=method, **where)
     return sum(not row.failed for row in rows) / len(rows)
 
 
-def median_excess(results, method, work="factorizations"):
+def median_excess(results, method):
     """Over the runs that succeeded."""
-    far = chart.excess(results, next(iter(results.errors)), work)
+    far = chart.excess(results, next(iter(results.errors)), "factorizations")
     return median(v for row, v in zip(results.rows, far) if row.method == method and math.isfinite(v))
 
 
-# -- presets -------------------------------------------------------------------------------------------------------
+def seconds(results, method, kind):
+    """Median over the problems of a kind that a method solved; None without any."""
+    rows = [row for row in results.of(method=method) if row.problem.startswith(kind) and not row.failed]
+    return median(row.seconds for row in rows) if rows else None
 
 
-PRESETS = ("DEFAULT", "FAST", "CONSERVATIVE", "SERIES")
-
-
-def series_needs_fewest_factorizations(engine_presets):
-    return all(total(engine_presets, "SERIES") < total(engine_presets, name) for name in PRESETS[:3]) and (
-        2.0 < total(engine_presets, "DEFAULT") / total(engine_presets, "SERIES") < 2.8
-    )
-
-
-def other_software_jumps(engine_presets):
-    rows = [row for row in engine_presets.of(problem="exponential-cosine, n = 5") if row.outside and row.failed]
+def other_software_jumps(presets):
+    rows = [row for row in presets.of(problem="exponential-cosine, n = 5") if row.outside and row.failed]
     return all(row.method != "PITCON (dense)" for row in rows) and any(row.failure == "wrong end" for row in rows)
 
 
-def pitcon_is_quick_on_small_dense_systems(engine_presets):
-
-    def seconds(method, kind):
-        rows = [row for row in engine_presets.of(method=method) if row.problem.startswith(kind) and not row.failed]
-        return median(row.seconds for row in rows) if rows else None
-
-    small, large = (seconds("PITCON (dense)", kind) for kind in ("exponential-cosine, n = 5", "Bratu 2D"))
-    return small is None or (
-        5.0 * small < seconds("DEFAULT", "exponential-cosine, n = 5") and large > 1.25 * seconds("DEFAULT", "Bratu 2D")
-    )
+def pitcon_is_quick_on_small_dense_systems(presets):
+    small, large = (seconds(presets, "PITCON (dense)", kind) for kind in ("exponential-cosine, n = 5", "Bratu 2D"))
+    own, whole = (seconds(presets, "DEFAULT", kind) for kind in ("exponential-cosine, n = 5", "Bratu 2D"))
+    return small is None or (5.0 * small < own and large > 1.25 * whole)
 
 
-def series_is_slow_on_small_problems(engine_presets):
-    return ratio(engine_presets, "SERIES", "DEFAULT", "seconds") > 1.5
-
-
-def conservative_costs_several_times_default(engine_presets):
-    return ratio(engine_presets, "CONSERVATIVE", "DEFAULT") > 3.0
-
-
-def presets_never_fail(engine_presets):
-    return all(solved(engine_presets, name) == 1.0 for name in PRESETS)
-
-
-def fast_saves_little(engine_presets):
-    return 0.85 < total(engine_presets, "FAST") / total(engine_presets, "DEFAULT") < 1.0
-
-
-def tolerance_is_cheap(engine_presets):
-    work = [total(engine_presets, "DEFAULT", rung=rung) for rung in sorted({row.rung for row in engine_presets.rows})]
+def tolerance_is_cheap(presets):
+    work = [total(presets, "DEFAULT", rung=rung) for rung in sorted({row.rung for row in presets.rows})]
     return max(work) <= 1.15 * min(work)
 
 
-# -- predictors ----------------------------------------------------------------------------------------------------
-
-
-def hermite_is_near_the_best(engine_predictors):
-    others = [m for m in engine_predictors.methods if m not in SERIES and solved(engine_predictors, m) == 1.0]
-    return total(engine_predictors, "Hermite (DEFAULT)") <= 1.1 * min(total(engine_predictors, m) for m in others)
-
-
-def series_and_pade_pay(engine_predictors):
-    series, pade = SERIES
-    return (
-        0.5 < total(engine_predictors, series) / total(engine_predictors, "Hermite (DEFAULT)") < 0.65
-        and total(engine_predictors, pade) < 0.8 * total(engine_predictors, series)
-    )  # fmt: skip
-
-
-def series_has_the_best_dense_output(engine_steps):
-    rungs = sorted({row.rung for row in engine_steps.rows})
+def series_has_the_best_dense_output(steps):
+    rungs = sorted({row.rung for row in steps.rows})
 
     def error(problem, method, rung):
-        (row,) = (r for r in engine_steps.of(problem=problem, method=method) if r.rung == rung)
+        (row,) = steps.of(problem=problem, method=method, rung=rung)
         return row.errors["curve_distance"]
 
-    return all(
-        100.0 * error(p, SERIES[0], rungs[-1]) < error(p, "Hermite (DEFAULT)", rungs[0]) for p in engine_steps.problems
-    )
+    return all(100.0 * error(p, SERIES[0], rungs[-1]) < error(p, "Hermite (DEFAULT)", rungs[0]) for p in steps.problems)
 
 
-# -- correctors and controllers ------------------------------------------------------------------------------------
-
-DEFAULT_CORRECTOR = "bordered, reuse 0.2 (DEFAULT)"
-
-
-def reuse_saves_factorizations(engine_correctors):
-    return all(
-        ratio(engine_correctors, name, DEFAULT_CORRECTOR) > 2.0
-        and ratio(engine_correctors, name, DEFAULT_CORRECTOR, "solves") < 1.0
-        for name in ("bordered Newton", "Moore-Penrose")
-    )
+def default_controller_is_on_the_front(controllers):
+    far = chart.excess(controllers, "end_point", "factorizations")
+    own = [value for row, value in zip(controllers.rows, far) if row.method == "Allgower-Georg (DEFAULT)"]
+    least = min(total(controllers, name) for name in controllers.methods)
+    return median(own) == 1.0 and max(own) <= 1.75 and total(controllers, "Allgower-Georg (DEFAULT)") == least
 
 
-def default_controller_is_on_the_front(engine_controllers):
-    far = chart.excess(engine_controllers, "end_point", "factorizations")
-    own = [value for row, value in zip(engine_controllers.rows, far) if row.method == "Allgower-Georg (DEFAULT)"]
-    least = min(total(engine_controllers, name) for name in engine_controllers.methods)
-    return median(own) == 1.0 and max(own) <= 1.75 and total(engine_controllers, "Allgower-Georg (DEFAULT)") == least
+def accuracy_is_the_best(series):
+    methods, own = [method for method in series.methods if "Pade" in method], "Pade, accuracy 1e-05 (SERIES)"
+    rejected = {m: sum(row.counts.rejected for row in series.of(method=m)) for m in methods}
+    least = min(total(series, method) for method in methods)
+    return total(series, own) == least and rejected["Pade, accuracy 0.001"] > 50 + rejected[own]
 
 
-def geometric_is_dear(engine_controllers):
-    return ratio(engine_controllers, "geometric (the paper's)", "Allgower-Georg (DEFAULT)") > 2.0
+def solve_is_cheaper_than_the_path(paper):
+    least = {row.problem: row.work("factorizations") for row in paper.of(method="KKT")}
+    cheaper = [row.work("factorizations") < least[row.problem] for row in paper.of(method="solve, auto")]
+    return solved(paper, "solve, auto") == 1.0 and sum(cheaper) >= 0.8 * len(cheaper)
 
 
-# -- metric, series ------------------------------------------------------------------------------------------------
-
-
-def automatic_metric_is_good(engine_metrics):
-    own = total(engine_metrics, "automatic (the default)")
-    return (
-        solved(engine_metrics, "automatic (the default)") == 1.0
-        and own <= total(engine_metrics, "Euclidean")
-        and own < total(engine_metrics, "root mean square")
-    )
-
-
-def pade_pays(engine_series):
-    pairs = (("1e-05 (SERIES)", "1e-05"), ("1e-07", "1e-07"))
-    return all(
-        total(engine_series, f"Pade, accuracy {a}") < 0.75 * total(engine_series, f"series, accuracy {b}")
-        for a, b in pairs
-    )
-
-
-def accuracy_is_the_best(engine_series):
-    methods = [method for method in engine_series.methods if "Pade" in method]
-    rejected = {m: sum(row.counts.rejected for row in engine_series.of(method=m)) for m in methods}
-    own = "Pade, accuracy 1e-05 (SERIES)"
-    return (
-        total(engine_series, own) == min(total(engine_series, method) for method in methods)
-        and rejected["Pade, accuracy 0.001"] > 50 + rejected[own]
-    )
-
-
-# -- linear complementarity ----------------------------------------------------------------------------------------
-
-
-def kkt_solves_the_ten_examples(lcp_paper):
-    return solved(lcp_paper, "KKT") == 1.0 and all(solved(lcp_paper, name) < 1.0 for name in IN_XY)
-
-
-def solve_is_cheaper_than_the_path(lcp_paper):
-    least = {row.problem: row.work("factorizations") for row in lcp_paper.of(method="KKT")}
-    cheaper = [row.work("factorizations") < least[row.problem] for row in lcp_paper.of(method="solve, auto")]
-    return solved(lcp_paper, "solve, auto") == 1.0 and sum(cheaper) >= 0.8 * len(cheaper)
-
-
-def references_fail_on_some(lcp_paper):
-    names = ("Lemke", "modulus", "min-Newton")
-    dear = median_excess(lcp_paper, "KKT")
-    return all(0.0 < solved(lcp_paper, name) < 1.0 and median_excess(lcp_paper, name) < dear for name in names)
-
-
-def modulus_makes_many_solves(lcp_paper):
-    rows = [row for row in lcp_paper.of(method="modulus") if not row.failed]
-    return all(row.counts.factorizations == 1 and row.counts.solves > 20 for row in rows)
-
-
-def kkt_solves_n_matrices(robustness):
-    return solved(robustness, "KKT", family="N") == 1.0 and solved(robustness, "Wang", family="N") == 0.0
-
-
-def wang_series_saves(scaling_lcp):
-    return (
-        solved(scaling_lcp, "Wang") == solved(scaling_lcp, "Wang, series") == 1.0
-        and ratio(scaling_lcp, "Wang, series", "Wang") <= 0.85
-    )
-
-
-def kkt_fails_on_scaled_p(scaling_lcp):
-    rows = [row for row in scaling_lcp.of(family="scaled P", method="KKT") if row.n >= 100]
-    return all(row.failure == chart.Failure.BUDGET for row in rows)
-
-
-def zhao_never_arrives(robustness):
-    return solved(robustness, "Zhao") == 0.0
-
-
-# -- size and robustness -------------------------------------------------------------------------------------------
-
-
-def factorizations_do_not_grow(scaling_curves):
+def factorizations_do_not_grow(curves):
     counts = {}
-    for row in scaling_curves.rows:
+    for row in curves.rows:
         counts.setdefault((row.family, row.method), []).append(row.work("factorizations"))
     return all(max(each) < 1.5 * min(each) for each in counts.values())
 
 
-def series_comes_nearer_with_size(scaling_curves):
-    rows = scaling_curves.of(family="H-equation (dense)")
-    seconds = {(row.method, row.n): row.seconds for row in rows}
-    first, last = (seconds["SERIES", n] / seconds["DEFAULT", n] for n in (10, 1000))
+def series_comes_nearer_with_size(curves):
+    times = {(row.method, row.n): row.seconds for row in curves.of(family="H-equation (dense)")}
+    first, last = (times["SERIES", n] / times["DEFAULT", n] for n in (10, 1000))
     return 2.5 < first < 6.0 and 1.0 < last < min(2.0, first / 1.5)
 
 
-def solve_is_robust_where_theory_says_so(robustness):
-    return all(solved(robustness, "solve, auto", family=f) == 1.0 for f in ("semidefinite", "scaled P", "copositive"))
-
-
-def other_paths_fail_on_indefinite(robustness):
-    return solved(robustness, "KKT", family="indefinite") == 1.0 and all(
-        solved(robustness, name, family="indefinite") < 1.0 for name in IN_XY
-    )
+CLAIMS = {
+    "engine-presets": {
+        "series_needs_fewest_factorizations": lambda r: (
+            all(total(r, "SERIES") < total(r, name) for name in PRESETS[:3])
+            and 2.0 < total(r, "DEFAULT") / total(r, "SERIES") < 2.8
+        ),
+        "other_software_jumps": other_software_jumps,
+        "pitcon_is_quick_on_small_dense_systems": pitcon_is_quick_on_small_dense_systems,
+        "series_is_slow_on_small_problems": lambda r: ratio(r, "SERIES", "DEFAULT", "seconds") > 1.5,
+        "conservative_costs_several_times_default": lambda r: ratio(r, "CONSERVATIVE", "DEFAULT") > 3.0,
+        "presets_never_fail": lambda r: all(solved(r, name) == 1.0 for name in PRESETS),
+        "fast_saves_little": lambda r: 0.85 < total(r, "FAST") / total(r, "DEFAULT") < 1.0,
+        "tolerance_is_cheap": tolerance_is_cheap,
+    },
+    "engine-predictors": {
+        "hermite_is_near_the_best": lambda r: (
+            total(r, "Hermite (DEFAULT)")
+            <= 1.1 * min(total(r, m) for m in r.methods if m not in SERIES and solved(r, m) == 1.0)
+        ),
+        "series_and_pade_pay": lambda r: (
+            0.5 < total(r, SERIES[0]) / total(r, "Hermite (DEFAULT)") < 0.65
+            and total(r, SERIES[1]) < 0.8 * total(r, SERIES[0])
+        ),
+    },
+    "engine-steps": {"series_has_the_best_dense_output": series_has_the_best_dense_output},
+    "engine-correctors": {
+        "reuse_saves_factorizations": lambda r: all(
+            ratio(r, name, REUSE) > 2.0 and ratio(r, name, REUSE, "solves") < 1.0
+            for name in ("bordered Newton", "Moore-Penrose")
+        ),
+    },
+    "engine-controllers": {
+        "default_controller_is_on_the_front": default_controller_is_on_the_front,
+        "geometric_is_dear": lambda r: ratio(r, "geometric (the paper's)", "Allgower-Georg (DEFAULT)") > 2.0,
+    },
+    "engine-metrics": {
+        "automatic_metric_is_good": lambda r: (
+            solved(r, "automatic (the default)") == 1.0
+            and total(r, "automatic (the default)") <= total(r, "Euclidean")
+            and total(r, "automatic (the default)") < total(r, "root mean square")
+        ),
+    },
+    "engine-series": {
+        "pade_pays": lambda r: all(
+            total(r, f"Pade, accuracy {a}") < 0.75 * total(r, f"series, accuracy {b}")
+            for a, b in (("1e-05 (SERIES)", "1e-05"), ("1e-07", "1e-07"))
+        ),
+        "accuracy_is_the_best": accuracy_is_the_best,
+    },
+    "lcp-paper": {
+        "kkt_solves_the_ten_examples": lambda r: (
+            solved(r, "KKT") == 1.0 and all(solved(r, name) < 1.0 for name in IN_XY)
+        ),
+        "solve_is_cheaper_than_the_path": solve_is_cheaper_than_the_path,
+        "references_fail_on_some": lambda r: all(
+            0.0 < solved(r, name) < 1.0 and median_excess(r, name) < median_excess(r, "KKT")
+            for name in ("Lemke", "modulus", "min-Newton")
+        ),
+        "modulus_makes_many_solves": lambda r: all(
+            row.counts.factorizations == 1 and row.counts.solves > 20
+            for row in r.of(method="modulus")
+            if not row.failed
+        ),
+    },
+    "robustness": {
+        "kkt_solves_n_matrices": lambda r: (
+            solved(r, "KKT", family="N") == 1.0 and solved(r, "Wang", family="N") == 0.0
+        ),
+        "zhao_never_arrives": lambda r: solved(r, "Zhao") == 0.0,
+        "solve_is_robust_where_theory_says_so": lambda r: all(
+            solved(r, "solve, auto", family=family) == 1.0 for family in ("semidefinite", "scaled P", "copositive")
+        ),
+        "other_paths_fail_on_indefinite": lambda r: (
+            solved(r, "KKT", family="indefinite") == 1.0
+            and all(solved(r, name, family="indefinite") < 1.0 for name in IN_XY)
+        ),
+    },
+    "scaling-lcp": {
+        "wang_series_saves": lambda r: (
+            solved(r, "Wang") == solved(r, "Wang, series") == 1.0 and ratio(r, "Wang, series", "Wang") <= 0.85
+        ),
+        "kkt_fails_on_scaled_p": lambda r: all(
+            row.failure == chart.Failure.BUDGET for row in r.of(family="scaled P", method="KKT") if row.n >= 100
+        ),
+    },
+    "scaling-curves": {
+        "factorizations_do_not_grow": factorizations_do_not_grow,
+        "series_comes_nearer_with_size": series_comes_nearer_with_size,
+    },
+}

@@ -1,4 +1,4 @@
-"""What docs/choosing.md states of scenes, as tests on their charts; `choosing_claims` has the rest."""
+"""What docs/choosing.md states of scenes: conditions on the results of their study, by name."""
 
 import math
 from statistics import median
@@ -18,80 +18,60 @@ def _finest(results):
     return max(row.rung for row in results.rows)
 
 
-def scenes_are_all_answered(scenes):
-    return solved(scenes, "ours") == 1.0
-
-
 def mesh_errors_are_second_order(scenes):
     coarse, fine = (_at(scenes, "torsion", "ours", rung).errors["answer"] for rung in (0.5, 2.0))
     return 15.0 < coarse / fine < 17.0
 
 
-def ours_beats_bfgs_on_fine_meshes(scenes):
-    return all(
-        2.0 * _at(scenes, scene, "ours").seconds < _at(scenes, scene, "L-BFGS-B (scipy)").seconds
-        for scene in ("membrane", "bearing", "torsion")
-    )
-
-
-def brennan_schwartz_is_quicker(scenes):
-    return ratio(scenes, "ours", "Brennan-Schwartz", "seconds") > 2.0
-
-
-def pooling_is_quicker(scenes):
-    pooled = _at(scenes, "isotonic", "pool adjacent violators")
-    return _at(scenes, "isotonic", "ours").seconds > 8.0 * pooled.seconds
-
-
-def nnls_is_as_exact(scenes):
-    return all(_at(scenes, "unmixing", method).errors["answer"] < 1e-12 for method in ("ours", "nnls (scipy)"))
-
-
-def bfgs_leaves_errors(scenes):
-    return all(
-        _at(scenes, scene, "ours").errors["answer"] < 1e-12
-        and _at(scenes, scene, "L-BFGS-B (scipy)").errors["answer"] > 1e-9
-        for scene in ("isotonic", "denoising")
-    )
-
-
 def lemke_is_quick_on_small_scenes(scenes):
-    tables = "Lemke (tables, numpy)"
-    small = ("block", "box", "braess", "diode-bridge")
-
     def gain(method):
         """Our time over that of the method, median over the scenes; infinite where it takes no part."""
-        rows = [row for row in scenes.of(method=method) if row.problem in small]
+        rows = [row for row in scenes.of(method=method) if row.problem in ("block", "box", "braess", "diode-bridge")]
         return median([_at(scenes, row.problem, "ours", row.rung).seconds / row.seconds for row in rows] or [math.inf])
 
+    tables = "Lemke (tables, numpy)"
     return gain(tables) > 2.0 and gain("Lemke (quantecon)") > 8.0 and _at(scenes, "painleve-rod", tables).failed
 
 
-def _where_asked(results, method, test):
-    """Whether a test holds of every row of an outside method; these take part only in charts with `--compare`."""
-    return all(test(row) for row in results.of(method=method))
-
-
 def piqp_is_quicker_and_less_exact(scenes):
-    def holds(row):
-        ours = _at(scenes, row.problem, "ours", row.rung)
-        return (
-            (row.problem not in MESHES or row.seconds < ours.seconds)
-            and (row.problem != "traffic" or 10.0 * row.seconds < ours.seconds)
-            and (row.problem != "unmixing" or row.errors["answer"] > 1e-5)
-        )
-
-    return _where_asked(scenes, "PIQP", holds)
+    return all(
+        (row.problem not in MESHES or row.seconds < _at(scenes, row.problem, "ours", row.rung).seconds)
+        and (row.problem != "traffic" or 10.0 * row.seconds < _at(scenes, row.problem, "ours", row.rung).seconds)
+        and (row.problem != "unmixing" or row.errors["answer"] > 1e-5)
+        for row in scenes.of(method="PIQP")
+    )
 
 
 def gauss_seidel_slows_down(scenes):
-    return _where_asked(
-        scenes,
-        "projected Gauss-Seidel (numba)",
-        lambda row: (
-            row.problem not in MESHES
-            or row.problem == "string"
-            or row.rung < _finest(scenes)
-            or row.seconds > 5.0 * _at(scenes, row.problem, "ours").seconds
-        ),
+    return all(
+        row.problem not in MESHES
+        or row.problem == "string"
+        or row.rung < _finest(scenes)
+        or row.seconds > 5.0 * _at(scenes, row.problem, "ours").seconds
+        for row in scenes.of(method="projected Gauss-Seidel (numba)")
     )
+
+
+CLAIMS = {
+    "scenes_are_all_answered": lambda r: solved(r, "ours") == 1.0,
+    "mesh_errors_are_second_order": mesh_errors_are_second_order,
+    "ours_beats_bfgs_on_fine_meshes": lambda r: all(
+        2.0 * _at(r, scene, "ours").seconds < _at(r, scene, "L-BFGS-B (scipy)").seconds
+        for scene in ("membrane", "bearing", "torsion")
+    ),
+    "brennan_schwartz_is_quicker": lambda r: ratio(r, "ours", "Brennan-Schwartz", "seconds") > 2.0,
+    "pooling_is_quicker": lambda r: (
+        _at(r, "isotonic", "ours").seconds > 8.0 * _at(r, "isotonic", "pool adjacent violators").seconds
+    ),
+    "nnls_is_as_exact": lambda r: all(
+        _at(r, "unmixing", method).errors["answer"] < 1e-12 for method in ("ours", "nnls (scipy)")
+    ),
+    "bfgs_leaves_errors": lambda r: all(
+        _at(r, scene, "ours").errors["answer"] < 1e-12 and _at(r, scene, "L-BFGS-B (scipy)").errors["answer"] > 1e-9
+        for scene in ("isotonic", "denoising")
+    ),
+    "lemke_is_quick_on_small_scenes": lemke_is_quick_on_small_scenes,
+    # Some rivals take part only in charts with `--compare`.
+    "piqp_is_quicker_and_less_exact": piqp_is_quicker_and_less_exact,
+    "gauss_seidel_slows_down": gauss_seidel_slows_down,
+}

@@ -14,7 +14,7 @@ import pytest
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
 
-from continuation.cli.commands import register
+from continuation.cli import register
 from continuation.cli.parser import Parser
 
 from .util import load

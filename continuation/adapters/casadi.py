@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from continuation.adapters.given import Adapted, filled, library, started
-from continuation.arguments.checks import complain
+from continuation.adapters.given import Adapted, library, matrix_of, started
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import Pattern
 
@@ -32,8 +32,7 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
         If `function` does not fit.
     """
     ca = library("casadi")
-    if not isinstance(function, ca.Function):
-        raise complain(TypeError, "function", "a casadi.Function of (y, lam)", function)
+    expect(isinstance(function, ca.Function), "function", "a casadi.Function of (y, lam)", function, TypeError)
     y0, lam0 = started(start)
     n = y0.size
     inputs = [function.size_in(k) for k in range(function.n_in())]
@@ -52,7 +51,7 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
 
     def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
         H_y, H_lam = slope(y, lam)
-        return filled(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
+        return matrix_of(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
 
     again = partial(from_casadi, target=target), (function, start)
     return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)

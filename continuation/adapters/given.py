@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation.arguments.checks import complain, real_vector
+from continuation.arguments.checks import expect, real_vector
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import SPARSE_FROM
 from continuation.evaluation.pattern import Pattern
@@ -52,15 +52,13 @@ def library(name: str) -> Any:
 
 def started(start: Any) -> tuple[Array, float]:
     """The pair (y0, lam0) as numbers; TypeError or ValueError otherwise."""
-    if not isinstance(start, (tuple, list)) or len(start) != 2:
-        raise complain(ValueError, "start", "a pair (y0, lam0)", start)
+    expect(isinstance(start, (tuple, list)) and len(start) == 2, "start", "a pair (y0, lam0)", start)
     lam0 = real_vector("start", start[1])
-    if lam0.size != 1:
-        raise complain(ValueError, "start", "a pair (y0, lam0) with one number lam0", start)
+    expect(lam0.size == 1, "start", "a pair (y0, lam0) with one number lam0", start)
     return np.atleast_1d(real_vector("start", start[0])).astype(float), float(lam0.item())
 
 
-def filled(pattern: Pattern, entries: Array) -> Matrix:
+def matrix_of(pattern: Pattern, entries: Array) -> Matrix:
     """The matrix with these entries: dense if small or a quarter full."""
     n = pattern.n
     if n >= SPARSE_FROM and 4 * entries.size <= n * n:

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.adapters.given import Adapted, library, started
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import complain, expect
 from continuation.arrays import Array, Matrix
 from continuation.homotopy import TangentPoint
 
@@ -48,10 +48,8 @@ def from_jax(
     if not jax.config.read("jax_enable_x64"):
         wanted = 'jax.config.update("jax_enable_x64", True) before any array of JAX is made'
         raise ValueError(f"jax: expected double precision, by {wanted}, found single")
-    if not callable(residual):
-        raise complain(TypeError, "residual", "a function of (y, lam)", residual)
-    if jacobian not in KINDS:
-        raise complain(ValueError, "jacobian", f"one of {', '.join(KINDS)}", jacobian)
+    expect(callable(residual), "residual", "a function of (y, lam)", residual, TypeError)
+    expect(jacobian in KINDS, "jacobian", f"one of {', '.join(KINDS)}", jacobian)
     y0, lam0 = started(start)
 
     def at(u: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.adapters.given import Adapted, filled, library, started
+from continuation.adapters.given import Adapted, library, matrix_of, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import pattern_of
@@ -84,7 +84,7 @@ def from_sympy(
 
     def jacobian(y: Array, lam: float) -> tuple[Matrix, Array]:
         found = np.array(slope(*y, lam), dtype=float)
-        return filled(pattern, found[: pattern.rows.size]), found[pattern.rows.size :]
+        return matrix_of(pattern, found[: pattern.rows.size]), found[pattern.rows.size :]
 
     return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)
 

@@ -20,7 +20,7 @@ from continuation.archive.hdf5 import StructureError, member, names
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.resume import stored_homotopy
 from continuation.archive.trust import registry
-from continuation.certificate.cells import NAMES, Cells
+from continuation.certificate.cells import COLUMNS, Cells
 from continuation.certificate.certifying import recheck as checked_again
 from continuation.certificate.proof import Gap, Proof
 
@@ -57,7 +57,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
                     del group[str(number)]
                 made = group.create_group(str(number))
                 made.attrs["summary"] = str(proof)[:1000]
-                columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in NAMES}
+                columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in COLUMNS}
                 write_arrays(
                     made, {name: values.astype("i8" if name == "slabs" else "f8") for name, values in columns.items()}
                 )
@@ -80,9 +80,9 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 
 
 def _check(columns: dict[str, Any]) -> None:
-    # Cells may be wider than the path (`continuation.certificate.lifting`).
+    # Cells may be wider than the path (`certifying.SupportsWrittenOut`).
     count, width = columns["begin"].shape
-    for name in NAMES:
+    for name in COLUMNS:
         shape = (count,) if name == "slabs" else (count, 2 if name == "place" else width)
         kind = "i" if name == "slabs" else "f"
         if columns[name].shape != shape or columns[name].dtype.kind != kind or not np.isfinite(columns[name]).all():

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from attrs import Attribute
+from attrs.validators import and_
 
 _SHOWN = 200
 """Characters of a value in a message."""
@@ -24,9 +25,24 @@ def complain(error: type[Exception], name: str, expected: str, value: Any) -> Ex
     return error(f"{name}: expected {expected}, found {shown}{kind}")
 
 
+def expect(fine: Any, name: str, expected: str, value: Any, error: type[Exception] = ValueError) -> None:
+    """Raise the complaint unless `fine`."""
+    if not fine:
+        raise complain(error, name, expected, value)
+
+
 def is_number(value: Any) -> bool:
     """Whether `value` is a real number, not True or False."""
     return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def of_kind(expected: str, holds: Callable[[Any], bool], error: type[Exception] = TypeError) -> Validator:
+    """An attrs validator: an error unless `holds(value)`."""
+
+    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+        expect(holds(value), attribute.alias or attribute.name, expected, value, error)
+
+    return check
 
 
 def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> Validator:
@@ -34,66 +50,37 @@ def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> V
 
     `expected`: allowed numbers, for messages. `allowed`: False for NaN.
     """
-
-    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-        if not is_number(value):
-            raise complain(TypeError, attribute.alias or attribute.name, "a real number", value)
-        if not allowed(float(value)):
-            raise complain(ValueError, attribute.alias or attribute.name, expected, value)
-
-    return check
+    return and_(of_kind("a real number", is_number), of_kind(expected, lambda x: allowed(float(x)), ValueError))
 
 
 def integer(least: float = -math.inf, most: float = math.inf) -> Validator:
     """An attrs validator for integers from `least` to `most`."""
-
-    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-        if not isinstance(value, Integral) or isinstance(value, bool):
-            raise complain(TypeError, attribute.alias or attribute.name, "an integer", value)
-        if value < least:
-            raise complain(ValueError, attribute.alias or attribute.name, f"at least {least:g}", value)
-        if int(value) > most:
-            raise complain(ValueError, attribute.alias or attribute.name, f"at most {most:g}", value)
-
-    return check
+    return and_(
+        of_kind("an integer", lambda x: isinstance(x, Integral) and not isinstance(x, bool)),
+        of_kind(f"at least {least:g}", lambda x: x >= least, ValueError),
+        of_kind(f"at most {most:g}", lambda x: x <= most, ValueError),
+    )
 
 
 def one_of(*values: int) -> Validator:
     """An attrs validator for a few integers."""
     expected = f"one of {', '.join(map(str, values))}"
-
-    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-        if not isinstance(value, Integral) or value not in values:
-            raise complain(ValueError, attribute.alias or attribute.name, expected, value)
-
-    return check
+    return of_kind(expected, lambda x: isinstance(x, Integral) and x in values, ValueError)
 
 
-def of_kind(expected: str, holds: Callable[[Any], bool]) -> Validator:
-    """An attrs validator: TypeError unless `holds(value)`."""
+def check_flag(name: str, value: Any) -> None:
+    """Raise TypeError unless `value` is True or False."""
+    expect(isinstance(value, bool | np.bool_), name, "True or False", value, TypeError)
 
-    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-        if not holds(value):
-            raise complain(TypeError, attribute.alias or attribute.name, expected, value)
 
-    return check
+def check_sign(name: str, value: Any) -> None:
+    """Raise unless `value` is -1, 0 or 1."""
+    expect(is_number(value) and value in (-1, 0, 1), name, "-1, 0 or 1", value)
 
 
 def sign(instance: Any, attribute: Attribute[Any], value: Any) -> None:
     """An attrs validator for -1, 0 or 1."""
     check_sign(attribute.name, value)
-
-
-def check_flag(name: str, value: Any) -> None:
-    """Raise TypeError unless `value` is True or False."""
-    if not isinstance(value, bool | np.bool_):
-        raise complain(TypeError, name, "True or False", value)
-
-
-def check_sign(name: str, value: Any) -> None:
-    """Raise unless `value` is -1, 0 or 1."""
-    if not is_number(value) or value not in (-1, 0, 1):
-        raise complain(ValueError, name, "-1, 0 or 1", value)
 
 
 POSITIVE = number("a positive number", lambda x: x > 0.0)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from types import SimpleNamespace
 from typing import Any
 
 from attrs import field, frozen
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 
 ATTRIBUTES = ("parameter_name", "names", "units")
 """Attributes of homotopies and archive roots."""
@@ -33,15 +34,13 @@ class Labels:
     def of(cls, homotopy: Any) -> Labels:
         """The homotopy's labels; `TypeError` for a wrong type."""
         name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
-        if not isinstance(name, str | None):
-            raise complain(TypeError, "parameter_name", "a text", name)
+        expect(isinstance(name, str | None), "parameter_name", "a text", name, TypeError)
         listed = isinstance(names, Sequence) and not isinstance(names, str)
-        if names is not None and not (listed and all(isinstance(one, str) for one in names)):
-            raise complain(TypeError, "names", "a list of texts, one an unknown", names)
-        if units is not None and not (
-            isinstance(units, Mapping) and all(isinstance(one, str) for pair in units.items() for one in pair)
-        ):
-            raise complain(TypeError, "units", "texts by the names of what they belong to", units)
+        fine = names is None or (listed and all(isinstance(one, str) for one in names))
+        expect(fine, "names", "a list of texts, one an unknown", names, TypeError)
+        mapped = units is None or isinstance(units, Mapping)
+        fine = mapped and all(isinstance(one, str) for pair in (units or {}).items() for one in pair)
+        expect(fine, "units", "texts by the names of what they belong to", units, TypeError)
         return cls(name or "", tuple(names or ()), dict(units or {}))
 
     def attributes(self) -> dict[str, str]:
@@ -59,9 +58,8 @@ class Labels:
             if isinstance(text, str) and text:
                 with suppress(ValueError, RecursionError):
                     found[name] = text if name == "parameter_name" else json.loads(text)
-        made = type("Said", (), found)
         try:
-            said = cls.of(made)
+            said = cls.of(SimpleNamespace(**found))
         except TypeError:
             return cls()
         texts = (said.parameter_name, *said.names, *said.units, *said.units.values())

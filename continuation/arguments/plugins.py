@@ -11,7 +11,6 @@ its summary; the attributes `problem_class` and `references` give purpose and so
 
 from __future__ import annotations
 
-import importlib
 import inspect
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
@@ -85,13 +84,21 @@ class Plugin:
         """
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
-        point = self.points[0]
+        (point,) = self.points
         try:
-            factory: Any = point.load()
+            factory: Factory = point.load()
         except (Exception, SystemExit) as error:  # Imports may raise anything.
+            who = f"{self.origin} " if point.value != self.name else ""
             reason = f"{type(error).__name__}: {error}"
-            raise PluginError(f"{self.name}: {self.origin} cannot be loaded: {reason}") from error
-        return _callable(self.name, factory, self.kind)
+            raise PluginError(f"{self.name}: {who}cannot be loaded: {reason}") from error
+        found = type(factory).__name__
+        if not callable(factory):
+            raise PluginError(f"{self.name}: expected a class or function that makes a {self.kind}, found {found}")
+        try:
+            inspect.signature(factory)
+        except (TypeError, ValueError):
+            raise PluginError(f"{self.name}: expected something with known parameters, found {factory!r:.80}") from None
+        return factory
 
 
 @frozen
@@ -134,7 +141,7 @@ def find(name: str, group: str = GROUP) -> Factory:
         If it cannot be found or loaded.
     """
     if ":" in name:
-        return _imported(name, _KINDS[group])
+        return Plugin(name, (EntryPoint(name, name, group),), _KINDS[group]).load()
     known = available(group)
     if name not in known:
         near = get_close_matches(name, known, n=3)
@@ -223,28 +230,6 @@ def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
 def owner(point: EntryPoint) -> str:
     """Distribution and version of an entry point, or its object."""
     return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
-
-
-def _imported(path: str, kind: str) -> Factory:
-    module, _, attribute = path.partition(":")
-    try:
-        found: Any = importlib.import_module(module)
-        for part in attribute.split("."):
-            found = getattr(found, part)
-    except (Exception, SystemExit) as error:  # Imports may raise anything.
-        raise PluginError(f"{path}: cannot be loaded: {type(error).__name__}: {error}") from error
-    return _callable(path, found, kind)
-
-
-def _callable(name: str, factory: Any, kind: str) -> Factory:
-    if not callable(factory):
-        raise PluginError(f"{name}: expected a class or function that makes a {kind}, found {type(factory).__name__}")
-    try:
-        inspect.signature(factory)
-    except (TypeError, ValueError):
-        raise PluginError(f"{name}: expected something with known parameters, found {factory!r:.80}") from None
-    loaded: Factory = factory
-    return loaded
 
 
 def _written(annotation: Any) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve, field, frozen
 
-from continuation.arguments.checks import check_flag, complain, is_number
+from continuation.arguments.checks import check_flag, expect, is_number
 from continuation.arrays import Array
 from continuation.auditing.length import check_metric, metric_of
 from continuation.budget import Budget
@@ -246,8 +246,7 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
         If the corrector fails.
     """
     require_path(path)
-    if not is_number(s) or not math.isfinite(s):
-        raise complain(TypeError if not is_number(s) else ValueError, "s", "a finite number", s)
+    expect(is_number(s) and math.isfinite(s), "s", "a finite number", s, TypeError if not is_number(s) else ValueError)
     solver = PathSolver(Evaluator(homotopy, Counts()), as_tolerance(tolerance))
     u = path(float(s))
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))

@@ -15,9 +15,9 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, joined
+from continuation.certificate.cells import OVERHANG, SLAB_PARTS, Cells, Index, Slabs, at_node, joined
 from continuation.certificate.engine import Engine, Judged, up_by
-from continuation.certificate.folds import Look, Piece, signs, turning, turns
+from continuation.certificate.folds import Observe, Piece, signs, turning, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
@@ -29,13 +29,10 @@ from continuation.status import Kind, Status
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
 """Distances from an arc's end, in lengths of the last cell, at which a switch's sign is tried."""
 
-ARC_PARTS = 4
-"""Parts of a slab: a switch that vanishes at both ends has a sign in between."""
-
 NO_KINK = "a kink is listed where there is none"
 NOT_LISTED = "a kink that the path does not list"
 
-Prove = Callable[[Any, Path, Cells | None, Look], tuple[Proof, Engine, list[list[Piece]]]]
+Prove = Callable[[Any, Path, Cells | None, Observe], tuple[Proof, Engine, list[list[Piece]]]]
 
 
 @frozen(eq=False)
@@ -148,16 +145,16 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
 # The switches along an arc
 
 
-def _look_at(switches: ByIntervals) -> Look:
+def _look_at(switches: ByIntervals) -> Observe:
     """Return a function that observes the parameter's rate, switches, and their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
-        owner = np.repeat(np.arange(len(slabs)), ARC_PARTS)
-        box, t = slabs.halved(ARC_PARTS).box(radius[owner]), judged.tangent(radius, radius)[owner]
+        owner = np.repeat(np.arange(len(slabs)), SLAB_PARTS)
+        box, t = slabs.halved(SLAB_PARTS).box(radius[owner]), judged.tangent(radius, radius)[owner]
         image = switches.image(with_gradient(box.lo, box.hi))
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, radius.shape[1])), t[..., None])
-        both = (x.T.reshape(-1, len(slabs), ARC_PARTS) for x in (signs(image.c[0]), signs(slope[..., 0])))
+        both = (x.T.reshape(-1, len(slabs), SLAB_PARTS) for x in (signs(image.c[0]), signs(slope[..., 0])))
         return [*turning(judged, slabs, radius), *zip(*both)]
 
     return look

@@ -9,13 +9,18 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
-from continuation.numbers.ends import EPS, Ends, bilinear, thin
+from continuation.arrays import EPS, Array
+from continuation.numbers.ends import Ends, bilinear, thin
 
 Index = NDArray[np.intp]
 
 OVERHANG = 1e-3
 """Overlap of a tube with its neighbours, relative to its length."""
+
+SLAB_PARTS = 4
+"""Parts of a slab that are looked at apart: for H on the cubic, whose remainder is of third order, and for signs of
+what may vanish inside; twice as many for the parameter's rate, or two turning points 1e-10 apart are not told apart.
+With eight for H the exponential cosines with n = 8 take a third longer, in as many boxes."""
 
 
 @frozen(eq=False)
@@ -41,22 +46,22 @@ class Cells:
 
     def take(self, index: Any) -> Cells:
         """Select cells."""
-        return Cells(*(getattr(self, name)[index] for name in NAMES))
+        return Cells(*(getattr(self, name)[index] for name in COLUMNS))
 
     def with_tubes(self, radius: Array, slabs: Index) -> Cells:
         """Replace radii and slabs."""
         return evolve(self, radius=radius, slabs=slabs)
 
 
-NAMES = tuple(Cells.__annotations__)
+COLUMNS = tuple(Cells.__annotations__)
 
 
 def joined(parts: list[Cells]) -> Cells:
     """Concatenate."""
-    return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in NAMES))
+    return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in COLUMNS))
 
 
-def between(
+def cell_between(
     begin: Array, tangent_begin: Array, end: Array, tangent_end: Array, weights: Array, place: tuple[float, float]
 ) -> Cells:
     """The cell between two nodes, without a tube; the chart is orthogonal to the chord in the metric.

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.auditing.length import metric_of
+from continuation.auditing.retrace import Halved
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.cells import Cells, cell_between, joined
 from continuation.certificate.closing import NEXT_TO_END, made
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Look, Piece, turning
+from continuation.certificate.folds import Observe, Piece, turning
 from continuation.certificate.krawczyk import engine_of
-from continuation.certificate.lifting import lifted
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tubes import Tubes, check, search
 from continuation.certificate.verify import verified
@@ -26,10 +26,12 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
 from continuation.metric import norm
-from continuation.path import Path
+from continuation.path import Path, Step
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
+from continuation.step.options import Options
+from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance
 
 CELL_HALVINGS = 8
@@ -41,9 +43,6 @@ TAIL_NODES = 60
 NEARER = 0.25
 """Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
 boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
-
-LARGE_NUMBERS = 4_000_000
-"""Length of a 32 MB array, the largest with the effect below."""
 
 
 @frozen(eq=False)
@@ -103,10 +102,8 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
     return _smooth(homotopy, path, cells, turning)[0]
 
 
-def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Look) -> tuple[Proof, Engine, list[list[Piece]]]:
+def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tuple[Proof, Engine, list[list[Piece]]]:
     """A proof, its engine, and pieces of each observed number, beginning with the parameter's rate."""
-    # Once a large array was freed, glibc keeps freed memory; requesting pages otherwise takes a third of a proof.
-    np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy)
     if cells is None:
         tubes, gaps = TubeSearch(engine, homotopy, path, look).run()
@@ -135,7 +132,7 @@ class TubeSearch:
     engine: Engine
     homotopy: Any
     path: Path
-    look: Look
+    look: Observe
 
     def run(self) -> tuple[Tubes, list[Gap]]:
         """Proved cells in order, and gaps."""
@@ -209,7 +206,7 @@ def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
 
 
 def _cell(a: Node, b: Node) -> Cells:
-    return between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
+    return cell_between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
@@ -219,3 +216,90 @@ def _weights(homotopy: Any, path: Path) -> list[Array]:
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)
         out.append(usual if after.weights is None else after.weights)
     return out
+
+
+# Paths with further unknowns, with which the residual is plain arithmetic
+
+
+@runtime_checkable
+class SupportsWrittenOut(Protocol):
+    """A homotopy that eliminates unknowns by factorisations."""
+
+    def written_out(self, points: Array) -> Any:
+        """The homotopy with all unknowns, or None.
+
+        Its `lifted(u, before)` puts the further unknowns in front of u, near those of `before`.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, N + 1)
+            Points of the path.
+        """
+        ...
+
+
+def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
+    """The homotopy and path to prove, perhaps with further unknowns, or an empty proof with a reason.
+
+    Nodes of `cells` give those of the points that they share.
+    """
+    points = path.u
+    width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))
+    try:
+        whole = homotopy.written_out(points) if isinstance(homotopy, SupportsWrittenOut) else None
+        longer = path if whole is None else _lifted(whole, path, cells)
+    except ArithmeticError as error:
+        return Proof.empty(width, Gap(*ends, f"the equations cannot be written out there ({error})"))
+    needed = longer.steps[0].u.size
+    if cells is not None and cells.begin.shape[1] != needed:
+        return Proof.empty(width, Gap(*ends, f"tubes have {cells.begin.shape[1]} components, not {needed}"))
+    return homotopy if whole is None else whole, longer
+
+
+def _lifted(whole: Any, path: Path, cells: Cells | None) -> Path:
+    rows = () if cells is None else (*cells.begin, *cells.end)
+    known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}
+    steps: list[Step] = []
+    before = None
+    for step in path.steps:
+        found = known.get(step.u.tobytes())
+        before = whole.lifted(step.u, before) if found is None else found
+        steps.append(evolve(step, u=before, tangent=np.full_like(before, np.nan), weights=None))
+    events = []
+    for event in path.events:
+        u = whole.lifted(event.u, steps[min(event.step, len(steps) - 1)].u)
+        events.append(evolve(event, u=u, tangent=np.full_like(u, np.nan)))
+    return evolve(path, steps=steps, events=events)
+
+
+# Steps short enough for a proof
+
+TRACES = 4
+"""Most traces; each halves the steps."""
+
+
+@one_thread
+def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
+    """Options with which the path, or its longest part, is proved, and the proof, if any.
+
+    The recorded trace is the proved one: traces with the same number of threads are equal.
+    """
+    best: tuple[Options, Proof] | None = None
+    tried = options
+    for _ in range(TRACES):
+        tracer = Tracer(homotopy, **tried)
+        for _ in tracer:
+            pass
+        if len(tracer.path) < 2:
+            break
+        proof = certify(tracer.path, homotopy)
+        if best is None or _missing(proof) < _missing(best[1]):
+            best = tried, proof
+        if proof.complete:
+            break
+        tried = {**options, "controller": Halved(tracer.path.arclength)}
+    return best if best is not None else (options, None)
+
+
+def _missing(proof: Proof) -> tuple[float, int]:
+    return sum(gap.end - gap.begin for gap in proof.gaps), len(proof.gaps)

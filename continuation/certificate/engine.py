@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -115,3 +116,21 @@ def up_by(x: Array, count: int) -> Array:
     """Upper bound of sums of `count` products >= 0, rounded in any order."""
     bound: Array = x * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
     return bound
+
+
+def times(matrix: Array, x: Array) -> Array:
+    """Matrix times vector, slab by slab."""
+    product: Array = np.matmul(matrix, x[..., None])[..., 0]
+    return product
+
+
+def inverses(matrices: Array) -> Array:
+    """Approximate inverses; nan for singular matrices."""
+    try:
+        return np.asarray(np.linalg.inv(matrices), dtype=float)
+    except np.linalg.LinAlgError:
+        out = np.full_like(matrices, np.nan)
+        for k, matrix in enumerate(matrices):
+            with suppress(np.linalg.LinAlgError):
+                out[k] = np.linalg.inv(matrix)
+        return out

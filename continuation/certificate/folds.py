@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node
 from continuation.certificate.engine import Engine, Judged
-from continuation.numbers.ends import EPS, Ends
+from continuation.numbers.ends import Ends
 
 RANGE = 0.25
 """Largest range, in cells, that locates a turning point."""
@@ -18,7 +18,7 @@ RANGE = 0.25
 SIGN_PLACES = 32
 """Places in a range at which the sign is tried, twice: a thousandth of it is left."""
 
-Look = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
+Observe = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
 """Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
 slabs, shape (slabs, parts)."""
 
@@ -59,7 +59,7 @@ def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, In
     return [(signs(slope), signs(bend))]
 
 
-def pieces(look: Look, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
+def pieces(look: Observe, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
     """Pieces of `count` cells for each number: a slab with one sign, else its parts."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]

@@ -17,14 +17,13 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
-from continuation.certificate.cells import Slabs, cell_sizes
-from continuation.certificate.engine import Engine, SupportsProofEngine, up_by
-from continuation.certificate.inverse import inverses, times
+from continuation.arrays import EPS, Array
+from continuation.certificate.cells import SLAB_PARTS, Slabs, cell_sizes
+from continuation.certificate.engine import Engine, SupportsProofEngine, inverses, times, up_by
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient
-from continuation.numbers.ends import EPS, Ends, Mask, accumulated, bilinear, moved, thin
+from continuation.numbers.ends import Ends, Mask, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 500_000
@@ -33,12 +32,6 @@ RESIDUAL_NUMBERS = 500_000
 DIRECTIONS_THAT_PAY = 16
 """Unknowns up to which second derivatives pay: they save nine boxes of ten with 10 (exponential-cosine), none with 30
 (Bratu), where the proof takes eight times as long."""
-
-TUBE_STRETCHES = 8
-"""Parts of a slab where the parameter may turn."""
-
-MISFIT_PARTS = 4
-"""Parts of a slab to bound H on the cubic: Taylor's remainder is of third order."""
 
 
 @frozen(eq=False)
@@ -106,7 +99,7 @@ class ByIntervals:
             D = np.where(along, D, 0.0)
             square = np.abs(np.matmul(E, E)) + np.matmul(size_E, accumulated(m) * size_E + D)
             off = up_by(R + x * (D + np.matmul(size_E, R) + x * square), 4 * m)
-            misfit = self._misfit(slabs, Y, MISFIT_PARTS if moving else 1)
+            misfit = self._misfit(slabs, Y, SLAB_PARTS if moving else 1)
             misfit = up_by(misfit + x[:, 0] * times(size_E, misfit), m + 2)
         return Bounded(self, slabs, misfit, Y, off, radius, E)
 
@@ -204,11 +197,11 @@ class Bounded:
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
         """See `Judged.pace`, with c . t = 1. Slabs without a sign are cut: images of wide boxes become a tenth."""
-        slope = self.tangent(radius, tube)[:, -1:]
-        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], TUBE_STRETCHES, axis=3)
+        slope, most = self.tangent(radius, tube)[:, -1:], 2 * SLAB_PARTS
+        ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], most, axis=3)
         with np.errstate(all="ignore"):
             asked = (self._image(radius) < radius).all(axis=1) & ~(slope.lo * slope.hi > 0.0)[:, 0]
-        for cuts in (1, TUBE_STRETCHES):
+        for cuts in (1, most):
             if not asked.any():
                 break
             r = np.repeat(radius[asked], cuts, axis=0)
@@ -219,7 +212,7 @@ class Bounded:
                 r = np.where(image < r, np.maximum(image, 1e-9 * r), r)
                 judged = self.engine.judge(parts, r)
             found = np.array([[x.lo, x.hi] for x in judged.turned(r)])
-            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), TUBE_STRETCHES // cuts, axis=3)
+            ends[:, :, asked] = np.repeat(found.reshape(2, 2, -1, cuts), most // cuts, axis=3)
             asked &= ~(ends[:, 0] * ends[:, 1] > 0.0).any(axis=0).all(axis=1)
         return Ends(*ends[0]), Ends(*ends[1])
 

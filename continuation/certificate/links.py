@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, at_node
 from continuation.certificate.engine import Engine, Judged, together, up_by
-from continuation.numbers.ends import EPS, Ends, Mask
+from continuation.numbers.ends import Ends, Mask
 
 RADII = 12
 """Radii tried with one test's bounds."""
@@ -22,11 +22,8 @@ RADII = 12
 INFLATION = 1.1
 """Factor from image to next radii: fixed points are approached from above."""
 
-LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
-"""Least box, and first box for derivatives, in radii of the tube."""
-
 NODE_ULPS = 32.0
-"""Least box, in ulps."""
+"""Least box, and least radius of a tube, in ulps: round-off alone must not fill it."""
 
 
 @frozen(eq=False)
@@ -65,13 +62,10 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
 def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
-    least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
-    for bounded in (FIRST_BOX * cells.radius + 4.0 * least, cells.radius):
-        judged = engine.judge(slabs, bounded)
-        radius, _, done = settled(judged, slabs.owner, least, bounded)
-        done &= (radius <= bounded).all(axis=1)
-        if done.all():
-            break
+    least = NODE_ULPS * EPS * (np.abs(u) + cells.radius)
+    judged = engine.judge(slabs, cells.radius)
+    radius, _, done = settled(judged, slabs.owner, least, cells.radius)
+    done &= (radius <= cells.radius).all(axis=1)
     return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import NAMES, Cells
+from continuation.certificate.cells import COLUMNS, Cells
 
 
 @frozen
@@ -117,7 +117,7 @@ class Proof:
     @property
     def shadow(self) -> Cells:
         """Cells in the path's unknowns."""
-        rows = {name: getattr(self.cells, name)[:, -self.width :] for name in NAMES if name not in ("slabs", "place")}
+        rows = {name: getattr(self.cells, name)[:, -self.width :] for name in COLUMNS if name not in ("slabs", "place")}
         return evolve(self.cells, **rows)
 
     def of_width(self, width: int) -> Proof:
@@ -161,6 +161,6 @@ class Proof:
         -------
         matplotlib axes
         """
-        from continuation.plot.tube import plot_tube
+        from continuation.plot.along import plot_tube
 
         return plot_tube(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

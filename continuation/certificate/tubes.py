@@ -5,24 +5,18 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
-from continuation.certificate.folds import Look, Piece, pieces
-from continuation.certificate.links import INFLATION, largest_by_cell, settled
-from continuation.numbers.ends import EPS, Mask
+from continuation.certificate.folds import Observe, Piece, pieces
+from continuation.certificate.links import INFLATION, NODE_ULPS, largest_by_cell, settled
+from continuation.numbers.ends import Mask
 
 LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
 
-STILL_ULPS = 1024.0
-"""Least radius of components that stand still, in ulps."""
-
 FIRST_RADII = 0.05
 """First radii, in slab lengths; derivatives widen in proportion."""
-
-CELL_TESTS = 6
-"""Most tests of a cell."""
 
 CONTRACTING = 0.6
 """Bound of |I - Y G'| above which slabs are halved: it falls with their length."""
@@ -72,19 +66,19 @@ class Tubes:
         return [[piece for part in parts for piece in part] for parts in zip(*placed)]
 
 
-def search(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Find radii and slabs; `cells.radius` holds unit lengths."""
     return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
 
 
-def _search(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
-    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    least = LEAST_RADIUS * scale + NODE_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[list[Piece]]] = [[] for _ in range(count)]
     pending = np.arange(count)
-    for _ in range(CELL_TESTS):
+    for _ in range(engine.most):
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
@@ -120,7 +114,7 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells, look: Look) -> Tubes:
+def check(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Test cells with their own tubes."""
     found = []
     for place in together(engine, cells):

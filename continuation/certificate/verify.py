@@ -7,15 +7,16 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve
+from scipy.optimize import brentq
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import RANGE, Piece, located, turns
+from continuation.certificate.folds import RANGE, Piece, located, signs, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.numbers.ends import EPS, Mask, thin
+from continuation.numbers.ends import Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 
@@ -26,9 +27,6 @@ NOWHERE = "where the parameter turns is not known"
 
 POINT_DISTANCE = 1e-4
 """Allowed distance of points and events from the curve, in steps; events are located to 1e-6."""
-
-PARAMETER_STEPS = 30
-"""Newton steps from a cell's middle."""
 
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
@@ -122,13 +120,12 @@ def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
 
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
     """Add signs at first and last point."""
-    signs = []
-    for node, k in ((start, 0), (at, -1)):
-        lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
-        signs.append(int(np.sign(lo)) if lo * hi > 0.0 and (node.radius[k] <= cells.radius[k]).all() else 0)
-    first, last = signs
-    end = float(len(cells))
-    return [*([Piece(0.0, 0.0, first, 0)] if first else []), *found, *([Piece(end, end, last, 0)] if last else [])]
+    ends = []
+    for node, k, place in ((start, 0, 0.0), (at, -1, float(len(cells)))):
+        rate = int(signs(node.tangent[k, -1]))
+        known = rate and (node.radius[k] <= cells.radius[k]).all()
+        ends.append([Piece(place, place, rate, 0)] if known else [])
+    return [*ends[0], *found, *ends[1]]
 
 
 def _turning(
@@ -185,7 +182,8 @@ def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
     """Cell index + parameter of an event; arclength tells only the step."""
     step = min(max(int(np.searchsorted(path.arclength, event.arclength)), 1), len(path) - 1)
     begin, end = path.arclength[step - 1 : step + 1]
-    for k in np.flatnonzero((begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end)).tolist():
+    here = (begin <= cells.place[:, 1]) & (cells.place[:, 0] <= end) & np.isfinite(event.u).all()
+    for k in np.flatnonzero(here).tolist():
         cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
         if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
@@ -198,9 +196,7 @@ def _parameter(cell: Cells, u: Array) -> Array:
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
     cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])
-    t, slope = 0.5, cubic.deriv()
-    for _ in range(PARAMETER_STEPS):
-        t = min(max(t - cubic(t) / slope(t), 0.0), 1.0)
+    t = 0.0 if cubic(0.0) >= 0.0 else 1.0 if cubic(1.0) <= 0.0 else brentq(cubic, 0.0, 1.0, xtol=EPS)
     return np.array([t])
 
 

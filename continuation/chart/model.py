@@ -10,6 +10,7 @@ from attrs import Factory, field, frozen
 from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array
 from continuation.counts import Counts
+from continuation.homotopy import Homotopy, offers
 from continuation.path import Path
 from continuation.step.options import Options, check_names
 from continuation.step.presets import CONSERVATIVE
@@ -125,12 +126,13 @@ class Problem:
     subject: Any
     truth: Truth = field(factory=Truth)
     options: Mapping[str, Any] = field(factory=dict)
-    n: int = field()
+    n: int = field(default=Factory(lambda problem: order_of(problem.subject), takes_self=True))
     family: str = field(default=Factory(lambda problem: problem.name, takes_self=True))
 
-    @n.default
-    def _size(self) -> int:
-        return len(self.subject.start()[0]) if hasattr(self.subject, "start") else int(getattr(self.subject, "n", 0))
+
+def order_of(subject: Any) -> int:
+    """The number of unknowns of a homotopy, or of a problem that says it."""
+    return len(subject.start()[0]) if offers(subject, Homotopy) else int(getattr(subject, "n", 0))
 
 
 @frozen(eq=False)
@@ -203,6 +205,6 @@ def traced(name: str, **options: Unpack[Options]) -> Method:
 
 def answer_of(path: Path) -> Answer:
     """Convert a path to an answer."""
-    if not path.steps:
-        return Answer(path.counts, path, message=path.message)
-    return Answer(path.counts, path, path.endpoint.u, path.endpoint.observed, message=path.message)
+    end = path.endpoint if path.steps else None
+    u, observed = (None, dict[str, float]()) if end is None else (end.u, end.observed)
+    return Answer(path.counts, path, u, observed, message=path.message)

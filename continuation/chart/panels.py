@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-from scipy.optimize import isotonic_regression
-
 from continuation.chart.results import ERROR_FLOOR, Results
 from continuation.plot.drawing import COLOURS, STYLES, require_matplotlib
 
@@ -72,12 +69,12 @@ def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) 
     axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
     axes.tick_params(axis="y", length=0.0)
     plain_ticks(axes.xaxis)
-    tidy(axes)
+    gridded(axes)
     axes.grid(axis="y", visible=False)
     return figure, axes
 
 
-def tidy(axes: Axes) -> None:
+def gridded(axes: Axes) -> None:
     """Remove the frame; add a light grid."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(which="major", color="0.9", linewidth=0.6)
@@ -103,21 +100,3 @@ def to_round_off(axes: Axes) -> None:
         axes.axvline(ERROR_FLOOR, color="0.7", linewidth=0.8, zorder=0)
         where = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": "x-small", "color": "0.5"}
         axes.annotate("round-off", (ERROR_FLOOR, 0.94), (-3, 0), textcoords="offset points", **where)
-
-
-def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None:
-    """Write names (x, y, text, colour) beside the panel, apart, and tie them to their points."""
-    if not ends:
-        return
-    ends = sorted(ends, key=lambda end: end[1])
-    to_panel = axes.transData + axes.transAxes.inverted()
-    heights = np.array([to_panel.transform((x, y))[1] for x, y, _, _ in ends])
-    # Panels take three quarters of the figure.
-    rows = axes.get_subplotspec().get_gridspec().nrows
-    apart = LINE / (0.75 * axes.figure.get_size_inches()[1] / rows) * np.arange(len(ends))
-    places = isotonic_regression(heights - apart).x + apart
-    places = np.minimum(np.maximum(places, apart), max(1.0, apart[-1]) - apart[::-1])
-    for place, (x, y, text, colour) in zip(places, ends):
-        tie = {"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 4.0, "relpos": (0, 0.5)}
-        where: dict[str, Any] = {"textcoords": "axes fraction", "va": "center", "annotation_clip": False}
-        axes.annotate(text, (x, y), (1.05, place), fontsize="small", color=colour, arrowprops=tie, **where)

@@ -13,12 +13,11 @@ from continuation.chart.panels import (
     Axes,
     Figure,
     Mark,
+    gridded,
     looks_of,
-    name_ends,
     panels,
     plain_ticks,
     rows_of_marks,
-    tidy,
     to_round_off,
 )
 from continuation.chart.results import WORK, Results, Row, by_size, excess, some
@@ -92,8 +91,14 @@ class Lines:
         return method + (f" ({failed} of {len(rows)} failed)" if failed else ""), look, points
 
     def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
-        for _, look, points in lines:
-            axes.plot(*np.reshape(points, (-1, 2)).T, **look)
+        drawn = [
+            (points[-1][1] if points else 0.0, axes.plot(*np.reshape(points, (-1, 2)).T, label=name, **look)[0])
+            for name, look, points in lines
+            if points or "failed" in name
+        ]
+        # The key has the order of the curves' ends.
+        key = [line for _, line in sorted(drawn, key=lambda pair: -pair[0])]
+        axes.legend(handles=key, loc="upper left", bbox_to_anchor=(1.0, 1.03), frameon=False, fontsize="small")
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.margins(x=0.06, y=0.08)
@@ -102,12 +107,7 @@ class Lines:
         else:
             plain_ticks(axes.xaxis)
         plain_ticks(axes.yaxis)
-        tidy(axes)
-        name_ends(axes, [(*points[-1], name, look["color"]) for name, look, points in lines if points])
-        absent = [name.split(" (")[0] for name, _, points in lines if not points and "failed" in name]
-        if absent:
-            text = f"failed: {', '.join(absent)}"
-            axes.annotate(text, (0.02, 0.02), xycoords="axes fraction", fontsize="x-small", color="0.4")
+        gridded(axes)
 
 
 @frozen
@@ -165,7 +165,7 @@ ACCURACY = (
 
 @frozen
 class Dumbbell:
-    """Best outside method against ours, a row for each problem, sorted by ratio; colours show errors.
+    """Best outside method, named in a remark, against ours, a row for each problem by ratio; colours show errors.
 
     The best is the quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
 
@@ -200,14 +200,6 @@ class Dumbbell:
         marked = [(name, [self._mark(row) for row in rows], said) for name, rows, said in lines]
         figure, axes = rows_of_marks(results.title, marked)
         axes.set_xlabel(WORK[self.work])
-        if not self.every:
-            axes.margins(x=0.35)
-            for k, (_, rows, _) in enumerate(lines):
-                for row in rows[1:]:
-                    side = -1 if row.work(self.work) < rows[0].work(self.work) else 1
-                    looks = {"ha": "right" if side < 0 else "left", "va": "center", "color": "0.35"}
-                    where = (row.work(self.work), -k), (7 * side, 0)
-                    axes.annotate(row.method, *where, textcoords="offset points", fontsize="x-small", **looks)
         key = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *((name, "s", c) for name, _, c in ACCURACY)]
         handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in key]
         figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False, fontsize="small",
@@ -226,10 +218,11 @@ class Dumbbell:
             last = max((row.rung for row in rows), default=math.nan)
             ranked = sorted((row for row in rows if row.rung == last), key=lambda row: row.work(self.work))
             ours, best = ([row for row in ranked if row.outside is outside][:1] for outside in (False, True))
-            ratio = best[0].work(self.work) / ours[0].work(self.work) if best and ours else math.nan
-            much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
-            alone = "no rival" if ours else "ours failed"
-            said = f"{much} quicker" if ratio >= 1.0 else f"{much} slower" if ratio < 1.0 else alone
+            ratio, said = math.nan, "no rival" if ours else "ours failed"
+            if best and ours:
+                ratio = best[0].work(self.work) / ours[0].work(self.work)
+                much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
+                said = f"{much} {'quicker' if ratio >= 1.0 else 'slower'} than {best[0].method}"
             found.append((math.inf if math.isnan(ratio) else -ratio, (problem, ours + best, said)))
         return [line for _, line in sorted(found, key=lambda pair: pair[0])]
 

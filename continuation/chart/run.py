@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from pathlib import Path as File
@@ -40,8 +41,8 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         for rung in study.ladder
     ]
     rows: list[Row] = []
-    for problem, method, rung in cases:
-        rows.append(_row(study, problem, method, rung))
+    for case in cases:
+        rows.append(_row(study, *case))
         if watch is not None:
             watch(len(rows), len(cases), rows[-1])
     return Results(
@@ -90,19 +91,18 @@ def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]
 def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
     """The pair (failure, message); a right end with wrong turning points means a jump or a missed loop."""
     path, truth = answer.path, problem.truth
+    off = math.nan if answer.end is None else distance(answer.end, truth.end)
     if answer.failure:
         return answer.failure, answer.message
     if path is not None and not path.success:
         ended = path.status.name.lower().replace("_", " ")
         return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else ended, path.message
-    if path is not None and truth.turns is not None and len(path.turning_points) != truth.turns:
+    if path is not None and truth.turns not in (None, len(path.turning_points)):
         return Failure.JUMP, f"{len(path.turning_points)} turning points, the path has {truth.turns}"
-    if truth.end is None:
-        return Failure.NONE, answer.message
-    if answer.end is None:
+    if truth.end is not None and answer.end is None:
         return Failure.STOPPED, answer.message or "no end point"
-    error = distance(answer.end, truth.end)
-    return (Failure.NONE, answer.message) if error <= WRONG else (Failure.WRONG_END, f"the end is {error:.1e} away")
+    right = truth.end is None or off <= WRONG
+    return (Failure.NONE, answer.message) if right else (Failure.WRONG_END, f"the end is {off:.1e} away")
 
 
 def tables(results: Results) -> dict[str, Table]:

@@ -12,12 +12,9 @@ from attrs.validators import min_len
 
 from continuation.arguments.checks import integer
 from continuation.arrays import Array
+from continuation.auditing import refine
 from continuation.chart.model import Answer, Method, Problem, Rung, tolerances
 from continuation.chart.results import WORK, some
-from continuation.correctors import MoorePenrose
-from continuation.counts import Counts
-from continuation.evaluation.evaluator import Evaluator
-from continuation.point.linearization import linearize
 from continuation.tolerance import Tolerance
 
 Size = Literal["smoke", "moderate", "full"]
@@ -46,34 +43,21 @@ class Error:
     measure: Callable[[Problem, Answer], float]
 
 
-def distance(found: Array, true: Array) -> float:
-    """Largest component difference over 1 + largest true component."""
-    return float(np.abs(found - true).max() / (1.0 + np.abs(true).max()))
-
-
-def _end_point(problem: Problem, answer: Answer) -> float:
-    true = problem.truth.end
-    return math.nan if true is None or answer.end is None else distance(answer.end, true)
-
-
-BETWEEN = (0.25, 0.5, 0.75)
+def distance(found: Array, true: Array | None) -> float:
+    """Largest component difference over 1 + largest true component; nan if that is not known."""
+    return math.nan if true is None else float(np.abs(found - true).max() / (1.0 + np.abs(true).max()))
 
 
 def _curve_distance(problem: Problem, answer: Answer) -> float:
     path = answer.path
     if path is None or len(path) < 2:
         return math.nan
-    s = path.arclength
-    evaluator, corrector = Evaluator(problem.subject, Counts()), MoorePenrose(max_contraction=10.0)
-    distances = []
-    for u in path(np.concatenate([s, *(s[:-1] + part * np.diff(s) for part in BETWEEN)])):
-        try:
-            here = linearize(evaluator, u, np.ones_like(u), np.ones_like(u))
-            found = corrector.correct(evaluator, here, u, here.border, Tolerance(relative=1e-12))
-        except ArithmeticError:
-            return math.nan
-        distances.append(distance(u, found.u) if found.converged else math.nan)
-    return float(np.max(distances))
+    s, accuracy = path.arclength, Tolerance(relative=1e-12)
+    places = np.concatenate([s, *(s[:-1] + part * np.diff(s) for part in (0.25, 0.5, 0.75))])
+    try:
+        return max(distance(path(t), refine(problem.subject, path, t, accuracy)) for t in places.tolist())
+    except ArithmeticError:
+        return math.nan
 
 
 def observed(name: str, label: str) -> Error:
@@ -89,7 +73,11 @@ def observed(name: str, label: str) -> Error:
     return Error(name, label, lambda problem, answer: float(answer.observed.get(name, math.nan)))
 
 
-END_POINT = Error("end_point", "relative error of the end point", _end_point)
+END_POINT = Error(
+    "end_point",
+    "relative error of the end point",
+    lambda problem, answer: math.nan if answer.end is None else distance(answer.end, problem.truth.end),
+)
 CURVE_DISTANCE = Error("curve_distance", "relative distance of the dense output from the curve", _curve_distance)
 
 
@@ -97,10 +85,6 @@ def _named_once(study: Study, attribute: Attribute[Any], value: Any) -> None:
     names = [getattr(item, "name", None) for item in value] if isinstance(value, Sequence) else []
     if not names or None in names or len(set(names)) < len(names):
         raise ValueError(f"{attribute.name}: expected a list of some, each with a name of its own, found {value!r}")
-
-
-def _known(study: Study, attribute: Attribute[Any], value: Sequence[str]) -> None:
-    some("work", value, WORK)
 
 
 @frozen(eq=False, kw_only=True)
@@ -133,7 +117,9 @@ class Study:
     methods: Sequence[Method] = field(validator=_named_once)
     ladder: Sequence[Rung] = field(factory=lambda: tolerances(1e-4, 1e-6, 1e-8, 1e-10), validator=min_len(1))
     errors: Sequence[Error] = field(validator=_named_once)
-    work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known)
+    work: Sequence[str] = field(
+        default=("factorizations", "seconds"), validator=lambda study, attribute, value: some("work", value, WORK)
+    )
     figures: Sequence[Any] = ()
     title: str = field(default=Factory(lambda study: study.name, takes_self=True))
     repeats: int = field(default=2, validator=integer(0))

@@ -54,9 +54,7 @@ def _shown(cell: Cell) -> str:
         return cell.replace("|", "/")
     if isinstance(cell, int):
         return str(cell)
-    if math.isnan(cell):
-        return ""
-    return "inf" if math.isinf(cell) else f"{cell:.3g}"
+    return "" if math.isnan(cell) else f"{cell:.3g}"
 
 
 def failures(results: Results) -> Table:

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import Any, Protocol, runtime_checkable
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.citation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
 from continuation.homotopy import Homotopy, SupportsReferences, offers
 from continuation.status import Kind
@@ -56,8 +56,13 @@ def references_of(*parts: Any) -> tuple[str, ...]:
     """The parts' BibTeX `references`, each key once."""
     found = [getattr(part, "references", ()) for part in parts]
     for given in found:
-        if not isinstance(given, (tuple, list)) or not all(isinstance(entry, str) for entry in given):
-            raise complain(TypeError, "references", "a tuple of BibTeX entries", given)
+        expect(
+            isinstance(given, (tuple, list)) and all(isinstance(entry, str) for entry in given),
+            "references",
+            "a tuple of BibTeX entries",
+            given,
+            TypeError,
+        )
     return unique(tuple(entry for given in found for entry in given))
 
 

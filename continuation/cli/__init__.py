@@ -2,19 +2,57 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from io import TextIOWrapper
+from typing import Any
 
-from continuation.cli.commands import register
-from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError, told
+from continuation.arguments import plugins
+from continuation.cli import archives, charts, figures, homotopies
+from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError
 from continuation.version import __version__
 
-__all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
+__all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main", "register"]
 
 INTERRUPTED = 130
 """The shell's status after Ctrl-C."""
+
+DOOR = (
+    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
+    "parameter_name", "names", "units",
+)  # fmt: skip
+"""Names that begin a complaint about a homotopy."""
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add every command, the engine's own last.
+
+    An entry point of the group `continuation.commands` takes the subparsers and adds a command. If it cannot be loaded,
+    its command gives the reason.
+
+    Parameters
+    ----------
+    subparsers : Subparsers
+    """
+    for name, plugin in plugins.available(plugins.COMMANDS).items():
+        try:
+            plugin.load()(subparsers)
+        except plugins.PluginError as error:
+            # Without prefix characters, any arguments are accepted.
+            broken = subparsers.add_parser(
+                name, help="(cannot run; call it to see why)", prefix_chars="\0", add_help=False
+            )
+            broken.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
+            broken.set_defaults(run=_complain, broken=error)
+    for group in (homotopies, archives, figures, charts):
+        group.register(subparsers)
+
+
+def _complain(arguments: argparse.Namespace) -> int:
+    raise arguments.broken
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -50,15 +88,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         return status
     except BaseException as error:
         status, line = _ended(error, arguments)
-    _let_go()
+    try:
+        sys.stdout.flush()
+    except OSError:
+        # Python would complain about a closed stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if line:
         print(f"continuation: {' '.join(line.split())}", file=sys.stderr)
     return status
 
 
-def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
-    if isinstance(error, UsageError):
-        return error.status, str(error)
+def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, str]:
     if isinstance(error, BrokenPipeError):
         # The reader (head, a pager) has closed.
         return SUCCESS, ""
@@ -66,18 +106,32 @@ def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
         kept = getattr(arguments, "archive", None) or getattr(arguments, "grows", None)
         where = f"; what was traced is in {kept}" if kept is not None and os.path.exists(kept) else ""
         return INTERRUPTED, f"{str(error) or 'interrupted'}{where}"
+    if isinstance(error, UsageError | plugins.PluginError):
+        return BAD_INPUT, str(error)
+    from continuation.archive import ArchiveError, ArchiveExistsError
+
+    names, (first, _, complaint) = arguments.names, str(error).partition(":")
+    if isinstance(error, ArchiveError):
+        typed = names.get("new", "FILE") if isinstance(error, ArchiveExistsError) else names.get("old", "FILE")
+        return BAD_INPUT, f"{typed}: {error}"
+    if isinstance(error, ValueError | TypeError | OSError) and first in names:
+        return BAD_INPUT, f"{names[first]}: {complaint}"
     if isinstance(error, OSError):
         name = error.filename or "the output"
         text = str(error) if error.errno is None else f"{name}: could not be read or written ({error.strerror})"
         return BAD_INPUT, text
-    if isinstance(error, SystemExit):
-        return BAD_INPUT, f"a plug-in wanted to end the process: {told(error)}"
-    return BAD_INPUT, told(error)
+    blamed = getattr(arguments, arguments.plugin, None) if arguments.plugin else None
+    if blamed is None or not isinstance(error, Exception):
+        leaves = "a plug-in wanted to end the process: " if isinstance(error, SystemExit) else ""
+        return BAD_INPUT, f"{leaves}{_told(error)}"
+    if isinstance(error, TypeError | ValueError) and first in DOOR:
+        return BAD_INPUT, f"{blamed}: {error}"
+    return FAILURE, f"{blamed}: {_told(error)}"
 
 
-def _let_go() -> None:
-    """Redirect a closed stdout, about which Python would complain."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def _told(error: BaseException) -> str:
+    """An exception and its place."""
+    from continuation.step.verdict import sentence
+
+    frames: Any = traceback.extract_tb(error.__traceback__)
+    return f"{sentence(error)} ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})"

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from importlib import import_module
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+from continuation.arguments import plugins
+from continuation.cli.making import homotopy_of, plug_in
 from continuation.cli.parser import (
     FAILURE,
     SUCCESS,
@@ -54,6 +52,7 @@ def register(subparsers: Subparsers) -> None:
         argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations"),
         trust,
         argument("--progress", action="store_true", help="show the progress on stderr"),
+        names={"new": "--archive", "homotopy": "FILE"}, plugin="homotopy",
         help="go on with a path that was interrupted",
     )  # fmt: skip
     add_command(
@@ -71,83 +70,72 @@ def register(subparsers: Subparsers) -> None:
         argument("file", metavar="FILE", help="an archive"),
         argument("target", metavar="TARGET", help="a new .nc file, or .csv or .csv.gz for two tables"),
         argument("--compression", type=int, default=4, metavar="LEVEL", help="of gzip, 0 to 9 (default: 4)"),
+        names={"new": "TARGET", "target": "TARGET", "compression": "--compression"},
         help="write an archive as netCDF-4 or as tables of text",
     )  # fmt: skip
     add_command(
         subparsers, _merge, "merge",
         argument("target", metavar="OUT", help="a new archive"),
         argument("files", metavar="FILE", nargs="+", help="archives with the same number of unknowns"),
-        help="many archives as one",
+        names={"new": "OUT"}, help="many archives as one",
     )  # fmt: skip
 
 
 def _inspect(arguments: argparse.Namespace) -> int:
     from continuation.archive import describe, open_archive
 
-    with complaints("FILE"), open_archive(arguments.file) as archive:
+    with open_archive(arguments.file) as archive:
         print(describe(archive), end="")
     return SUCCESS
 
 
 def _resume(arguments: argparse.Namespace) -> int:
-    from continuation.archive import resume
+    from continuation.archive import open_archive, resume
+    from continuation.archive.provenance import stored_parameters
     from continuation.budget import Budget
     from continuation.step.progress import Progress
 
-    names = ("steps", "seconds", "factorizations")
-    limits = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
+    limits = {name: getattr(arguments, name) for name in ("steps", "seconds", "factorizations")}
+    limits = {name: limit for name, limit in limits.items() if limit}
     options: Options = {"budget": Budget(**limits)} if limits else {}
-    observers = (Progress(),) if arguments.progress else ()
-    homotopy = None if arguments.homotopy is None else _given(arguments)
-    if arguments.homotopy is None and arguments.options:
+    homotopy = None
+    if arguments.homotopy is not None:
+        with open_archive(arguments.file) as archive:
+            stored = stored_parameters(archive.attributes)
+        homotopy, _ = homotopy_of(arguments.homotopy, arguments.options, stored)
+    elif arguments.options:
         raise UsageError("KEY=VALUE", "expected no options without --homotopy")
     arguments.grows = arguments.file
-    with complaints("FILE", new="--archive", names={"homotopy": "FILE"}):
-        path = resume(
-            arguments.file, homotopy, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
-        )
+    path = resume(
+        arguments.file,
+        homotopy,
+        archive=arguments.archive,
+        observers=(Progress(),) if arguments.progress else (),
+        trust=arguments.trust,
+        **options,
+    )
     print(f"{path.status.name}: {path.message}")
     print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
     return SUCCESS if path.success else FAILURE
 
 
-def _given(arguments: argparse.Namespace) -> Any:
-    from continuation.archive import open_archive
-    from continuation.archive.provenance import stored_parameters
-    from continuation.arguments import plugins
-    from continuation.cli.making import homotopy_of, importable
-
-    with complaints("FILE"), open_archive(arguments.file) as archive:
-        stored = stored_parameters(archive.attributes)
-    importable(arguments.homotopy)
-    try:
-        takes = {option.name for option in plugins.options(plugins.find(arguments.homotopy))}
-    except plugins.PluginError as error:
-        raise UsageError("--homotopy", error) from error
-    return homotopy_of(arguments.homotopy, arguments.options, {k: v for k, v in stored.items() if k in takes})[0]
-
-
 def _named(path: str) -> Any:
-    module, _, name = path.partition(":")
     from continuation.archive.trust import registry
-    from continuation.cli.making import importable
 
-    importable(path)
     try:
-        found = attrgetter(name)(import_module(module))
-        registry([found])
-    except (Exception, SystemExit) as error:  # Importing foreign modules may raise anything.
-        reason = f"{type(error).__name__}: {error}".removeprefix("TypeError: trust: ")
+        trusted = plug_in(path)
+        registry([trusted])
+    except (TypeError, ValueError, plugins.PluginError) as error:
+        reason = str(error).removeprefix("trust: ")
         expected = "expected module:name of a class or function"
         raise argparse.ArgumentTypeError(f"{expected}, found {path!r} ({reason})") from None
-    return found
+    return trusted
 
 
 def _recheck(arguments: argparse.Namespace) -> int:
     from continuation.archive import recheck
 
-    with complaints("FILE"):
-        proofs = recheck(arguments.file, trust=arguments.trust)
+    proofs = recheck(arguments.file, trust=arguments.trust)
     for number, proof in enumerate(proofs):
         print(f"path {number}: {proof}")
     return SUCCESS if proofs and all(proof.complete for proof in proofs) else FAILURE
@@ -156,47 +144,21 @@ def _recheck(arguments: argparse.Namespace) -> int:
 def _recover(arguments: argparse.Namespace) -> int:
     from continuation.archive import open_archive, recover
 
-    with complaints("FILE"):
-        file = recover(arguments.file, force=arguments.force)
-        with open_archive(file) as archive:
-            print(f"{file}: {len(archive)} paths, {archive.points.size} points")
+    file = recover(arguments.file, force=arguments.force)
+    with open_archive(file) as archive:
+        print(f"{file}: {len(archive)} paths, {archive.points.size} points")
     return SUCCESS
 
 
 def _export(arguments: argparse.Namespace) -> int:
     from continuation.archive import export
 
-    with complaints("FILE", new="TARGET"):
-        for file in export(arguments.file, arguments.target, compression=arguments.compression):
-            print(file)
+    print(*export(arguments.file, arguments.target, compression=arguments.compression), sep="\n")
     return SUCCESS
 
 
 def _merge(arguments: argparse.Namespace) -> int:
     from continuation.archive import merge
 
-    with complaints("FILE", new="OUT"):
-        print(merge(arguments.files, arguments.target))
+    print(merge(arguments.files, arguments.target))
     return SUCCESS
-
-
-PARAMETERS = {"target": "TARGET", "compression": "--compression"}
-"""Argument names as typed, by the name that begins a complaint."""
-
-
-@contextmanager
-def complaints(file: str, new: str = "FILE", names: Mapping[str, str] = PARAMETERS) -> Iterator[None]:
-    """Turn archive errors into usage errors about `file`, or `new` if it exists, others by `names`."""
-    from continuation.archive import ArchiveError, ArchiveExistsError
-
-    try:
-        yield
-    except ArchiveExistsError as error:
-        raise UsageError(new, error) from error
-    except ArchiveError as error:
-        raise UsageError(file, error) from error
-    except (ValueError, TypeError, OSError) as error:
-        named, _, complaint = str(error).partition(":")
-        if named not in names:
-            raise
-        raise UsageError(names[named], complaint) from error

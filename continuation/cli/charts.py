@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from continuation.arguments import plugins
-from continuation.cli.making import importable, unknown
-from continuation.cli.parser import SUCCESS, Subparsers, new_folder
+from continuation.cli.making import plug_in
+from continuation.cli.parser import SUCCESS, Subparsers, add_command, argument, new_folder
 
 if TYPE_CHECKING:
     from continuation.chart import Row
-    from continuation.chart.run import Watch
 
 DEFAULT_OUTPUT = "continuation-chart"
 EVERY = "all"
@@ -21,21 +21,19 @@ EVERY = "all"
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    parser = subparsers.add_parser(
-        "chart",
+    parser = add_command(
+        subparsers, run, "chart",
+        argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}; or module:function of your own"),
+        argument("--compare", action="store_true", help="outside solvers too, where they are installed"),
+        argument("--output", metavar="DIR", default=DEFAULT_OUTPUT,
+                 help=f"where the files go (default: {DEFAULT_OUTPUT})"),
         help="speed against accuracy: run a ready study",
         description="Run a study, print its table, and write results (JSON) and pictures. Without a "
         "name, list the studies.",
-    )
-    parser.add_argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}; or module:function of your own")
+    )  # fmt: skip
     size = parser.add_mutually_exclusive_group()
-    size.add_argument("--smoke", dest="size", action="store_const", const="smoke", help="tiny sizes, in seconds")
-    size.add_argument("--full", dest="size", action="store_const", const="full", help="full sizes, in many minutes")
-    parser.add_argument("--compare", action="store_true", help="outside solvers too, where they are installed")
-    parser.add_argument(
-        "--output", metavar="DIR", default=DEFAULT_OUTPUT, help=f"where the files go (default: {DEFAULT_OUTPUT})"
-    )
-    parser.set_defaults(run=run, size="moderate")
+    for name, said in (("smoke", "tiny sizes, in seconds"), ("full", "full sizes, in many minutes")):
+        size.add_argument(f"--{name}", dest="size", action="store_const", const=name, default="moderate", help=said)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -47,13 +45,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.name is None:
         print("\n".join(names))
         return SUCCESS
-    importable(arguments.name)
-    with unknown(arguments.name):
-        chosen = names if arguments.name == EVERY else [arguments.name]
-        makers = [plugins.find(name, plugins.STUDIES) for name in chosen]
+    chosen = names if arguments.name == EVERY else [arguments.name]
+    makers = [plug_in(name, plugins.STUDIES) for name in chosen]
     folder = new_folder("--output", arguments.output)
     for study in chain.from_iterable(make(arguments.size, arguments.compare) for make in makers):
-        results = run_study(study, _watch(study.name))
+        results = run_study(study, partial(_watch, study.name) if sys.stderr.isatty() else None)
         for title, table in tables(results).items():
             print(f"\n{results.title}: {title}\n{table.text()}")
         for note in study.notes:
@@ -62,12 +58,6 @@ def run(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
-def _watch(name: str) -> Watch | None:
-    if not sys.stderr.isatty():
-        return None
-
-    def show(done: int, whole: int, row: Row) -> None:
-        end = "\n" if done == whole else ""
-        print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)
-
-    return show
+def _watch(name: str, done: int, whole: int, row: Row) -> None:
+    end = "\n" if done == whole else ""
+    print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from continuation.cli.archives import complaints
 from continuation.cli.parser import SUCCESS, Subparsers, UsageError, add_command, argument, parsed
 
 SUFFIXES = (".png", ".pdf", ".svg")
@@ -33,6 +33,7 @@ def register(subparsers: Subparsers) -> None:
         argument(
             "--diagram", action="store_true", help="draw the maximum norm of y (or the one component) against lambda"
         ),
+        names={"components": "--components", "path": "FILE"},
         help="draw a path of an archive",
         description="Components of y, or the bifurcation diagram, with turning points marked, above the step sizes.",
     )  # fmt: skip
@@ -42,21 +43,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, draw, print the name."""
     from continuation.archive import open_archive
 
-    if arguments.output is not None:
-        check_picture("--output", arguments.output)
-    with complaints("FILE"), open_archive(arguments.file) as archive:
+    with open_archive(arguments.file) as archive:
         if not 0 <= arguments.path < len(archive):
             raise UsageError("--path", f"expected a number below {len(archive)}, found {arguments.path}")
         path = archive.path(arguments.path)
     output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
     check_picture("--output", output)
-    try:
-        name = "".join(c if c.isprintable() else "?" for c in Path(arguments.file).name)
-        title = f"{name}, path {arguments.path}: {path.status.name}"
-        save(output, path, title, lambda axes: _draw(axes, path, arguments))
-    except ValueError as error:
-        complaint = str(error).removeprefix("components: ")
-        raise UsageError("FILE" if arguments.components is None else "--components", complaint) from error
+    name = "".join(c if c.isprintable() else "?" for c in Path(arguments.file).name)
+    save(output, path, f"{name}, path {arguments.path}: {path.status.name}", partial(_draw, path, arguments))
     print(output)
     return SUCCESS
 
@@ -68,16 +62,12 @@ def check_picture(option: str, file: str) -> None:
     path = Path(file)
     if path.suffix.lower() not in SUFFIXES:
         raise UsageError(option, f"expected a name in {', '.join(SUFFIXES)}, found {file!r}")
-    if not path.parent.is_dir():
-        raise UsageError(option, f"expected a file in an existing directory, found {file!r}")
-    try:
-        # Permissions do not show full or read-only disks.
-        with TemporaryFile(dir=path.parent):
-            pass
-    except OSError as error:
-        raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
     try:
         require_matplotlib()
+        # Permissions do not show full or read-only disks.
+        TemporaryFile(dir=path.parent).close()
+    except OSError as error:
+        raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
     except ImportError as error:
         raise UsageError(option, f"{error}, found none") from error
 
@@ -90,12 +80,11 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     from continuation.plot import plot_steps
 
     figure = Figure(figsize=(6.5, 4.0) if path is None else (7.0, 6.0), layout="constrained")
-    ratios = [1] if path is None else [3, 1]
-    panels = figure.subplots(len(ratios), 1, height_ratios=ratios, squeeze=False)[:, 0]
-    draw(panels[0])
     figure.suptitle(title, fontsize="medium")
+    grid = figure.add_gridspec(1 if path is None else 2, 1, height_ratios=[1] if path is None else [3, 1])
+    draw(figure.add_subplot(grid[0]))
     if path is not None:
-        plot_steps(path, panels[1])
+        plot_steps(path, figure.add_subplot(grid[1]))
     picture = BytesIO()
     figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
     # A full disk must not destroy the old file.
@@ -104,16 +93,16 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
         publish(part, Path(file), replace=True)
 
 
-def _draw(axes: Any, path: Any, arguments: argparse.Namespace) -> None:
+def _draw(path: Any, arguments: argparse.Namespace, axes: Any) -> None:
     from continuation.plot import plot_bifurcation, plot_components
 
     chosen = arguments.components
     if not arguments.diagram:
         plot_components(path, axes, arguments.against, components=chosen)
-    else:
-        if chosen is not None and len(chosen) != 1:
-            raise ValueError(f"expected one component for --diagram, found {len(chosen)}")
+    elif chosen is None or len(chosen) == 1:
         plot_bifurcation(path, axes, None if chosen is None else chosen[0])
+    else:
+        raise UsageError("--components", f"expected one component for --diagram, found {len(chosen)}")
 
 
 def _numbers(text: str) -> list[int]:

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from continuation.arguments import plugins
-from continuation.cli.archives import complaints
-from continuation.cli.making import homotopy_of, refused, unknown
+from continuation.cli.making import homotopy_of, plug_in
 from continuation.cli.parser import (
     FAILURE,
     SUCCESS,
@@ -50,21 +49,22 @@ def register(subparsers: Subparsers) -> None:
         argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib"),
         argument("--progress", action="store_true", help="show the progress on stderr"),
         argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller"),
-        argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none"),
-        argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement"),
+        argument("--target", metavar="LAM", type=_target, default="homotopy", help="where the path is to end, or none"),
+        argument("--direction", type=int, choices=(-1, 1), default=0, help="of the parameter's first movement"),
         argument("--tolerance", metavar="EPS", type=above_zero, default=1e-8, help="default: 1e-8"),
         argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point"),
         argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000"),
         argument("--budget-seconds", metavar="S", type=above_zero, help="wall-clock time; default: no limit"),
         argument("--json", action="store_true", help="print everything as one JSON object"),
         argument("--cite", action="store_true", help="print BibTeX for what the run used as well"),
+        names={"new": "--archive", "old": "--archive"}, plugin="name",
         help="follow the path of a homotopy by its name",
         description="Exit status: 0 if the path ended at its target, at an event or closed, 1 if not, 2 bad input.",
     )  # fmt: skip
     add_command(
         subparsers, _check, "check", *homotopy,
         argument("--steps", metavar="N", type=positive, help="of the path looked at; default: 60, 12 no target"),
-        help="run the conformance suite on a homotopy",
+        plugin="name", help="run the conformance suite on a homotopy",
         description="Every check that its capabilities call for. Exit status: 0 if all pass, 1 if not, 2 bad input.",
     )  # fmt: skip
 
@@ -73,9 +73,9 @@ def _list(arguments: argparse.Namespace) -> int:
     scenes = plugins.available(plugins.SCENES)
     known = {**plugins.available(), **scenes}
     if arguments.name is not None:
-        with unknown(arguments.name):
-            factory = plugins.find(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
-        described = plugins.describe(factory)
+        described = plugins.describe(
+            plug_in(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
+        )
         print(_entry(arguments.name, described, known.get(arguments.name)))
         print("".join(f"\n{entry}\n" for entry in described.references), end="")
         return SUCCESS
@@ -115,24 +115,19 @@ def _trace(arguments: argparse.Namespace) -> int:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
-    with complaints("--archive", new="--archive"):
-        log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
+    log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
     limits = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
-    options: dict[str, Any] = {"budget": Budget(**{name: value for name, value in limits.items() if value is not None})}
-    if arguments.target is not None:
-        options["target"] = None if math.isnan(arguments.target) else arguments.target
-    if arguments.turning_points is not None:
-        options["events"] = [TurningPoint(terminal=arguments.turning_points)]
-    with refused(arguments.name), complaints("--archive", new="--archive"):
-        path = trace(
-            homotopy,
-            archive=log,
-            progress=arguments.progress,
-            preset=getattr(presets, arguments.preset.upper()),
-            tolerance=arguments.tolerance,
-            direction=arguments.direction or 0,
-            **options,
-        )
+    path = trace(
+        homotopy,
+        archive=log,
+        progress=arguments.progress,
+        preset=getattr(presets, arguments.preset.upper()),
+        target=arguments.target,
+        tolerance=arguments.tolerance,
+        direction=arguments.direction,
+        events=[TurningPoint(terminal=arguments.turning_points)] if arguments.turning_points else [],
+        budget=Budget(**{name: value for name, value in limits.items() if value is not None}),
+    )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
     if arguments.cite:
@@ -183,8 +178,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from continuation.testing import run_checks
 
     homotopy, _ = homotopy_of(arguments.name, arguments.options)
-    with refused(arguments.name):
-        results = run_checks(homotopy, steps=arguments.steps)
+    results = run_checks(homotopy, steps=arguments.steps)
     for result in results:
         outcome = paint(f"{result.outcome:8}", result.outcome == "passed")
         print(f"{outcome} {result.name}" + (f"\n         {result.message}" if result.message else ""))
@@ -193,7 +187,7 @@ def _check(arguments: argparse.Namespace) -> int:
     return FAILURE if failed else SUCCESS
 
 
-def _number_or_none(text: str) -> float:
-    if text.lower() == "none":
-        return math.nan
+def _target(text: str) -> float | str | None:
+    if text.lower() in ("none", "homotopy"):
+        return None if text.lower() == "none" else "homotopy"
     return parsed(text, float, math.isfinite, "a finite number or none")

@@ -1,4 +1,9 @@
-"""The parser and exceptions of all commands."""
+"""A command: a function, its arguments, and how complaints name them.
+
+Whatever is raised, `main` prints one line that begins with the argument as typed. A complaint begins with the name of
+a Python argument; a command's `names` say what was typed for it, and what for the archive that is read ("old") or
+written ("new").
+"""
 
 from __future__ import annotations
 
@@ -6,8 +11,7 @@ import argparse
 import math
 import os
 import sys
-import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 
@@ -33,26 +37,10 @@ class UsageError(ValueError):
     complaint : str
     """
 
-    status = BAD_INPUT
-
     def __init__(self, argument: str, complaint: object) -> None:
         self.argument = argument
         self.complaint = " ".join(str(complaint).split())
         super().__init__(f"{self.argument}: {self.complaint}")
-
-
-class PlugInError(UsageError):
-    """A plug-in's exception; the status is 1."""
-
-    status = FAILURE
-
-
-def told(error: BaseException) -> str:
-    """An exception and its place in one line."""
-    from continuation.step.verdict import sentence
-
-    frames = traceback.extract_tb(error.__traceback__)
-    return f"{sentence(error)} ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})"
 
 
 class Parser(argparse.ArgumentParser):
@@ -83,12 +71,21 @@ def argument(*names: str, **options: Any) -> Argument:
     return names, options
 
 
-def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argument, **options: Any) -> None:
-    """Add a command."""
+def add_command(
+    subparsers: Subparsers,
+    run: Run,
+    name: str,
+    *arguments: Argument,
+    names: Mapping[str, str] | None = None,
+    plugin: str = "",
+    **options: Any,
+) -> argparse.ArgumentParser:
+    """Add a command; `plugin`: the argument that names foreign code, whose exceptions are reported of it."""
     parser = subparsers.add_parser(name, **options)
-    for names, about in arguments:
-        parser.add_argument(*names, **about)
-    parser.set_defaults(run=run)
+    for typed, about in arguments:
+        parser.add_argument(*typed, **about)
+    parser.set_defaults(run=run, names=names or {}, plugin=plugin)
+    return parser
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:

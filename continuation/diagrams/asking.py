@@ -13,7 +13,7 @@ import numpy as np
 
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.growing import Growing
-from continuation.arguments.checks import complain, instance_with, is_number
+from continuation.arguments.checks import expect, instance_with, is_number
 from continuation.counts import Counts
 from continuation.diagrams.branches import Diagram
 from continuation.diagrams.search import BranchSearch
@@ -91,28 +91,43 @@ def diagram(
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
     Evaluator(homotopy, Counts())
     for name, count in (("branches", branches), ("generations", 1 if generations is None else generations)):
-        if not isinstance(count, Integral) or isinstance(count, bool) or count < (name == "branches"):
-            raise complain(ValueError, name, "a positive integer", count)
-    if not is_number(step) or isinstance(step, bool) or not 0.0 < step < np.inf:
-        raise complain(ValueError, "step", "a positive finite number", step)
-    if stability is not None and not isinstance(stability, Stability):
-        raise complain(TypeError, "stability", "a Stability or None", stability)
+        expect(
+            isinstance(count, Integral) and not isinstance(count, bool) and count >= (name == "branches"),
+            name,
+            "a positive integer",
+            count,
+        )
+    expect(
+        is_number(step) and not isinstance(step, bool) and 0.0 < step < np.inf, "step", "a positive finite number", step
+    )
+    expect(isinstance(stability, Stability | None), "stability", "a Stability or None", stability, TypeError)
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if not isinstance(deflate, Sequence) or not all(is_number(lam) and np.isfinite(lam) for lam in deflate):
-        raise complain(TypeError, "deflate", "values of the parameter", deflate)
-    if not all(is_guess(start) for start in starts):
-        raise complain(TypeError, "starts", "pairs (y, lam)", starts)
-    if not isinstance(resume, bool) or (resume and archive is None):
-        raise complain(ValueError, "resume", "True with an archive, or False", resume)
-    if keep not in ("all", "ends") or (keep == "ends" and archive is None):
-        raise complain(ValueError, "keep", '"all", or "ends" with an archive', keep)
+    expect(
+        isinstance(deflate, Sequence) and all(is_number(lam) and np.isfinite(lam) for lam in deflate),
+        "deflate",
+        "values of the parameter",
+        deflate,
+        TypeError,
+    )
+    expect(all(is_guess(start) for start in starts), "starts", "pairs (y, lam)", starts, TypeError)
+    expect(
+        isinstance(resume, bool) and (archive is not None or not resume),
+        "resume",
+        "True with an archive, or False",
+        resume,
+    )
+    expect(keep == "all" or (keep == "ends" and archive is not None), "keep", '"all", or "ends" with an archive', keep)
     file = None if archive is None else as_file("archive", archive)
     if file is not None and not resume:
         check_new(file)
     box = options.get("box", getattr(homotopy, "box", None))
-    if box is None or isinstance(box, str) or is_boundless(box):
-        raise complain(ValueError, "box", 'one, as {"lam": (0, 5)}, since branches have no other end', box)
+    expect(
+        box is not None and not isinstance(box, str) and not is_boundless(box),
+        "box",
+        'one, as {"lam": (0, 5)}, since branches have no other end',
+        box,
+    )
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)

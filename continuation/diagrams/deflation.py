@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arguments.checks import POSITIVE_FINITE, complain, real_vector
-from continuation.arrays import Array, Matrix
+from continuation.arguments.checks import POSITIVE_FINITE, expect, real_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
@@ -17,19 +17,17 @@ from continuation.linear.elimination import eliminated
 from continuation.linear.system import Solver
 from continuation.tracing import solve_at
 
-CANCELS = float(np.finfo(float).eps) ** -0.5
-"""Largest ratio of the Newton increments of H and M H, where half of the digits cancel."""
-
-SAME_SOLUTION_DISTANCE = 1e-6
-"""Relative distance of equal solutions; double ones have half of the digits."""
-
 
 def _vectors(known: Any) -> tuple[Array, ...]:
-    if not isinstance(known, Iterable) or isinstance(known, str):
-        raise complain(TypeError, "known", "several solutions, as in a list", known)
+    expect(
+        isinstance(known, Iterable) and not isinstance(known, str),
+        "known",
+        "several solutions, as in a list",
+        known,
+        TypeError,
+    )
     vectors = tuple(np.atleast_1d(real_vector("known", y)) for y in known)
-    if not all(np.isfinite(y).all() for y in vectors):
-        raise complain(ValueError, "known", "finite numbers", known)
+    expect(all(np.isfinite(y).all() for y in vectors), "known", "finite numbers", known)
     return vectors
 
 
@@ -129,7 +127,7 @@ class Deflated:
         changed = eliminated(
             lambda rhs: system.solve(rhs[:-1], rhs[-1]), turned[:, None], np.append(slope, [0.0, -1.0])[None]
         )
-        if not abs(changed.schur[0, 0]) < CANCELS:
+        if not abs(changed.schur[0, 0]) * ROOT_OF_ROUND_OFF < 1.0:
             return factor_bordered(*self.jacobian(y, lam), border)
 
         def solve(r: Array, rho: float) -> Array:
@@ -157,6 +155,6 @@ def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[
 
 
 def same_solution(y: Array, other: Array, scale: Any = None) -> bool:
-    """Whether two solutions agree, in units of a scale."""
+    """Whether two solutions agree in six digits, in units of a scale: double ones have half of the digits."""
     size = 1.0 + np.abs(y) if scale is None else scale
-    return bool((np.abs(y - other) <= SAME_SOLUTION_DISTANCE * size).all())
+    return bool((np.abs(y - other) <= SIX_DIGITS * size).all())

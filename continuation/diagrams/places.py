@@ -8,19 +8,16 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from attrs import define, field
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import SIX_DIGITS, Array, generic_vector
 from continuation.metric import norm
 from continuation.numbers.ends import accumulated
-
-SAME_PLACE = 1e-6
-"""Distance of one point's locations, in extents of the path; they are polished to 1e-10."""
 
 Item = TypeVar("Item")
 
 
 @define(eq=False)
 class PointIndex(Generic[Item]):
-    """Items at points, each with its metric.
+    """Items at points, each with its metric; one point's locations agree in six digits, being polished to ten.
 
     Items are sorted by a . u with a generic vector a, which the distance bounds: bisection finds candidates.
     """
@@ -33,18 +30,18 @@ class PointIndex(Generic[Item]):
         """Add an item."""
         if not self._sorted:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
-        self._reach = max(self._reach, SAME_PLACE * float(np.linalg.norm(self._axis / np.sqrt(weights))))
+        self._reach = max(self._reach, SIX_DIGITS * float(np.linalg.norm(self._axis / np.sqrt(weights))))
         insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
 
     def near(self, u: Array) -> list[Item]:
-        """Items within `SAME_PLACE` of a point, in order."""
+        """Items within `SIX_DIGITS` of a point, in order."""
         if not self._sorted:
             return []
         number = float(self._axis @ u)
         reach = self._reach + accumulated(u.size) * float(np.abs(self._axis) @ np.abs(u))
         first, last = (bisect(self._sorted, end, key=_number) for end in (number - reach, number + reach))
         close = sorted(self._sorted[first:last], key=lambda found: found[1])
-        return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SAME_PLACE]
+        return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SIX_DIGITS]
 
 
 def _number(entry: tuple[Any, ...]) -> float:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
-from collections.abc import Iterator
-from concurrent.futures import Executor, Future
-from itertools import islice
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
@@ -14,12 +13,12 @@ from attrs import define, evolve, field, frozen
 from continuation.archive.growing import Growing
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array
+from continuation.branch_switching import metric_at
 from continuation.counts import Counts
-from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
+from continuation.diagrams.branches import LABELS, Branch, Diagram, Special, from_point
 from continuation.diagrams.deflation import others, same_solution
 from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import PointIndex
-from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
 from continuation.metric import Inherited
 from continuation.path import LocatedEvent, Path
@@ -33,9 +32,6 @@ WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.D
 
 LEAVES = 0.1
 """Distance of guesses from known solutions, relative to their spread."""
-
-PATHS_AHEAD = 64
-"""Largest number of submitted paths."""
 
 
 @frozen(eq=False)
@@ -94,11 +90,8 @@ class BranchSearch:
     @property
     def found(self) -> Diagram:
         """The diagram so far."""
-        said = (
-            f"Not complete: {'; '.join(dict.fromkeys(self.missing))}."
-            if self.missing
-            else "Complete: nothing is left open."
-        )
+        said = "; ".join(dict.fromkeys(self.missing))
+        said = f"Not complete: {said}." if said else "Complete: nothing is left open."
         return Diagram(self.branches, points_of(self.branches, self.junctions), not self.missing, said, self.counts)
 
     def _guesses(self, known: list[Array]) -> list[Array]:
@@ -161,26 +154,17 @@ class BranchSearch:
         return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
-        ready: deque[Future[Path] | None] = deque()
-        following = iter(tasks if self.executor is not None else ())
+        ready = [None if self.executor is None else self.executor.submit(_path, *self._asked(task)) for task in tasks]
         try:
-            for task in tasks:
-                for other in islice(following, PATHS_AHEAD - len(ready)):
-                    assert self.executor is not None
-                    idle = other.ray in other.used
-                    ready.append(None if idle else self.executor.submit(_path, *self._asked(other)))
-                future, path = ready.popleft() if ready else None, None
-                if future is not None:
-                    path = future.result()
-                elif task.ray not in task.used:
-                    path = _path(*self._asked(task))
-                if path is not None:
+            for task, future in zip(tasks, ready):
+                path = None
+                if future is not None or task.ray not in task.used:
+                    path = _path(*self._asked(task)) if future is None else future.result()
                     self.counts = self.counts + path.counts
                 yield None if task.ray in task.used else path
         finally:
-            for future in ready:
-                if future is not None:
-                    future.cancel()
+            for future in filter(None, ready):
+                future.cancel()
 
     def _asked(self, task: Task) -> tuple[Any, ...]:
         return self.homotopy, task.start, task.direction, self.options, task.weights
@@ -272,3 +256,29 @@ class BranchSearch:
 def _through(behind: Path, ahead: Path) -> Path:
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)
+
+
+def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
+    """Junctions, turning points, Hopf points and kinks, in branch order."""
+    labels: Counter[str] = Counter()
+    found: list[tuple[str, LocatedEvent, list[int]]] = []
+    places: PointIndex[tuple[str, list[int]]] = PointIndex()
+
+    def entry(label: str, event: LocatedEvent) -> list[int]:
+        through: list[int] = []
+        found.append((label, event, through))
+        places.add(event.u, metric_at(event), (label, through))
+        labels[label[:2]] += 1
+        return through
+
+    origins = {j.label: entry(j.label, j.event) for j in sorted(junctions, key=lambda j: j.number) if j.label}
+    for k, branch in enumerate(branches):
+        for event in branch.path.events:
+            if event.kind not in LABELS:
+                continue
+            kind = LABELS[event.kind]
+            same = [through for label, through in places.near(event.u) if label.startswith(kind)]
+            (same[0] if same else entry(f"{kind}{1 + labels[kind]}", event)).append(k)
+        if branch.origin:
+            origins[branch.origin].append(k)
+    return [Special(label, event, tuple(dict.fromkeys(through))) for label, event, through in found]

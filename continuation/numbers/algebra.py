@@ -1,14 +1,15 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d.
 
-Algebras share linear operations, along the leading axis. They differ in products, and in f(c_0 + d) = sum_k f_k d^k,
-with f's Taylor coefficients f_k at c_0.
+Algebras share linear operations, along the leading axis. They differ in `degrees`, each coefficient's power of d, in
+`product`, by a bilinear product of coefficients, and in `expansion`, f(c_0 + d) = sum_k f_k d^k, with f's Taylor
+coefficients f_k at c_0.
 """
 
 from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from attrs import frozen
@@ -18,22 +19,6 @@ from continuation.numbers.ends import Ends, moved, thin
 
 Store: TypeAlias = Any
 """Coefficients, shape (L, ...); L = 1 is a constant."""
-
-
-class Algebra(Protocol):
-    """Operations on coefficients."""
-
-    def degrees(self, length: int) -> list[int]:
-        """Each coefficient's power of d."""
-        ...
-
-    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
-        """A bilinear product of non-constants."""
-        ...
-
-    def expansion(self, f: list[Any], a: Store) -> Store:
-        """The sum of f_k d^k, with a = c_0 + d."""
-        ...
 
 
 @frozen
@@ -85,7 +70,7 @@ class Gradient:
 class Beside:
     """x + y s with s^2 = 0, x and y of the inner algebra, and the coefficients of x first."""
 
-    inner: Algebra
+    inner: TaylorAlgebra | Gradient | Beside
 
     def degrees(self, length: int) -> list[int]:
         """Degrees of x, then of y, one higher."""
@@ -103,6 +88,9 @@ class Beside:
         x, y = _halves(a)
         slopes = [f[1], *(float(k) * f[k] for k in range(2, len(f)))]
         return joined(_at(self.inner, f, x), product(self.inner, operator.mul, _at(self.inner, slopes, x), y))
+
+
+Algebra: TypeAlias = TaylorAlgebra | Gradient | Beside
 
 
 def _halves(a: Store) -> tuple[Store, Store]:
@@ -147,18 +135,14 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
     """Apply a function of one argument, by its rule."""
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
-        return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
+        f = rule([a[0], 1.0, *[0.0] * (order - 1)][: order + 1])
+        f = [c if isinstance(c, Ends) else thin(np.full(a.shape[1:], c)) for c in f]
+        told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
+        return _at(algebra, f if told.all() else [f[0], *(c.where(told) for c in f[1:])], a)
     if isinstance(algebra, TaylorAlgebra):
         return rule(a)
-    return _at(
-        algebra, rule(np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])), a
-    )
-
-
-def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
-    f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
-    told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
-    return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]
+    line = np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])
+    return _at(algebra, rule(line), a)
 
 
 TAYLOR = TaylorAlgebra()

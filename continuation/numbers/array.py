@@ -41,7 +41,7 @@ class Entries:
         if isinstance(key, int | slice):
             part = self.moved(operator.itemgetter((*(slice(None),) * self.OWN, key)))
         else:
-            part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
+            part = self.moved(lambda x: _own_last(_own_last(x, self.OWN)[_behind(key, self.OWN)], -self.OWN))
         return part if part.ndim else part.copy()  # a scalar must not change with the array
 
     def __setitem__(self: Any, key: Any, value: Any) -> None:
@@ -60,11 +60,8 @@ class Entries:
 
 
 def _own_last(x: Array, own: int) -> Array:
-    return x.transpose(*range(own, x.ndim), *range(own))
-
-
-def _own_first(x: Array, own: int) -> Array:
-    return x.transpose(*range(x.ndim - own, x.ndim), *range(x.ndim - own))
+    """The first `own` axes behind the others, or the last -`own` before them."""
+    return x.transpose(*range(own % x.ndim, x.ndim), *range(own % x.ndim))
 
 
 def _behind(key: Any, own: int) -> tuple[Any, ...]:

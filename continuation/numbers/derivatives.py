@@ -29,13 +29,9 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     order : int
         Highest power of s.
     """
-    x0 = _numbers(x0, "x0")
-    order = _order(order, 0)
-    c = np.zeros((order + 1, *x0.shape))
-    c[0] = x0
-    if order:
-        c[1] = _numbers(direction, "direction")
-    line: Jet = wrap(c, TAYLOR)
+    x0, order = _numbers(x0, "x0"), _order(order, 0)
+    both = np.stack([x0, np.broadcast_to(_numbers(direction, "direction"), x0.shape)])
+    line: Jet = wrap(lengthened(both[: order + 1], order + 1), TAYLOR)
     return line
 
 
@@ -78,8 +74,7 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
     JetDomainError
         If `f` has no Taylor series.
     """
-    x = variable(x0, direction, order)
-    return np.asarray(_image(f, x))
+    return np.asarray(_image(f, variable(x0, direction, order)))
 
 
 def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:

@@ -13,11 +13,9 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 
 Mask = NDArray[np.bool_]
-
-EPS = 2.0**-52
 
 TINIEST = 2.0**-1074
 """Largest underflow error of an operation."""
@@ -179,7 +177,7 @@ def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coeffic
     return Ends(-up_sum(error - add(x.lo)), up_sum(add(x.hi) + error))
 
 
-def absolute(u: Ends) -> Ends:
+def absolute_range(u: Ends) -> Ends:
     """The range of |x|."""
     inside = (u.lo < 0.0) & (u.hi > 0.0)
     size = np.minimum(np.abs(u.lo), np.abs(u.hi))
@@ -191,7 +189,7 @@ def whole_power(u: Ends, n: int) -> Ends:
     if n == 0:
         return thin(np.ones(u.shape)).where(~np.isnan(u.lo))
     if n % 2 == 0:
-        return _nonnegative_power(absolute(u), n)
+        return _nonnegative_power(absolute_range(u), n)
     low, high = _nonnegative_power(thin(np.abs(u.lo)), n), _nonnegative_power(thin(np.abs(u.hi)), n)
     return Ends(np.where(u.lo < 0.0, -low.hi, low.lo), np.where(u.hi < 0.0, -high.lo, high.hi))
 

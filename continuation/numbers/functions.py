@@ -13,7 +13,7 @@ from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 from continuation.arrays import clipped
 from continuation.numbers.algebra import product
 from continuation.numbers.ends import added
-from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
+from continuation.numbers.truncated import Truncated, combined, common, gather, parts_of, wrap
 from continuation.numbers.ufuncs import sums_of_products
 
 # Reductions
@@ -122,16 +122,13 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
             x for x in dict.fromkeys(part + other) if x in later.replace(".", "")
         )
         kept = both if k < len(parts) else output
-        total, part = _contracted(f"{own}{part},{own}{other}->{own}{kept}", total, array), kept
+        contract = partial(np.einsum, f"{own}{part},{own}{other}->{own}{kept}")
+        algebra = common((total, array))
+        total, part = wrap(product(algebra, sums_of_products(contract), total.c, array.c), algebra), kept
     if len(parts) == 1:
         spec = f"{own}{part}->{own}{output}"
         return wrap(added(lambda x: np.einsum(spec, x), total.c, total.size), total.algebra)
     return total
-
-
-def _contracted(spec: str, a: Any, b: Any) -> Any:
-    algebra = common((a, b))
-    return wrap(product(algebra, sums_of_products(partial(np.einsum, spec)), a.c, b.c), algebra)
 
 
 # Assembly
@@ -140,13 +137,13 @@ def _contracted(spec: str, a: Any, b: Any) -> Any:
 def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
     parts = [x.ravel() for x in parts_of(arrays)] if axis is None else parts_of(arrays)
     along = normalize_axis_index(axis or 0, parts[0].ndim)
-    return joined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
+    return combined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
 
 
 def _stack(arrays: Any, axis: int = 0) -> Any:
     parts = parts_of(arrays)
     along = normalize_axis_index(axis, parts[0].ndim + 1)
-    return joined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
+    return combined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
 
 
 def _where(condition: Any, x: Any, y: Any) -> Any:
@@ -155,7 +152,7 @@ def _where(condition: Any, x: Any, y: Any) -> Any:
     condition, parts = np.asarray(condition), parts_of([x, y])
     ndim = max(condition.ndim, *(part.ndim for part in parts))
     parts = [part.reshape((1,) * (ndim - part.ndim) + part.shape) for part in parts]
-    return joined(lambda arrays, own: np.where(condition, *arrays), parts)
+    return combined(lambda arrays, own: np.where(condition, *arrays), parts)
 
 
 def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:

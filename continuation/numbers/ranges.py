@@ -10,8 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import Array
-from continuation.numbers.ends import EPS, Ends, Mask, absolute, down, up
+from continuation.arrays import EPS, Array
+from continuation.numbers.ends import Ends, Mask, absolute_range, down, up
 
 LIBRARY_ULPS = 8.0
 
@@ -85,7 +85,7 @@ def power(u: Ends, r: float) -> Ends:
 
 
 RANGES: dict[np.ufunc, Function] = {
-    np.absolute: absolute,
+    np.absolute: absolute_range,
     np.sqrt: sqrt,
     np.cbrt: _monotone(np.cbrt),
     np.exp: _monotone(np.exp, 0.0),
@@ -102,7 +102,7 @@ RANGES: dict[np.ufunc, Function] = {
     np.arccos: _monotone(np.arccos, 0.0, np.inf),
     np.arctan: _monotone(np.arctan),
     np.sinh: _monotone(np.sinh),
-    np.cosh: lambda u: _monotone(np.cosh, 1.0)(absolute(u)),
+    np.cosh: lambda u: _monotone(np.cosh, 1.0)(absolute_range(u)),
     np.tanh: _monotone(np.tanh, -1.0, 1.0),
     np.arcsinh: _monotone(np.arcsinh),
     np.arccosh: _monotone(np.arccosh, 0.0),

@@ -166,7 +166,11 @@ class Truncated(NDArrayOperatorsMixin):
 
     def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
         if ufunc is np.matmul and any(issparse(x) for x in inputs):
-            return self._sparse_product(*inputs)
+            a, b = inputs
+            matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
+            if x.ndim != 1:
+                raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
+            return wrap(sparse_product(matrix, x.c), x.algebra)
         operands = [x if isinstance(x, Truncated) or type(x) is float else gather(x, self.ONE) for x in inputs]
         algebra = common([x for x in operands if isinstance(x, Truncated)])
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
@@ -179,12 +183,6 @@ class Truncated(NDArrayOperatorsMixin):
             if ufunc in ufuncs.DECIDED:
                 return ufuncs.DECIDED[ufunc](*stores)
         raise self.unknown(f"numpy.{ufunc.__name__}")
-
-    def _sparse_product(self, a: Any, b: Any) -> Any:
-        matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
-        if x.ndim != 1:
-            raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
-        return wrap(sparse_product(matrix, x.c), x.algebra)
 
 
 KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
@@ -206,7 +204,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
         parts = [gather(part, one) for part in x]
         if any(isinstance(part, Truncated) for part in parts):
-            return joined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
+            return combined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
         x = parts
     elif isinstance(x, np.ndarray) and x.dtype == object and isinstance(x[()], Truncated):
         return x[()]
@@ -235,14 +233,13 @@ def alike(parts: Any) -> list[Store]:
     if not isinstance(stores[0], Ends):
         return stores
     boxes = max(c.shape[1] for c in stores)
+    return [
+        c if c.shape[1] == boxes else moved(lambda x: np.broadcast_to(x, (length, boxes, *x.shape[2:])), c)
+        for c in stores
+    ]
 
-    def repeated(x: Array) -> Array:
-        return np.broadcast_to(x, (length, boxes, *x.shape[2:]))
 
-    return [c if c.shape[1] == boxes else moved(repeated, c) for c in stores]
-
-
-def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
+def combined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
     """Combine arrays by `join(arrays, own)`."""
     own = parts[0].OWN
     return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))

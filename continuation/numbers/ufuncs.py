@@ -223,7 +223,7 @@ def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
     return yes
 
 
-def finite(c: Store) -> Any:
+def all_finite(c: Store) -> Any:
     """Where all coefficients are finite."""
     if isinstance(c, Ends):
         return (np.isfinite(c.lo) & np.isfinite(c.hi)).all(axis=(0, 1))
@@ -232,7 +232,7 @@ def finite(c: Store) -> Any:
 
 DECIDED: dict[np.ufunc, Callable[..., Any]] = {
     **{f: partial(compared, f) for f in NEGATION},
-    np.isfinite: finite,
-    np.isnan: lambda c: ~finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
+    np.isfinite: all_finite,
+    np.isnan: lambda c: ~all_finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
 }
 """Ufuncs whose results are no series."""

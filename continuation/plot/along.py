@@ -1,8 +1,9 @@
-"""Pictures of one path."""
+"""Pictures of one path, and of the tube of its proof."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,8 +11,9 @@ from continuation.arrays import Array
 from continuation.plot.drawing import (
     COLOURS,
     MOST_COMPONENTS,
+    SMOOTHNESS,
     Axes,
-    Curve,
+    Drawing,
     Drawn,
     axes_or_new,
     check_path,
@@ -23,6 +25,7 @@ from continuation.plot.drawing import (
     stable_parts,
     tidy,
 )
+from continuation.point.segment import cubic
 
 
 def plot_components(
@@ -65,10 +68,10 @@ def plot_components(
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
     parts = stable_parts(path)
     curves = [
-        Curve(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
+        Drawing(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
         for k, (i, label) in enumerate(zip(chosen, labels))
     ]
-    axes = draw(axes, curves, against, legend)
+    axes = draw(axes, [curves], against, legend)
     unknowns = int(np.isfinite(path.u[:, :-1]).any(axis=0).sum())
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
@@ -175,4 +178,30 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     label_axis(axes, "arclength", [path])
     axes.set_ylabel("step in $s$")
+    return tidy(axes)
+
+
+VISIBLE = 0.004
+"""Least drawn radius in picture widths: most tubes are thinner than a line."""
+
+
+def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, axes: Axes | None = None) -> Axes:
+    """Draw the tube in one component of y against the parameter; `gaps` are arclengths."""
+    axes = axes_or_new(axes)
+    from matplotlib.collections import PolyCollection
+
+    rows = zip(cells.begin, cells.end, cells.slope_begin, cells.slope_end)
+    cubics = [[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, SMOOTHNESS)] for row in rows]
+    curves = np.array(cubics)[:, :, [-1, component]]
+    wide = np.maximum(cells.radius[:, [-1, component]], VISIBLE * np.ptp(curves, axis=(0, 1)))[:, None]
+    lo = np.minimum(curves[:, 1:], curves[:, :-1]) - wide
+    hi = np.maximum(curves[:, 1:], curves[:, :-1]) + wide
+    corners = [np.stack([x[..., 0], y[..., 1]], axis=-1) for x, y in ((lo, lo), (hi, lo), (hi, hi), (lo, hi))]
+    boxes = np.stack(corners, axis=2).reshape(-1, 4, 2)
+    axes.add_collection(PolyCollection(list(boxes), color=COLOURS[0], alpha=0.35, linewidth=0.0))
+    axes.plot(*curves.reshape(-1, 2).T, ".-", markevery=SMOOTHNESS, color=COLOURS[0], linewidth=0.8)
+    begins, ends = ([gap[k] for gap in gaps] for k in (0, 1))
+    beside = np.isin(cells.place[:, 1], begins) | np.isin(cells.place[:, 0], ends)
+    axes.plot(*curves[beside][:, [0, -1]].reshape(-1, 2).T, "x", color=COLOURS[1])
+    axes.set(xlabel="parameter", ylabel=f"y[{component}]", title=f"{len(gaps)} gaps" if gaps else "complete")
     return tidy(axes)

@@ -10,7 +10,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.plot.drawing import (
     Axes,
-    Curve,
+    Drawing,
     Drawn,
     Parts,
     check_path,
@@ -69,13 +69,13 @@ def plot_bifurcation(
     if not paths:
         raise ValueError("path: expected at least one, found none")
     wanted = value if component is None else component
-    curves = []
+    curves: list[list[Drawing]] = []
     for k, one in enumerate(paths):
         check_path(one)
         s, u = sampled(one)
         label = (names[k] if names is not None else None) or "_"
         heights = [at_event(event, one, wanted) for event in one.events]
-        curves.append(Curve(one, s, u, _along(one, s, u, wanted), heights, label, k, _parts(one, s, u, stable)))
+        curves.append([Drawing(one, s, u, _along(one, s, u, wanted), heights, label, k, _parts(one, s, u, stable))])
     axes = draw(axes, curves, against, legend)
     axes.set_ylabel(_named(paths[0], wanted))
     return axes

@@ -51,7 +51,7 @@ Parts: TypeAlias = tuple[Sequence[float], bool] | None
 
 
 @frozen(eq=False)
-class Curve:
+class Drawing:
     """One number along a path.
 
     Attributes
@@ -127,13 +127,12 @@ def stable_parts(path: Drawn) -> Parts:
     return edges, bool(stable[0])
 
 
-def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool) -> Axes:
-    """Draw curves with events; with `legend` also names and arrows."""
+def draw(axes: Axes | None, paths: Sequence[Sequence[Drawing]], against: str, legend: bool) -> Axes:
+    """Draw curves, one or more of each path, with events; with `legend` also names and arrows."""
     if against not in ("lam", "arclength"):
         raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
     axes = axes_or_new(axes)
-    lam = against == "lam"
-    flat = True
+    lam, flat, curves = against == "lam", True, [curve for mine in paths for curve in mine]
     for curve in curves:
         x, knots, events = curve.u[:, -1] if lam else curve.s, curve.s, curve.path.events
         looks = line_style(curve.k)
@@ -155,7 +154,7 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
     tidy(axes)
     # Fix the limits, which names need.
     axes.get_xlim()
-    _mark(axes, curves, lam, legend)
+    _mark(axes, paths, lam, legend)
     if not legend:
         return axes
     for curve in curves:
@@ -170,17 +169,17 @@ def draw(axes: Axes | None, curves: Sequence[Curve], against: str, legend: bool)
     return axes
 
 
-def _mark(axes: Axes, curves: Sequence[Curve], lam: bool, named: bool) -> None:
+def _mark(axes: Axes, paths: Sequence[Sequence[Drawing]], lam: bool, named: bool) -> None:
     """Mark events; name the first of each name, with their number, and early ends."""
     from matplotlib.lines import Line2D
 
     said = set()
-    for path in {id(curve.path): curve.path for curve in curves}.values():
-        mine = [curve for curve in curves if curve.path is path]
+    for mine in paths:
+        path = mine[0].path
         for k, event in enumerate(path.events):
             x, heights = event.lam if lam else event.arclength, [float(curve.at[k]) for curve in mine]
             # Round-off of events must not set the scale, as by `plot`.
-            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **sign(event)))
+            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **mark_of(event)))
             many = sum(other.name == event.name for other in path.events)
             if named and event.name not in said:
                 _say(axes, f"{event.name} ({many})" if many > 1 else event.name, x, max(heights))
@@ -274,6 +273,6 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
         axes.invert_xaxis()
 
 
-def sign(event: Any) -> dict[str, Any]:
+def mark_of(event: Any) -> dict[str, Any]:
     """Mark of an event."""
     return MARKS.get(event.kind, OTHER)

@@ -6,13 +6,23 @@ import math
 import pickle
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from continuation.arrays import Array
 from continuation.linear import SingularError, factor_bordered
-from continuation.testing.subject import Place, Subject, dense, fail, random_directions, reporting, require
+from continuation.testing.subject import (
+    CheckFailure,
+    Place,
+    Subject,
+    compare,
+    dense,
+    random_directions,
+    reporting,
+    require,
+)
 
 _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
 
@@ -63,6 +73,15 @@ def _entries(found: Any, n: int) -> bool:
     return whole and not isinstance(found, str)
 
 
+def _factored(answer: Any, n: int) -> bool:
+    if not isinstance(answer, tuple) or len(answer) != 2 or np.shape(answer[1]) != (n,):
+        return False
+    # Another check tests regularity.
+    with suppress(SingularError):
+        factor_bordered(answer[0], np.asarray(answer[1], dtype=float), np.ones(n + 1))
+    return True
+
+
 residual = answers(
     "residual",
     lambda h, place: np.asarray(h.residual(place.y, place.lam)),
@@ -91,45 +110,30 @@ finish = answers(
     "None or one finite number for each unknown",
 )
 events = answers("events", _monitored, lambda x, _: bool(np.isfinite(x).all()), "a finite number of every monitor")
+jacobian_types = answers(
+    "jacobian",
+    lambda h, place: h.jacobian(place.y, place.lam),
+    _factored,
+    "a tuple (H_y, H_lam), of which H_lam has one number for each unknown",
+)
 references = answers(
     "references", lambda h, _: h.references, _entries, "a sequence of BibTeX entries (@kind{key, ...})"
 )
 
 
-def jacobian_types(subject: Subject) -> None:
-    """`jacobian` gives a matrix that the engine factors, and a vector."""
-    for place in subject.places:
-        with reporting("jacobian", place.where):
-            answer = subject.homotopy.jacobian(place.y, place.lam)
-        said = f"jacobian: {place.where} expected a tuple (H_y, H_lam), found {type(answer).__name__}"
-        require(isinstance(answer, tuple) and len(answer) == 2, said)
-        n, shape = place.u.size - 1, np.shape(answer[1])
-        require(shape == (n,), f"jacobian: {place.where} expected H_lam of shape {(n,)}, found {shape}")
-        try:
-            with np.errstate(all="ignore"):
-                factor_bordered(answer[0], np.asarray(answer[1], dtype=float), np.ones(n + 1))
-        except SingularError:
-            # Another check tests regularity.
-            continue
-        except (TypeError, ValueError) as error:
-            fail(f"jacobian: {place.where} {error}")
-
-
 def repeatable(subject: Subject) -> None:
     """Equal arguments give equal bits; calls change neither arguments nor earlier answers."""
     first, second = (subject.homotopy.start()[0] for _ in range(2))
-    if isinstance(first, np.ndarray) and first.flags.writeable and np.shares_memory(first, second):
-        fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
-    for place in subject.places:
-        for name in filter(subject.has, _METHODS):
-            kept = _asked(subject, place, name)
-            before = _numbers(kept, place)
-            for elsewhere in subject.places:
-                if elsewhere is not place:
-                    _asked(subject, elsewhere, name)
-            now, again = _numbers(kept, place), _numbers(_asked(subject, place, name), place)
-            _same(name, place, before, now, "an answer changes when the method is called again: return new arrays")
-            _same(name, place, before, again, "a second call with the same arguments differs from the first")
+    if isinstance(first, np.ndarray) and first.flags.writeable:
+        kept = "start: it returns its own array; changing y0 in place changes the homotopy (return a copy)"
+        require(not np.shares_memory(first, second), kept)
+    for name in filter(subject.has, _METHODS):
+        asked = [(place, _asked(subject, place, name)) for place in subject.places]
+        for place, (answer, before) in asked:
+            changes = "an answer changes when the method is called again (return new arrays): number"
+            compare(name, place, changes, _numbers(name, answer, place), before)
+            differs = "a second call with the same arguments differs from the first: number"
+            compare(name, place, differs, _asked(subject, place, name)[1], before)
 
 
 def picklable(subject: Subject) -> None:
@@ -137,7 +141,8 @@ def picklable(subject: Subject) -> None:
     try:
         again = pickle.loads(pickle.dumps(subject.homotopy))
     except Exception as error:  # Pickle raises anything.
-        fail(f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)")
+        said = f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)"
+        raise CheckFailure(said) from error
     require(np.array_equal(Subject(again).start.u, subject.start.u), "picklable: the copy starts elsewhere")
     same_residual(subject, again, "picklable", "the copy")
 
@@ -146,42 +151,32 @@ def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
     """Both residuals agree bit for bit."""
     for place in subject.places:
         with reporting(f"residual of {what}", place.where):
-            found, wanted = (np.asarray(h.residual(place.y, place.lam)) for h in (other, subject.homotopy))
-        _same(name, place, [wanted], [found], f"{what} has another residual")
+            found, wanted = (h.residual(place.y, place.lam) for h in (other, subject.homotopy))
+        compare(name, place, f"{what} has another residual: number", found, wanted)
 
 
 _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "observe", "switches")
 
+_PARTS: Mapping[str, Callable[[Any, int], list[Any]]] = {
+    "jacobian": lambda answer, n: [dense(answer[0], n), answer[1]],
+    "bordered": lambda answer, n: [answer.solve(np.ones(n), 1.0), answer.sign],
+    "observe": lambda answer, _: list(answer.values()),
+}
+"""An answer's numbers."""
 
-def _asked(subject: Subject, place: Place, name: str) -> Any:
+
+def _asked(subject: Subject, place: Place, name: str) -> tuple[Any, Array]:
+    """An answer, and its numbers now."""
     v, border = random_directions(place.u.size, 2, 1)
     more = {"bordered": (border,), "differential": (v,)}.get(name, ())
     arguments = (place.u, v) if name == "max_step" else (place.y, place.lam, *more)
     given = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
     with reporting(name, place.where):
         answer = getattr(subject.homotopy, name)(*given)
-    before, after = ([np.asarray(x) for x in some] for some in (arguments, given))
-    _same(name, place, before, after, "it changes its arguments")
-    return answer
+    compare(name, place, "it changes its arguments: number", np.hstack(given), np.hstack(arguments))
+    return answer, _numbers(name, answer, place)
 
 
-def _numbers(answer: Any, place: Place) -> list[Array]:
-    n = place.u.size - 1
-    if hasattr(answer, "solve"):
-        return [np.array(answer.solve(np.ones(n), 1.0)), np.array([float(answer.sign)])]
-    if isinstance(answer, Mapping):
-        return [np.array(list(answer.values()), dtype=float)]
-    if isinstance(answer, tuple):
-        return [dense(answer[0], n).copy(), np.array(answer[1], dtype=float)]
-    return [np.array(answer, dtype=float)]
-
-
-def _same(name: str, place: Place, before: list[Array], after: list[Array], sentence: str) -> None:
-    for p, q in zip(before, after, strict=True):
-        if not np.array_equal(p, q, equal_nan=True):
-            fail(f"{name}: {place.where} {sentence}, by up to {difference(p, q):.3g}")
-
-
-def difference(p: Array, q: Array) -> float:
-    """The largest difference; infinite between different shapes."""
-    return float(np.abs(p - q).max()) if np.shape(p) == np.shape(q) else math.inf
+def _numbers(name: str, answer: Any, place: Place) -> Array:
+    parts = _PARTS[name](answer, place.u.size - 1) if name in _PARTS else [answer]
+    return np.hstack([np.ravel(part) for part in parts]).astype(float)

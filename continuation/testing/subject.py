@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 from attrs.validators import optional
 
 from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.controllers import AllgowerGeorg, Bounds, Controller
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import from_residual
 from continuation.evaluation.evaluator import Evaluator
@@ -23,7 +22,6 @@ from continuation.path import Path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.status import Kind, Status
-from continuation.step.presets import DEFAULT
 from continuation.step.start import StartError, first_point
 from continuation.step.tracer import Tracer
 from continuation.step.verdict import refused_start
@@ -43,15 +41,10 @@ class CheckFailure(AssertionError):
     """A broken promise of a homotopy."""
 
 
-def fail(sentence: str) -> NoReturn:
-    """End a check."""
-    raise CheckFailure(sentence)
-
-
 def require(fine: bool, sentence: str) -> None:
     """End a check unless `fine`."""
     if not fine:
-        fail(sentence)
+        raise CheckFailure(sentence)
 
 
 @contextmanager
@@ -63,7 +56,7 @@ def reporting(method: str, where: str) -> Iterator[None]:
     except CheckFailure:
         raise
     except Exception as error:  # Plug-ins may raise anything.
-        fail(f"{method}: {where} it raises {type(error).__name__}: {error}")
+        raise CheckFailure(f"{method}: {where} it raises {type(error).__name__}: {error}") from error
 
 
 @frozen(eq=False)
@@ -118,19 +111,17 @@ class Subject:
             with reporting("max_step", "near the start"):
                 aside *= np.clip(0.5 * float(self.homotopy.max_step(start.u.copy(), aside.copy())), 0.0, 1.0)
         beside = Place("beside the start", start.u + aside)
-        return (start, *([beside] if self.finite(beside) else []), *map(self._at, self._sampled()))
+        return (start, *([beside] if self.finite(beside) else []), *self._sampled)
 
-    def _at(self, k: int) -> Place:
-        step = self.path.steps[k]
-        return Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u)
-
-    def _sampled(self) -> list[int]:
-        """Two inner steps, since the end may be singular."""
+    @cached_property
+    def _sampled(self) -> dict[Place, Array]:
+        """Two inner steps, since the end may be singular, and their tangents."""
         try:
             last = len(self.regular) - 1
         except CheckFailure:
-            return []
-        return sorted({k for k in (last // 2, last - 1) if k > 0})
+            return {}
+        steps = [self.path.steps[k] for k in sorted({last // 2, last - 1}) if k > 0]
+        return {Place(f"at step {s.index} of the path (lam = {s.lam:.6g})", s.u): s.tangent for s in steps}
 
     def finite(self, place: Place) -> bool:
         """Whether the residual is finite."""
@@ -146,14 +137,13 @@ class Subject:
                 return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)[0]
             except StartError as error:
                 verdict = refused_start(error)
-                fail(f"{verdict.status.name}: {verdict}")
+                raise CheckFailure(f"{verdict.status.name}: {verdict}") from error
 
     @property
     def limits(self) -> Budget:
         """Budget of a traced path."""
-        if self.steps is not None:
-            return Budget(steps=self.steps)
-        return Budget(steps=LONGEST_PATH if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
+        usual = LONGEST_PATH if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET
+        return Budget(steps=self.steps or usual)
 
     @cached_property
     def path(self) -> Path:
@@ -166,22 +156,16 @@ class Subject:
         return path
 
     @cached_property
-    def controller(self) -> Controller:
-        """The default controller, with shorter steps for short paths."""
-        usual = DEFAULT.controller
+    def longest(self) -> float | None:
+        """The longest step, None for the default: short paths get more points."""
         tracer = Tracer(self.homotopy, budget=self.limits)
-        steps = list(tracer)
-        if len(steps) > 2 and steps[-1].kind == Kind.TARGET:
-            steps.pop()
-        if not isinstance(usual, AllgowerGeorg) or not 2 <= len(steps) < FEWEST:
-            return usual
+        steps = [step for step in tracer if step.kind != Kind.TARGET or step.index < 2]
         # Half a step more: a symmetric path may branch in its middle.
-        longest = steps[-1].arclength / (FEWEST + 0.5)
-        return evolve(usual, bounds=Bounds(maximum=longest, initial=longest))
+        return steps[-1].arclength / (FEWEST + 0.5) if 2 <= len(steps) < FEWEST else None
 
     def traced(self, **options: Any) -> Path:
         """A trace within the limits."""
-        tracer = Tracer(self.homotopy, **{"budget": self.limits, "controller": self.controller, **options})
+        tracer = Tracer(self.homotopy, **{"budget": self.limits, "max_step": self.longest, **options})
         for _ in tracer:
             pass
         return tracer.path
@@ -199,11 +183,10 @@ class Subject:
     def points(self) -> Iterator[tuple[Place, Linearization]]:
         """Places on the path, linearized."""
         yield self.start, self.first.with_weights(np.ones_like(self.start.u))
-        for k in self._sampled():
-            step = self.path.steps[k]
-            border = step.tangent / float(np.linalg.norm(step.tangent))
-            with reporting("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
-                yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
+        for place, tangent in self._sampled.items():
+            border = tangent / float(np.linalg.norm(tangent))
+            with reporting("bordered" if self.has("bordered") else "jacobian", place.where):
+                yield place, linearize(self.evaluator, place.u, np.ones_like(border), border)
 
     def derivative(self, place: Place) -> Array:
         """The matrix [[H_y, H_lam]], dense, shape (N, N + 1)."""
@@ -213,6 +196,20 @@ class Subject:
         else:
             H_y, H_lam = from_residual(self.homotopy.residual, self.homotopy.start())(place.y, place.lam)
         return np.column_stack([dense(H_y, place.u.size - 1), np.asarray(H_lam, dtype=float)])
+
+
+def compare(name: str, place: Place, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
+    """End a check unless numbers have one shape and agree, by default bit for bit."""
+    found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+    shapes = f"expected shape {expected.shape}, found {found.shape}"
+    require(found.shape == expected.shape, f"{name}: {place.where} {shapes}")
+    with np.errstate(all="ignore"):
+        error = np.where((found == expected) | (np.isnan(found) & np.isnan(expected)), 0.0, np.abs(found - expected))
+        excess = np.where(np.isfinite(error), error / np.maximum(allowed, np.finfo(float).tiny), np.inf)
+    if excess.max(initial=0.0) > 1.0:
+        i = int(np.argmax(excess))
+        values = f"is {found.flat[i]:.10g}, expected {expected.flat[i]:.10g}, a difference of {error.flat[i]:.3g}"
+        raise CheckFailure(f"{name}: {place.where} {what} {i} {values}")
 
 
 def dense(H_y: Any, n: int) -> Array:

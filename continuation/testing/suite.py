@@ -143,14 +143,14 @@ def run_checks(
         if before is not None and before.outcome != PASSED:
             results[name] = Result(name, NOT_RUN, f"it needs {check.after}, which did not pass")
             continue
+        outcome, message = PASSED, ""
         try:
             check()
         except CheckFailure as failure:
-            outcome, message = (EXPECTED, f"{failure} ({reason})") if reason is not None else (FAILED, str(failure))
-        else:
-            outcome, message = PASSED, ""
-            if reason is not None:
-                outcome, message = FAILED, f"expected to fail ({reason}), but it passes: take it off the list"
+            outcome, message = FAILED, str(failure)
+        if reason is not None:
+            passes = f"expected to fail ({reason}), but it passes: take it off the list"
+            outcome, message = (EXPECTED, f"{message} ({reason})") if outcome == FAILED else (FAILED, passes)
         results[name] = Result(name, outcome, message)
     return tuple(results.values())
 

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array
 from continuation.chart import Answer, Method, Problem, Rung
 from continuation.counts import Counts
+from continuation.linear import Banded
 
 STEPS = 1000
 """Limit per path; a successful plain loop needs some hundred."""
@@ -29,43 +29,29 @@ LONGEST = 30.0
 """Longest step of PITCON and bice."""
 
 
-@frozen
 class _Curve:
-    """A problem's equations, counted, and where its path ends."""
+    """A problem's equations, counted, and where its path ends; `direction` of lam at the start, `last` at the end."""
 
-    problem: Problem
-    counts: Counts = field(factory=Counts)
-
-    @property
-    def start(self) -> Array:
-        y, lam = self.problem.subject.start()
-        return np.append(y, lam)
-
-    @property
-    def aim(self) -> float:
-        end = self.problem.truth.end
-        assert end is not None
-        return float(end[-1])
-
-    @property
-    def direction(self) -> float:
-        """Of lam at the start."""
-        return math.copysign(1.0, self.aim - self.start[-1])
+    def __init__(self, problem: Problem) -> None:
+        y, lam = problem.subject.start()
+        self.subject, self.counts, self.start = problem.subject, Counts(), np.append(y, lam)
+        self.aim = math.nan if problem.truth.end is None else float(problem.truth.end[-1])
+        self.direction = math.copysign(1.0, self.aim - lam)
+        self.last = self.direction * (-1.0) ** (problem.truth.turns or 0)
 
     def arrived(self, before: float, after: float) -> bool:
         """Whether lam passes the target in the direction of the path's end."""
-        last = self.direction * (-1.0) ** (self.problem.truth.turns or 0)
-        return last * (before - self.aim) < 0.0 <= last * (after - self.aim)
+        return self.last * (before - self.aim) < 0.0 <= self.last * (after - self.aim)
 
     def residual(self, u: Array) -> Array:
         self.counts.residuals += 1
-        return np.asarray(self.problem.subject.residual(u[:-1], float(u[-1])))
+        return np.asarray(self.subject.residual(u[:-1], float(u[-1])))
 
     def jacobian(self, u: Array) -> tuple[Any, Array]:
         """H_y, a numpy or scipy matrix, and H_lam."""
         self.counts.factorizations += 1
-        H_y, H_lam = self.problem.subject.jacobian(u[:-1], float(u[-1]))
-        return H_y.tosparse() if hasattr(H_y, "tosparse") else H_y, H_lam
+        H_y, H_lam = self.subject.jacobian(u[:-1], float(u[-1]))
+        return H_y.tosparse() if isinstance(H_y, Banded) else H_y, H_lam
 
     def solve(self, u: Array, row: Array, right: Array) -> Array:
         """Solve H' x = right[:-1], row x = right[-1]."""

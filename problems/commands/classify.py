@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 
 from continuation.cli import SUCCESS, Subparsers
-from continuation.cli.archives import complaints
 from continuation.cli.parser import add_command, argument, positive
 from problems.commands.arguments import PROBLEM_FORMATS
 
@@ -16,7 +15,7 @@ def register(subparsers: Subparsers) -> None:
         subparsers, run, "classify",
         argument("file", metavar="FILE", help=f"A, alone or beside q: {PROBLEM_FORMATS}"),
         argument("--width", type=positive, default=110, help="longest evidence in characters (default: 110)"),
-        help="the matrix classes of A, each with its evidence",
+        names={"path": "FILE", "A": "FILE"}, help="the matrix classes of A, each with its evidence",
         description="Every class test on A in exact arithmetic; floats are taken as the rationals that they are.",
     )  # fmt: skip
 
@@ -26,8 +25,5 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.lcp.classes import classify, table
     from problems.lcp.data.files import read_matrix
 
-    with complaints("FILE", names={"path": "FILE", "A": "FILE"}):
-        A = read_matrix(arguments.file)
-        classification = classify(A)
-    print(table(classification, arguments.width))
+    print(table(classify(read_matrix(arguments.file)), arguments.width))
     return SUCCESS

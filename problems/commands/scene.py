@@ -11,7 +11,7 @@ import numpy as np
 from continuation.arguments.plugins import SCENES
 from continuation.cli import FAILURE, SUCCESS, UsageError
 from continuation.cli.figures import check_picture, save
-from continuation.cli.making import homotopy_of, refused
+from continuation.cli.making import homotopy_of
 from continuation.cli.parser import paint
 
 WORD = "scene"
@@ -34,12 +34,12 @@ def run(arguments: argparse.Namespace) -> int:
     title = " ".join([name, *(f"{key}={value}" for key, value in values.items())])
     from problems.scenes import order, solve
 
-    with refused(name):
-        problem = scene.problem()
-        solution = solve(scene)
-        # A scene's own path may end on a ray (collapse), which `answer` interprets.
-        well = getattr(scene, "solve", None) is not None or bool(solution.success)
-        answer = scene.answer(solution) if well else {}
+    arguments.plugin, arguments.name = "name", name
+    problem = scene.problem()
+    solution = solve(scene)
+    # A scene's own path may end on a ray (collapse), which `answer` interprets.
+    well = getattr(scene, "solve", None) is not None or bool(solution.success)
+    answer = scene.answer(solution) if well else {}
     if arguments.json:
         found = {key: np.asarray(value, dtype=float).tolist() for key, value in answer.items()}
         print(json.dumps({"scene": title, "unknowns": order(problem), "solved": well, "answer": found}))

@@ -9,7 +9,7 @@ from typing import Any
 
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
-from continuation.cli.archives import complaints
+from continuation.cli.figures import check_picture, save
 from continuation.cli.parser import above_zero, add_command, argument, paint, parsed
 from problems.commands import scene
 from problems.commands.arguments import PROBLEM_FORMATS, file_of
@@ -17,11 +17,6 @@ from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
 """Printed components; --json prints all."""
-
-_ARGUMENTS = {
-    "path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy",
-    "seconds": "--seconds",
-}  # fmt: skip
 
 
 def register(subparsers: Subparsers) -> None:
@@ -44,6 +39,8 @@ def register(subparsers: Subparsers) -> None:
                  help="wall-clock time; default: work that takes about a minute"),
         argument("--progress", action="store_true", help="show the progress on stderr"),
         argument("--json", action="store_true", help="print everything as one JSON object"),
+        names={"path": "FILE", "A": "FILE", "old": "--archive", "new": "--archive",
+               **{name: f"--{name}" for name in ("q", "x0", "archive", "homotopy", "seconds")}},
         help="solve a linear complementarity problem, with bounds or not, or a quadratic program",
         description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0; with bounds in the file, x between them. "
         "Or minimise 1/2 x'P x + c'x under the constraints in the file. With the word scene for the file: a scene of "
@@ -62,10 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.scene:
         raise UsageError("unrecognized arguments", " ".join(arguments.scene))
     if arguments.plot is not None:
-        from continuation.cli.figures import check_picture
-
         check_picture("--plot", arguments.plot)
-    with complaints("--archive", new="--archive", names=_ARGUMENTS), file_of(arguments.file) as file:
+    with file_of(arguments.file) as file:
         program = read_program(file) if arguments.q is None else None
         problem = read_problem(file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
@@ -150,7 +145,6 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
 
 
 def _draw(solution: Any, n: int, file: str) -> None:
-    from continuation.cli.figures import save
     from continuation.plot import MOST_COMPONENTS, plot_components
 
     components = range(min(n, MOST_COMPONENTS))

@@ -302,7 +302,7 @@ class PeriodicOrbit:
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
-        """An orbit on an adapted mesh; see `continuation.renewal`."""
+        """An orbit on an adapted mesh; see `continuation.tracing`."""
         given, tangent = self._remeshed((u[:-1], float(u[-1])), v=v)
         assert tangent is not None
         new = given._corrected(tangent)

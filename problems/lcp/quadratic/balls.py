@@ -8,9 +8,9 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.engine import up_by
-from continuation.numbers.ends import EPS, Ends, accumulated, up_sum
+from continuation.numbers.ends import Ends, accumulated, up_sum
 
 Single = NDArray[np.float32]
 

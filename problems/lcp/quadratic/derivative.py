@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.engine import up_by
-from continuation.numbers.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
+from continuation.numbers.ends import Ends, accumulated, bilinear, thin, up_sum
 from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Index
-from continuation.numbers.ends import EPS, Ends, thin
+from continuation.numbers.ends import Ends, thin
 
 
 @frozen(eq=False, slots=False)

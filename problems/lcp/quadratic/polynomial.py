@@ -12,11 +12,10 @@ from math import factorial
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Slabs, evaluated
-from continuation.certificate.engine import up_by
-from continuation.certificate.inverse import inverses, times
-from continuation.numbers.ends import EPS, Ends, accumulated, thin
+from continuation.certificate.engine import inverses, times, up_by
+from continuation.numbers.ends import Ends, accumulated, thin
 from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
 from problems.lcp.quadratic.derivative import Derivative
 

@@ -81,7 +81,7 @@ SOLVE = [
     ("solve good.npz --archive good.npz", "--archive: good.npz: exists already, and is never overwritten"),
     ("solve good.npz --archive no/a.h5", "--archive: no/a.h5: there is no directory no"),
     ("solve good.npz --plot a.xyz", "--plot: expected a name in .png, .pdf, .svg"),
-    ("solve good.npz --plot no/a.png", "--plot: expected a file in an existing directory"),
+    ("solve good.npz --plot no/a.png", "--plot: expected a place to write to, found 'no/a.png' (No such"),
     ("solve gone.npz --seconds 0", "--budget-seconds/--seconds: expected a positive number"),
     *[(f"solve gone.npz {bad}", bad.split()[0]) for bad in (
         "--tolerance 2", "--seed -1", "--restarts 1.5",

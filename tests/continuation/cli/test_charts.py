@@ -5,7 +5,7 @@ import pytest
 from continuation import chart
 from continuation.arguments import plugins
 from continuation.cli import charts
-from continuation.cli.parser import Parser, UsageError
+from continuation.cli.parser import Parser
 from problems.charts.subjects import cosine
 
 from ..chart.util import boom
@@ -58,5 +58,5 @@ def test_the_command_writes_everything(installed, tmp_path, capsys):
 def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):
     assert command() == 0
     assert capsys.readouterr().out == "closed\n"
-    with pytest.raises(UsageError, match="open: no study of this name is installed; known are closed"):
+    with pytest.raises(plugins.PluginError, match="open: no study of this name is installed; known are closed"):
         command("open")
