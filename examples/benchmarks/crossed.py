@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 
@@ -30,8 +30,8 @@ class Crossed:
         On the way, in order.
     begin, end : float
         Of s.
-    mix, shape : ndarray, shape (N, N), (N, 4)
-        T, and the coefficients of the unknowns that follow.
+    mix, shape, unmix : ndarray, shape (N, N), (N, 4), (N, N)
+        T, the coefficients of the unknowns that follow, and T^-1.
     scales, origin, equations : ndarray
         D and a, c and b, E.
     angle : float
@@ -48,12 +48,8 @@ class Crossed:
     scales: Array
     origin: Array
     equations: Array
+    unmix: Array
     angle: float = 1.0
-    unmix: Array = field(init=False)
-
-    @unmix.default
-    def _unmix(self) -> Array:
-        return np.linalg.inv(self.mix)
 
     def _x(self, y: Any, lam: Any) -> tuple[Array, float]:
         return self.unmix @ ((y - self.origin[:-1]) / self.scales[:-1]), (lam - self.origin[-1]) / self.scales[-1]
@@ -120,7 +116,7 @@ def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Cr
     shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
     E = 10.0 ** rng.uniform(-units, units, n)
     shape = rng.normal(0.0, 0.5, (n, 4))
-    return Crossed(mix=mix, shape=shape, scales=D, origin=shift, equations=E[:, None] * equations, **known)
+    return Crossed(mix=mix, unmix=np.linalg.inv(mix), shape=shape, scales=D, origin=shift, equations=E[:, None] * equations, **known)
 
 
 def _graph(k: Array, s: Any) -> Any:
@@ -141,13 +137,8 @@ def _roots(k: Array, s: Array) -> list[float]:
     return roots
 
 
-def apart(rng: np.random.Generator, n: int, units: float) -> Crossed:
-    """As `transversal`, and the graphs differ by about 1."""
-    return transversal(rng, n, units, near=False)
-
-
 def transversal(rng: np.random.Generator, n: int, units: float, near: bool = True) -> Crossed:
-    """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1 and cross at most three times; the path is the first."""
+    """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1, if `near`, and cross at most three times; the path is f."""
     while True:
         a = rng.normal(0.0, 1.0, 3)
         b = a + rng.normal(0.0, 1.0, 3) * (10.0 ** rng.uniform(-2.0, 0.0) if near else 1.0)

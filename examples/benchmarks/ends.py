@@ -134,10 +134,7 @@ def truss(generator: np.random.Generator) -> Case:
     def residual(y: Any, lam: Any) -> Any:
         stretch = [((y - foot) * (y - foot)).sum() - 1.0 - rise**2 for foot in feet]
         force = [0.5 * e * (y - foot) for e, foot in zip(stretch, feet)]
-        total = force[0]
-        for part in force[1:]:
-            total = total + part
-        return total + lam * np.array([0.0, 0.0, 1.0])
+        return sum(force[1:], force[0]) + lam * np.array([0.0, 0.0, 1.0])
 
     # On the axis the force is bars z' (z'^2 - rise^2) / 2, z' = rise + z: its least value is the fold's load.
     fold = bars * rise**3 / 27.0**0.5
