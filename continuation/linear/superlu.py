@@ -18,12 +18,7 @@ from continuation.linear.look import Look
 
 
 def permutation_sign(permutation: NDArray[np.integer]) -> int:
-    """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n).
-
-    Parameters
-    ----------
-    permutation : ndarray of int
-    """
+    """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n)."""
     n = len(permutation)
     edges = coo_array((np.ones(n, dtype=np.int8), (np.arange(n), permutation)), shape=(n, n))
     cycles: int = connected_components(edges, directed=False, return_labels=False)
@@ -32,11 +27,7 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 
 @frozen(eq=False)
 class SparseFactor:
-    """A factored sparse matrix.
-
-    `solve`: solves A x = rhs, shape (N,), and keeps `rhs`. `fill`: number of entries, or 0. `tell_sign`: sign of det A,
-    or 0.
-    """
+    """A factored sparse matrix: `solve` keeps rhs, (N,); `fill`: entries; `tell_sign`: of det A; 0 if unknown."""
 
     name: str
     solve: Callable[[Array], Array]
@@ -80,7 +71,7 @@ class SuperLUMethod:
     def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None if a pivot is zero."""
         if not self.weak_pivots:
-            # MMD fills faces of a symmetric pattern half as much as the default.
+            # MMD fills symmetric patterns half as much as the default.
             return factor_superlu(look.matrix, permc_spec="MMD_AT_PLUS_A")
         if not look.symmetric_pattern:
             return factor_superlu(look.matrix, permc_spec="COLAMD")

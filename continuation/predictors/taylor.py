@@ -39,8 +39,8 @@ LONGEST_STEP = 100.0
 def best_order(n: int, accuracy: float) -> int:
     """The order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f = 4 + n/60 is at most a third slower than the best. The least (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K
-    + f).
+    f = 4 + n/60 is at most a third slower than the best. (f + K) exp(L/K), L = -ln accuracy, is least at
+    K^2 = L (K + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -69,8 +69,8 @@ class Taylor:
     order : int, optional
         Default: `best_order`.
     accuracy : float
-        Size of the last terms at a step's end, in the metric. The corrector squares it; dense output has it times
-        2^-order in mid-step.
+        Size of the last terms at a step's end, in the metric: the corrector squares it; mid-step it is 2^-order times
+        that.
     safety : float
         Factor on the reach.
     rational : bool
