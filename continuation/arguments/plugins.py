@@ -32,7 +32,7 @@ Factory = Callable[..., Any]
 
 
 class PluginError(LookupError):
-    """A name that gives no homotopy."""
+    """A plug-in's name is unknown or ambiguous, or its import fails."""
 
 
 @frozen

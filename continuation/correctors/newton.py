@@ -20,10 +20,10 @@ from continuation.tolerance import Tolerance
 
 
 def updated(increments: list[Array], z: Array, weights: Array) -> Array:
-    """Apply Broyden's good update to a chord increment z; append it to `increments`.
+    """A chord increment z after Broyden's good update, which all `increments` since the factorisation define.
 
-    All increments since the factorisation define it (Kelley, Iterative Methods for Linear and Nonlinear Equations,
-    Section 7.3).
+    It is appended to `increments`, which are emptied first if they are round-off (Kelley, Iterative Methods for Linear
+    and Nonlinear Equations, Section 7.3).
     """
     for before, after in pairwise(increments):
         z = z + (inner(weights, before, z) / inner(weights, before, before)) * after

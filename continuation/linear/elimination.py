@@ -39,9 +39,9 @@ class Elimination:
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
-    """Border A by W = A^-1 P and rows [R, S], (k, n + k).
+    """Factors of [[A, P], [R, S]] from a solver `first` of A, W = A^-1 P and the rows [R, S], (k, n + k).
 
-    Raises `SingularError` if k > 1 and the whole is singular.
+    `SingularError` if a Schur complement of order k > 1 is singular; for k = 1 solutions are then infinite.
     """
     R, S = np.split(rows, [len(W)], axis=1)
     schur = S - R @ W

@@ -22,7 +22,7 @@ from problems.options import quiet
 
 @frozen(kw_only=True)
 class Blend:
-    """H1 = ``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]``"""
+    """Weights `x`, `y`, `A` = a, b, c in H1 = sign [(1-lam)(Ax+q-y) + lam (a (x-x0) + b (y0-y) + c A(x-x0))]."""
 
     sign: int
     x: int | Array = 0
