@@ -203,7 +203,7 @@ def XuHomotopy(
 ) -> TwoVectorHomotopy:
     """Xu et al., for P-matrices: ``(1-l)(y-Ax-q) - l(x-x0)``, ``xy - l x0 y0``.
 
-    Yu's path for equal y0.
+    From the same x0 and y0 its path is that of `YuHomotopy`.
 
     Parameters
     ----------
