@@ -36,9 +36,7 @@ if TYPE_CHECKING:
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
     from continuation.step.guard import Guard
-    from continuation.step.options import Options
     from continuation.step.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
-    from continuation.step.settings import Settings
     from continuation.step.tracer import Observer, Tracer
     from continuation.tolerance import Tolerance
     from continuation.tracing import solve_at, trace, trace_both
@@ -71,8 +69,6 @@ _HOMES = {
     "renewal": "Followed follow",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
-    "step.options": "Options",
-    "step.settings": "Settings",
     "step.tracer": "Observer Tracer",
     "tolerance": "Tolerance",
     "tracing": "solve_at trace trace_both",
@@ -109,12 +105,10 @@ __all__ = [
     "Metric",
     "Monitor",
     "Observer",
-    "Options",
     "Path",
     "Predictor",
     "Preset",
     "Proof",
-    "Settings",
     "Stability",
     "Status",
     "Step",

@@ -18,7 +18,12 @@ from continuation.linear.look import Look
 
 
 def permutation_sign(permutation: NDArray[np.integer]) -> int:
-    """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n)."""
+    """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n).
+
+    Parameters
+    ----------
+    permutation : ndarray of int
+    """
     n = len(permutation)
     edges = coo_array((np.ones(n, dtype=np.int8), (np.arange(n), permutation)), shape=(n, n))
     cycles: int = connected_components(edges, directed=False, return_labels=False)

@@ -1,6 +1,6 @@
 """The archive, measured: memory of a long path; what files, sweeps and columns cost beside none or h5py.
 
-    python examples/benchmarks/archive_benchmark.py [memory] [beside] [--points N]
+python examples/benchmarks/archive_benchmark.py [memory] [beside] [--points N]
 """
 
 import os

@@ -116,7 +116,8 @@ def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Cr
     shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
     E = 10.0 ** rng.uniform(-units, units, n)
     shape = rng.normal(0.0, 0.5, (n, 4))
-    return Crossed(mix=mix, unmix=np.linalg.inv(mix), shape=shape, scales=D, origin=shift, equations=E[:, None] * equations, **known)
+    known |= {"mix": mix, "unmix": np.linalg.inv(mix), "shape": shape, "scales": D}
+    return Crossed(origin=shift, equations=E[:, None] * equations, **known)
 
 
 def _graph(k: Array, s: Any) -> Any:

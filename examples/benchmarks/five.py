@@ -8,7 +8,6 @@ least of several rounds; "made" is what it takes before, compilation included. W
 
 from functools import partial
 from importlib.util import find_spec
-
 from types import SimpleNamespace
 
 import numpy as np

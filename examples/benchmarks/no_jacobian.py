@@ -21,6 +21,7 @@ from continuation.linear import Banded
 from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.bratu_2d import five_point
 
+
 @frozen
 class SwiftHohenberg:
     """r u - (1 + d^2/dx^2)^2 u + 2 u^2 - u^3 = 0 on (0, 40), mirrored at both ends."""
