@@ -20,10 +20,10 @@ from campaign import WRONG, Campaign, Verdict, drawn, timed
 from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
+from problems.lcp import Outcome
 from problems.lcp.reference.enumeration import exhaust
 
 Data = tuple[Array, Array]
-Outcome = lcp.Outcome
 
 SAME_X = 1e-8
 """Two points closer than this, relative to each component's size in balanced units, are the same."""
@@ -36,8 +36,6 @@ SLOW = 20.0
 FARTHEST = 1e-10
 """The relative residual that `solve` allows where it is asked for nothing else."""
 
-BUDGET = Budget(seconds=60.0)
-
 
 def planted(A: Array, r: np.random.Generator) -> Data:
     """A with a q that has a solution."""
@@ -45,11 +43,6 @@ def planted(A: Array, r: np.random.Generator) -> Data:
     support = r.random(n) < 0.5
     x, w = r.integers(1, 17, (2, n)) / 8.0  # so that no rounding spoils what integers plant
     return A, np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
-
-
-def squared(M: Array) -> Array:
-    """M M'."""
-    return M @ M.T
 
 
 def monotone(n: int, r: np.random.Generator) -> Data:
@@ -81,10 +74,10 @@ def infeasible(n: int, r: np.random.Generator) -> Data:
 
 
 KINDS: dict[str, Callable[[int, np.random.Generator], Data]] = {
-    "definite": lambda n, r: (squared(r.standard_normal((n, n))) / n + 0.1 * np.eye(n), r.standard_normal(n)),
+    "definite": lambda n, r: ((M := r.standard_normal((n, n))) @ M.T / n + 0.1 * np.eye(n), r.standard_normal(n)),
     "monotone": monotone,
     # Of half the rank.
-    "semidefinite": lambda n, r: planted(squared(r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)), r),
+    "semidefinite": lambda n, r: planted((M := r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)) @ M.T, r),
     # No positive entry off the diagonal; often infeasible.
     "z_matrix": lambda n, r: (
         np.diag(r.uniform(0.0, n, n)) - r.random((n, n)) * (1 - np.eye(n)), r.standard_normal(n)
@@ -114,7 +107,7 @@ def solved(A: Array, q: Array) -> lcp.Solution:
     """The answer, with every warning an error."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return lcp.solve(lcp.LCP(A, q), budget=BUDGET)
+        return lcp.solve(lcp.LCP(A, q), budget=Budget(seconds=60.0))
 
 
 def without_solution(found: lcp.Solution) -> bool:

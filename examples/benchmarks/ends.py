@@ -2,7 +2,7 @@
 
     python examples/benchmarks/ends.py [NUMBER] [SEED] [FAMILY ...]
 
-Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 10^-UNITS to 10^UNITS.
+Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 1e-4 to 1e4.
 One is wrong if its status is none that it may have, or if it has folds that are none. What it costs is compared with
 the same path in its own units under the Euclidean metric, where that ends rightly, too.
 """
@@ -23,7 +23,6 @@ from continuation.arrays import Array
 
 Residual = Callable[[Any, Any], Any]
 
-UNITS = 4.0
 BUDGET = continuation.Budget(steps=2000, factorizations=6000)
 
 
@@ -186,7 +185,7 @@ def in_units(family: Callable[[np.random.Generator], Case]) -> Cases:
 
     def draw(_: int, generator: np.random.Generator) -> tuple[Case, Any]:
         case = family(generator)
-        return case, case.homotopy(*10.0 ** generator.uniform(-UNITS, UNITS, 3))
+        return case, case.homotopy(*10.0 ** generator.uniform(-4.0, 4.0, 3))
 
     return drawn(draw)
 
