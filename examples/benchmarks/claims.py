@@ -30,9 +30,6 @@ SAME_X = 1e-8
 
 FACTORS = tuple(10.0**k for k in (-300, -200, -100, -30, -12, -8, -4, 0, 4, 8, 12, 30, 100, 200, 300))
 
-SLOW = 20.0
-"""Seconds of a solve that count as a failure."""
-
 FARTHEST = 1e-10
 """The relative residual that `solve` allows where it is asked for nothing else."""
 
@@ -193,7 +190,7 @@ def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
 
 
 def truth(k: int, r: np.random.Generator) -> Verdict:
-    """SOLVED and UNSOLVABLE of small problems against enumeration; no exception, no warning, nothing slow."""
+    """SOLVED and UNSOLVABLE of small problems against enumeration; no exception, no warning, nothing over 20 s."""
     A, q = hostile(k, r)
     try:
         found, seconds = timed(lambda: solved(A, q))
@@ -209,7 +206,7 @@ def truth(k: int, r: np.random.Generator) -> Verdict:
         said = f"{WRONG}: {said}, x is no solution"
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None and not proves(A, q, found.farkas.y):
         said = f"{WRONG}: {said}, no Farkas vector"
-    return said if seconds <= SLOW else f"{WRONG}: slow", seconds
+    return said if seconds <= 20.0 else f"{WRONG}: slow", seconds
 
 
 def random_problem(rng: np.random.Generator) -> lcp.MixedLCP:

@@ -26,9 +26,6 @@ from continuation.status import Kind, Status
 
 PART = 250
 
-DISTANT = 1e-3
-"""How far a point is moved at least, in extents of the path."""
-
 
 def one_of(among: Any, rng: np.random.Generator) -> Any:
     """One of some, at random."""
@@ -53,14 +50,17 @@ def numbered(path: Path, steps: list, events: list) -> Path:
 
 
 def moved(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
-    """Up to three points in a row moved off the curve, by at least twice the radius of the tubes beside the first."""
+    """Up to three points in a row moved off the curve, by twice the radius of the tubes beside the first at least.
+
+    And by a thousandth of the path's extent at least.
+    """
     k = int(rng.integers(0, len(path)))
     step, extent = path.steps[k], np.ptp(path.u, axis=0)
     beside = np.vstack([proof.radius(float(s)) for s in (path.arclength[k] - 1e-9, path.arclength[k] + 1e-9)])
     tube = np.nan_to_num(beside).max(axis=0)
     v = rng.normal(size=step.u.size)
     v -= step.tangent * float(step.tangent @ v) / float(step.tangent @ step.tangent)
-    size = np.maximum(2.0 * tube, DISTANT * extent) / np.maximum(np.abs(v), 1e-3 * np.abs(v).max())
+    size = np.maximum(2.0 * tube, 1e-3 * extent) / np.maximum(np.abs(v), 1e-3 * np.abs(v).max())
     off = v * float(size.max()) * 10.0 ** rng.uniform(0.0, 1.5)
     last = k + int(rng.integers(3))
     return evolve(path, steps=[evolve(s, u=s.u + off) if k <= s.index <= last else s for s in path.steps])
@@ -233,13 +233,12 @@ def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: An
 
 
 AT_KINKS = (unlisted, misplaced, pushed, renamed, turned_back, straight_on)
-AT_TURNS = (unlisted, misplaced)
-ANYWHERE = (moved, swapped, jumped, invented, left_out, turned_back)
 
 
 def faults(homotopy: Any, path: Path) -> list[Any]:
     """What can be done to a path."""
-    found = [*ANYWHERE, *(AT_KINKS if path.kinks else AT_TURNS if path.turning_points else ())]
+    found = [moved, swapped, jumped, invented, left_out, turned_back]
+    found += AT_KINKS if path.kinks else (unlisted, misplaced) if path.turning_points else ()
     return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]
 
 

@@ -32,8 +32,6 @@ record = import_module("record")
 
 AGREED = 1e-8
 """Of the largest number in the run: what two runs of well-conditioned paths may differ by at events and ends."""
-MORE, FEW = 0.1, 3
-"""By how much factorisations may differ: a tenth, or so few of them."""
 
 
 class Mixed:
@@ -121,7 +119,7 @@ def differences(found: dict[str, Any], expected: dict[str, Any], unique: bool) -
         if not far <= AGREED * size:
             said.append(f"points {far:.1e} apart, numbers up to {size:.1e}")
     few, many = sorted((found["factorizations"], expected["factorizations"]))
-    if many > few * (1.0 + MORE) and many > few + FEW:
+    if many > few * (1.0 + record.MARGIN) and many > few + record.FEW:
         said.append(f"factorizations {found['factorizations']}, {expected['factorizations']}")
     return said
 

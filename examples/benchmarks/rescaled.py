@@ -9,12 +9,6 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import Banded, Symmetric
 
-DECADES = 8.0
-"""Units are 10^-8 to 10^8 of those of the problem."""
-
-SHIFTS = -2.0, 6.0
-"""Zero lies 10 to one of these powers of the path's extent away."""
-
 
 def dense(H_y: Any) -> Array:
     """A Jacobian in whatever structure as an array."""
@@ -67,10 +61,10 @@ def plain(homotopy: Any) -> Rescaled:
 
 
 def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:
-    """In random units, with zero at a random place; shifts are measured by the path's extent."""
+    """In units of 1e-8 to 1e8 of the problem's, at random, with zero 1e-2 to 1e6 of the path's extent away."""
     n = extent.size - 1
-    D, E = (10.0 ** generator.uniform(-DECADES, DECADES, n) for _ in range(2))
-    a = float(10.0 ** generator.uniform(-DECADES, DECADES))
-    c = D * extent[:-1] * generator.standard_normal(n) * 10.0 ** generator.uniform(*SHIFTS)
-    b = a * float(extent[-1] * generator.standard_normal() * 10.0 ** generator.uniform(*SHIFTS))
+    D, E = (10.0 ** generator.uniform(-8.0, 8.0, n) for _ in range(2))
+    a = float(10.0 ** generator.uniform(-8.0, 8.0))
+    c = D * extent[:-1] * generator.standard_normal(n) * 10.0 ** generator.uniform(-2.0, 6.0)
+    b = a * float(extent[-1] * generator.standard_normal() * 10.0 ** generator.uniform(-2.0, 6.0))
     return Rescaled(homotopy, D, c, E, a, b)
