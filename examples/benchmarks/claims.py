@@ -1,4 +1,4 @@
-"""What must not matter to `lcp.solve`: the units of rows and columns, a common factor, and how far apart entries are.
+"""`lcp.solve` must not depend on units of rows and columns, on a common factor, or on the spread of entries.
 
     python examples/benchmarks/claims.py [NUMBER] [SEED] [units] [factor] [truth] [bounds]
 
@@ -121,7 +121,7 @@ def by_rounding(one: lcp.Solution, other: lcp.Solution, E: Array) -> bool:
 
 
 def compared(one: lcp.Solution, other: lcp.Solution, exact: bool, E: Array) -> str:
-    """What two answers come to, of which the other is of the same problem with x in units of 1 / E."""
+    """The difference of two answers, of which the other is for x in units of 1 / E."""
     said = f"{one.outcome.name} and {other.outcome.name}"
     if one.outcome is not other.outcome:
         return f"decided by rounding: {said}" if not exact and by_rounding(one, other, E) else f"{WRONG}: {said}"

@@ -236,7 +236,7 @@ AT_KINKS = (unlisted, misplaced, pushed, renamed, turned_back, straight_on)
 
 
 def faults(homotopy: Any, path: Path) -> list[Any]:
-    """What can be done to a path."""
+    """The faults that suit a path."""
     found = [moved, swapped, jumped, invented, left_out, turned_back]
     found += AT_KINKS if path.kinks else (unlisted, misplaced) if path.turning_points else ()
     return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]

@@ -1,7 +1,7 @@
 """Random problems on whose path branches cross at known places: transversal, pitchforks, transcritical ones.
 
-In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. What the
-tracer sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
+In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. The tracer
+gets unknowns and equations that are mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
 """
 
 from collections.abc import Callable
@@ -71,9 +71,9 @@ class Crossed:
 
     @property
     def resolution(self) -> float:
-        """What round-off leaves of a crossing's place: in y, where zero is far off, and in the matrix products of H'.
+        """The error of a crossing's place by round-off: in y, if zero is far off, and in the matrix products of H'.
 
-        More where branches nearly touch.
+        It grows where branches nearly touch.
         """
         found = 0.0
         for x0, s in self.crossings:
@@ -129,7 +129,7 @@ def _slope(k: Array, s: Any) -> Any:
 
 
 def _roots(k: Array, s: Array) -> list[float]:
-    """Where a graph changes its sign, by Newton's method from a table."""
+    """The zeros at which a graph changes its sign, by Newton's method from a table."""
     value, roots = _graph(k, s), []
     for t in s[np.flatnonzero(value[:-1] * value[1:] < 0.0)]:
         for _ in range(50):
@@ -216,7 +216,7 @@ def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
 
 
 def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
-    """The same along the arms, over the crossing: to x_0 = 0.3; `begin` and `end` are values of x_0."""
+    """`pitchfork` along the arms, over the crossing, to x_0 = 0.3; `begin` and `end` are values of x_0."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0))
     return _dressed(
         rng, n, units, scalar=_forked(at, k), curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],

@@ -23,7 +23,7 @@ FAMILIES: dict[str, Callable[..., Crossed]] = {
     "transcritical": transcritical,
 }
 LOCATED = 1e-10
-"""Of the path's extent (x_0 and s are of size one)."""
+"""Largest error of a crossing, relative to the path's extent (x_0 and s are of size one)."""
 
 
 def options(problem: Crossed, on_arm: bool, preset: ct.Preset) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def options(problem: Crossed, on_arm: bool, preset: ct.Preset) -> dict[str, Any]
 
 
 def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, float, Any]:
-    """What is wrong with the trace of a problem, "" if nothing; the largest error of a branch point; the path."""
+    """The fault of a problem's trace, or ""; the largest error of a branch point; the path."""
     path = ct.trace(problem, **options(problem, on_arm, preset))
     if not path.success:
         return f"stuck: {path.status.name}", np.nan, path
@@ -62,7 +62,7 @@ def drawn(name: str, count: int, seed: int) -> Iterator[Crossed]:
 
 
 def judge(case: tuple[Crossed, bool], preset: ct.Preset) -> Verdict:
-    """What is wrong, and the number of factorisations."""
+    """The fault of a trace, and the number of factorisations."""
     wrong, _, path = judged(*case, preset)
     return f"{WRONG}: {wrong}" if wrong else "", path.counts.factorizations
 

@@ -3,8 +3,8 @@
     python examples/benchmarks/ends.py [NUMBER] [SEED] [FAMILY ...]
 
 Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 1e-4 to 1e4.
-One is wrong if its status is none that it may have, or if it has folds that are none. What it costs is compared with
-the same path in its own units under the Euclidean metric, where that ends rightly, too.
+A path is wrong if its status is not one of those expected, or its number of folds. Its cost is compared with that of
+the path in its own units under the Euclidean metric, if that is right too.
 """
 
 from __future__ import annotations
@@ -191,14 +191,14 @@ def in_units(family: Callable[[np.random.Generator], Case]) -> Cases:
 
 
 def wrong(path: continuation.Path, case: Case) -> str:
-    """What is wrong with a path; "" if nothing is."""
+    """The fault of a path, or ""."""
     if path.status not in case.ends:
         return f"{WRONG}: {path.status.name}"
     return "" if len(path.turning_points) == case.folds else f"{WRONG}: {len(path.turning_points)} folds"
 
 
 def judge(drawn_one: tuple[Case, Any], preset: continuation.Preset) -> Verdict:
-    """What is wrong, and factorisations over those of the Euclidean metric in the path's own units."""
+    """The fault of a path, and factorisations over those of the Euclidean metric in its own units."""
     case, homotopy = drawn_one
     path = continuation.trace(homotopy, preset=preset, budget=BUDGET)
     plain = continuation.trace(case.homotopy(), preset=preset, budget=BUDGET, metric=continuation.Euclidean())

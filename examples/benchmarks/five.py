@@ -3,7 +3,7 @@
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/five.py [WAY ...] [--rounds 5] [--points 64]
 
 The Brusselator with diffusion, 2 x 64 unknowns, and a network of three layers at rest. Processor seconds a path, the
-least of several rounds; "made" is what it takes before, compilation included. What is not installed is left out.
+least of several rounds; "made": the time to make the homotopy, compilation included. Missing libraries are left out.
 """
 
 from functools import partial

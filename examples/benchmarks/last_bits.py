@@ -5,8 +5,8 @@
 
 The first writes its runs to a file, with which those of the second are compared. A run is a path (the acceptance
 problems, the ten examples, paths through crossings) under a preset, a random LCP, or a scene. It is repeated with its
-equations mixed by random rotations (a path) or its unknowns in another order (an LCP), which reorder all sums. What
-must agree: status, number and kinds of events, the end and the events, and the number of factorisations to a tenth.
+equations mixed by random rotations (a path) or its unknowns in another order (an LCP), which reorder all sums. Status,
+number and kinds of events, the end, the events, and the number of factorisations (to a tenth) must agree.
 """
 
 import json
@@ -31,7 +31,7 @@ sys.path.insert(0, str(File(__file__).parents[2] / "tests" / "behaviour"))
 record = import_module("record")
 
 AGREED = 1e-8
-"""Of the largest number in the run: what two runs of well-conditioned paths may differ by at events and ends."""
+"""Largest difference of events and ends of two runs of well-conditioned paths, over the largest number in the run."""
 
 
 class Mixed:

@@ -82,7 +82,7 @@ def unit_vectors(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
 
 
 def dual_cyclic(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
-    """Of two polytopes on the moment curve."""
+    """Costs from two polytopes on the moment curve."""
     m = len(Y)
     V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
     V = V - V.mean(axis=0)
@@ -113,7 +113,7 @@ def game_of(kind: str, m: int, r: np.random.Generator) -> LCP:
 
 
 def games(k: int, r: np.random.Generator, actions: tuple[int, ...] = (20, 50, 150)) -> LCP:
-    """Of all kinds, n = 40, 100, 300."""
+    """Games of all kinds, n = 40, 100, 300."""
     return game_of([*KINDS][k % 8], actions[k // 8 % len(actions)], r)
 
 

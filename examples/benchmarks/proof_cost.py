@@ -1,4 +1,4 @@
-"""What a proof costs: seconds of the processor over those of the trace, and boxes over points.
+"""The cost of a proof: seconds of the processor over those of the trace, and boxes over points.
 
     python examples/benchmarks/proof_cost.py [large]
 

@@ -19,7 +19,7 @@ def dense(H_y: Any) -> Array:
 
 @frozen(eq=False)
 class Rescaled:
-    """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
+    """A homotopy's path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
 
     homotopy: Any
     D: Array
@@ -35,7 +35,7 @@ class Rescaled:
         return None if target is None else self.a * target + self.b
 
     def start(self) -> tuple[Array, float]:
-        """The same point."""
+        """The homotopy's start, in these units."""
         y, lam = self.homotopy.start()
         return self.D * np.asarray(y) + self.c, self.a * lam + self.b
 

@@ -36,7 +36,7 @@ def proved(homotopy: Any, path: Path) -> bool:
 
 
 def cubic(seed: int) -> NormalMap:
-    """Of three unknowns between bounds, with a force that is no line; kinks where they meet these."""
+    """A normal map of three unknowns between bounds, with a nonlinear force; kinks where unknowns meet bounds."""
     rng = np.random.default_rng(seed)
     A, q, d = rng.normal(size=(3, 3)), rng.normal(size=3), rng.choice([-1.0, 1.0], 3)
     return NormalMap(
@@ -57,7 +57,7 @@ class TwoSheets:
         return np.array([np.hypot(1.0, self.gap)]), -1.0
 
     def residual(self, y: Any, lam: Any) -> Any:
-        """Of the equation."""
+        """The residual of y^2 = lam^2 + gap^2."""
         return y**2 - lam**2 - self.gap**2
 
 
