@@ -233,7 +233,7 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     s : float
         Between 0 and the last arclength.
     tolerance : float or Tolerance, default 1e-8
-        Of the corrector.
+        The corrector's.
 
     Returns
     -------
