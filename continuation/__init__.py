@@ -35,9 +35,7 @@ if TYPE_CHECKING:
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
     from continuation.step.guard import Guard
-    from continuation.step.options import Options
     from continuation.step.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
-    from continuation.step.settings import Settings
     from continuation.step.tracer import Observer, Tracer
     from continuation.tolerance import Tolerance
     from continuation.tracing import Followed, follow, solve_at, trace, trace_both
@@ -69,8 +67,6 @@ _HOMES = {
     "step.presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
-    "step.options": "Options",
-    "step.settings": "Settings",
     "step.tracer": "Observer Tracer",
     "tolerance": "Tolerance",
     "tracing": "Followed follow solve_at trace trace_both",
@@ -107,12 +103,10 @@ __all__ = [
     "Metric",
     "Monitor",
     "Observer",
-    "Options",
     "Path",
     "Predictor",
     "Preset",
     "Proof",
-    "Settings",
     "Stability",
     "Status",
     "Step",

@@ -85,8 +85,7 @@ def from_jax(
         jax.eval_shape(series, u, np.zeros((2, u.size)))
         more["taylor"] = partial(_taylor, series)
     except (KeyError, NotImplementedError, TypeError, ValueError):
-        # JAX's `jet` has no rule for some operation: no series. Nested derivatives compile slowly: 0.5, 2.4, 18 s
-        # for order 4, 6, 8.
+        # JAX's `jet` lacks a rule: no series, as nested derivatives of order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
         pass
     again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
     return Adapted(

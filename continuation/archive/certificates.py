@@ -109,7 +109,7 @@ def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[
     Returns
     -------
     list of Proof
-        For each path; a gap without a certificate.
+        One for each path; without a certificate it is one gap.
 
     Raises
     ------

@@ -164,7 +164,7 @@ class Store:
         )
 
     def name_event(self, name: str) -> int:
-        """The number of an event name, perhaps new."""
+        """The number of an event name, which is added if it is new."""
         name = text(name, NAME).decode()
         if name not in self.events:
             count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)

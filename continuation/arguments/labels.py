@@ -16,7 +16,7 @@ ATTRIBUTES = ("parameter_name", "names", "units")
 """Attributes of homotopies and archive roots."""
 
 _LONGEST = 100
-"""Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 exhaust Python's stack in matplotlib."""
+"""Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 exhaust matplotlib's stack."""
 
 
 @frozen

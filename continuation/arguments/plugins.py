@@ -5,8 +5,8 @@ In the ``pyproject.toml`` of a package::
     [project.entry-points."continuation.homotopies"]
     truss = "snapthrough:VonMisesTruss"
 
-The object is a class or function that returns a homotopy; its parameters are the options. The docstring's first line is
-its summary; the attributes `problem_class` and `references` give purpose and sources. Imports wait.
+The object is a class or function that returns a homotopy; its parameters are the options, its docstring's first line
+the summary, its attributes `problem_class` and `references` purpose and sources. It is imported on use.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Factory = Callable[..., Any]
 
 
 class PluginError(LookupError):
-    """A name that gives no homotopy."""
+    """A plug-in's name is unknown or ambiguous, or its import fails."""
 
 
 @frozen

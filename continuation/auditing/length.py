@@ -35,8 +35,8 @@ _DIVISIONS = 20
 def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     """The length of a traced path, by Gauss quadrature on its points.
 
-    Planes orthogonal to a step's chord cut the path; there its speed is |v| / (border . v), v the tangent. Five nodes a
-    step, more on demand; the error is about 1e-9.
+    Planes orthogonal to a step's chord cut the path; there its speed is |v| / (border . v) for the tangent v. Five or
+    more nodes a step; the error is about 1e-9.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
 BEFORE = 0.1
-"""Part of the last step before a branch point at which the retrace begins: nearer, the matrix is almost singular."""
+"""Share of the last step before a branch point at which a retrace begins: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
@@ -52,7 +52,7 @@ class Audit:
 
 @frozen(eq=False)
 class Halved:
-    """A controller with at most half of another trace's steps; its state is the arclength."""
+    """A controller with steps at most half as long as another trace's; its state is the arclength."""
 
     knots: Array
     max_angle: float = 0.3
@@ -86,10 +86,9 @@ def audit(
     tolerance: float | Tolerance = 1e-8,
     backwards: bool = False,
 ) -> Audit:
-    """Check that the tracer stayed on one path: a retrace with half the steps must pass the same points.
+    """Check that the tracer stayed on one path: a retrace with steps half as long must pass the same points.
 
-    After a jump to another path, or over a loop, the retrace misses the next point. It takes about twice the trace's
-    time.
+    It misses the next point after a jump to another path, or over a loop. It takes about twice the trace's time.
 
     Parameters
     ----------
@@ -234,7 +233,7 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     s : float
         Between 0 and the last arclength.
     tolerance : float or Tolerance, default 1e-8
-        Of the corrector.
+        The corrector's.
 
     Returns
     -------

@@ -154,7 +154,7 @@ class Proof:
         Parameters
         ----------
         component : int
-            Of y.
+            Size of y.
         axes : matplotlib axes, optional
 
         Returns

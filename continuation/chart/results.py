@@ -131,7 +131,7 @@ class Results:
 
     @property
     def families(self) -> list[str]:
-        """Names in order of appearance."""
+        """Names of the families, in order of appearance."""
         return list(dict.fromkeys(row.family for row in self.rows))
 
     @property

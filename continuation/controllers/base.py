@@ -16,22 +16,22 @@ State: TypeAlias = tuple[float, ...]
 
 @frozen
 class StepMeasures:
-    """Measures of one attempt.
+    """Measures of one attempted step.
 
     Attributes
     ----------
     h : float
         Step length.
     rejection : Rejection or None
-        Reason of an early failure; the other measures need None.
+        Why it failed early; else None, and the other measures are valid.
     iterations : int
         Corrector increments.
     contraction : float
-        Worst ratio of increments.
+        Largest ratio of successive increments.
     distance : float
-        Length of the correction.
+        From the prediction to the corrected point.
     angle : float
-        Between the tangents, radians.
+        Between the tangents at both ends, radians.
     order : int
         Predictor's order p: distance is O(h^(p + 1)).
     rejections : int

@@ -50,8 +50,7 @@ class Fixed:
 class AllgowerGeorg:
     """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
 
-    Contraction and distance are like h^(p + 1) for predictor order p, the angle like h; the worst measure scales the
-    step.
+    Contraction and distance are like h^(p + 1), the angle like h; the worst of them scales the step.
 
     Parameters
     ----------
@@ -94,10 +93,7 @@ class AllgowerGeorg:
 
 @frozen
 class SeriesRange:
-    """The whole range of a series predictor; a failure halves it once.
-
-    The range has its own error bound, so only long corrections are refused.
-    """
+    """The whole range of a series predictor, which has an error bound; a failure halves it once."""
 
     distance: float = field(default=1e-3, validator=POSITIVE)
     max_angle: float = field(default=1.4, validator=POSITIVE)

@@ -163,8 +163,8 @@ def iterate(
 ) -> Correction:
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
-    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance
-    round-off spoils ratios, so the iteration limit counts. `direction` adds factorisations to `anchors`.
+    A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
+    where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False
@@ -182,8 +182,7 @@ def iterate(
         count, worst = iteration.count, iteration.worst
         # Newton's error is the increment squared: tolerances below its root demand residuals at round-off.
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
-            # Polish by the residual: an increment may be large for a small component. A residual that stays is
-            # round-off of constant terms.
+            # Polish by the residual, as an increment may be large for a small component; one that stays is round-off.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING.iterations):
                 u = iteration.x

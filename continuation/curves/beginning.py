@@ -22,7 +22,7 @@ BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """Kinds that define a condition."""
 
 NEAREST = 40
-"""Eigenvalues nearest to zero searched for a Hopf pair: others are far on the stable side."""
+"""Eigenvalues nearest to zero among which a Hopf pair is searched: others are far on the stable side."""
 
 NEAR_AXIS = 0.1
 """Largest real part of a pair, relative to its modulus, for Newton's method."""

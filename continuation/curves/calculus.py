@@ -31,7 +31,7 @@ class Calculus:
     """How a family is differentiated, decided at a point.
 
     `derivative`: of members without one. `jets`: whether jets give second derivatives and those by mu. `u0`: (y, lam,
-    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H and H' v.
+    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
     """
 
     family: Member
@@ -75,7 +75,7 @@ class Calculus:
         return b / np.linalg.norm(b), c / np.linalg.norm(c)
 
     def unscaled(self, factors: Bordered) -> BorderedSystem:
-        """Factors of the unscaled bordered matrix, from the scaled one's."""
+        """Factors of the unscaled bordered matrix."""
 
         def solve(r: Array, rho: float) -> Array:
             x = factors.solve(np.append(r / self.rows, rho))
@@ -122,7 +122,7 @@ class Calculus:
 
 
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
-    """Try at a point how to differentiate a family."""
+    """Decide how to differentiate a family."""
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
     derivative = None if own else from_residual(homotopy.residual, (u[:-1], float(u[-1])))

@@ -21,12 +21,12 @@ from continuation.status import Kind
 class Eigenvalue:
     """H_y is singular (fold), has an eigenvalue i omega (Hopf point), or H' loses a rank (branch point).
 
-    The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1), with omega = 0 for folds (Griewank and
-    Reddien, SIAM J. Numer. Anal. 21, 1984), and unknown for Hopf points (IMA J. Numer. Anal. 3, 1983).
+    The condition is s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1); omega is 0 for folds (Griewank and
+    Reddien, SIAM J. Numer. Anal. 21, 1984) and unknown for Hopf points (IMA J. Numer. Anal. 3, 1983).
 
-    Branch points also satisfy w'H_lam = 0, with the left null vector w. H + (w'H_lam) b = 0 and s = 0 are regular at
-    simple branch points with transversal branches; w'H_lam stays zero if the family keeps its branch points. (Moore,
-    SIAM J. Numer. Anal. 17, 1980, makes it an unknown.)
+    At branch points w'H_lam = 0 too, with the left null vector w: H + (w'H_lam) b = 0 and s = 0 are regular at simple
+    ones with transversal branches, and w'H_lam stays zero if the family keeps them (Moore, SIAM J. Numer. Anal. 17,
+    1980, makes it an unknown).
     """
 
     calculus: Calculus

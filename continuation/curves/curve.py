@@ -29,8 +29,7 @@ POINTS_KEPT = 6
 """Cached points and members, which are needed repeatedly."""
 
 PERSISTS = 1e-6
-"""Largest relative effect of mu on H along the left null vector at persistent branch points: about the root of
-round-off."""
+"""Largest relative effect of mu on H along the left null vector at persistent branch points: root of round-off."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -51,20 +50,20 @@ class Curve:
     ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
-    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; if only mu turns, two branches cross or
-    a closed one shrinks to a point. Hopf curves end at Bogdanov-Takens points and locate "zero-Hopf" points, where H_y
-    is singular.
+    Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; where only mu turns, two branches cross
+    or a closed one shrinks to a point. Hopf curves end at Bogdanov-Takens points and locate "zero-Hopf" points (H_y
+    singular).
 
-    Factorisations are the family's, or those of H_y with a border, and stay sparse. Second derivatives come from jets
-    (up to 128 unknowns) or two Jacobians.
+    Factorisations are the family's, or of H_y with a border, and stay sparse. Second derivatives come from jets (up to
+    128 unknowns) or two Jacobians.
 
     Parameters
     ----------
     family : callable
-        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. For a jet it may raise TypeError
+        Maps mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. It may refuse jets by TypeError
         or ValueError.
     event : LocatedEvent, Kind or Event
-        A point on a member's path, a kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event with a monitor.
+        A point on a member's path, its kind (`Kind.TURNING_POINT`, BRANCH_POINT, HOPF, KINK), or an event's monitor.
     at : LocatedEvent, Step or (y, lam), optional
         Approximate start; by default the event.
     mu : float, optional

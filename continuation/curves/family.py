@@ -15,10 +15,9 @@ from continuation.arguments.checks import complain
 class Family:
     """The homotopies that differ from a given one in one attribute.
 
-    ``Family(homotopy, "eps")`` maps mu to a homotopy, has a name and a start value, and can be archived.
-
-    attrs objects are rebuilt with derived values; others are copied shallowly. Jets give derivatives by mu if the
-    residual is plain numpy and the class accepts jets; else differences do.
+    ``Family(homotopy, "eps")`` maps mu to the homotopy whose `eps` is mu: attrs objects are made anew, others copied
+    shallowly. It can be archived. Derivatives by mu come from jets if residual and class accept them, else from
+    differences.
 
     Parameters
     ----------

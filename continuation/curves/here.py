@@ -25,9 +25,9 @@ from continuation.linear.system import Solver
 class Here:
     """Values and derivatives of a curve at a point `u` = (y, lam).
 
-    `gradients` makes the `rows` of the k conditions in `values`, `factored` the `base`, factors of [[H_y, b], [c', d]].
-    `column`, (N, k - 1): derivative of H by the additional unknown. `hidden`: that unknown, if the last row gives it.
-    `signs`: functions that change sign at degenerate points.
+    `gradients` makes the `rows` of the k conditions in `values`; `factored` the `base`, factors of [[H_y, b], [c', d]].
+    `column`, (N, k - 1): derivative of H by the additional unknown, `hidden` if the last row gives it. `signs`:
+    functions that change sign at degenerate points.
     """
 
     calculus: Calculus

@@ -5,8 +5,7 @@
     H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
 
 These are regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J. Numer. Anal. 3
-(1983)). Dual numbers give derivatives along v. The projection of a proved curve on (y, lam, omega, mu) is the traced
-curve.
+(1983)). Dual numbers give derivatives along v. The curve is the projection on (y, lam, omega, mu).
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ class Deflated:
         return u[:-1], float(u[-1])
 
     def factor(self, y: Array) -> tuple[float, Array]:
-        """M, and the gradient of log M.
+        """The factor M at y, and the gradient of log M.
 
         Parameters
         ----------

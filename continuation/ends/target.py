@@ -188,10 +188,10 @@ class Target:
 
 
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
-    """Motion of an end's components that leaves H round-off.
+    """How far each component of an end can move before H exceeds round-off, shape (N + 1,).
 
-    The end moves along the tangent, and along two sign samples of round-off through `near`, until H is twice what is
-    allowed.
+    The end moves along the tangent, and along the solutions of `near` for two samples of round-off with random signs,
+    until H is twice its allowed size.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

@@ -171,7 +171,7 @@ class ByDifferences:
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
-        """Rounded steps at u: units of directions, shape (N + 1,)."""
+        """Difference steps of the components at u, as rounding leaves them, shape (N + 1,)."""
         reach = self.steps * np.maximum(self.unit, np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 

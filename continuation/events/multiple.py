@@ -149,7 +149,7 @@ class Polynomials:
 
     @classmethod
     def of(cls, reduced: Reduced, radius: float) -> Polynomials:
-        """Fit by least squares on two spheres."""
+        """Fit `reduced` by least squares at points of two spheres around zero, of `radius` and of half of it."""
         m = reduced.kernel.shape[1]
         sums = [c for degree in (2, 3, 4) for c in combinations_with_replacement(range(m), degree)]
         powers = np.array([[c.count(i) for i in range(m)] for c in sums])

@@ -21,8 +21,8 @@ STILL = SIX_DIGITS * SIX_DIGITS
 class Crossing:
     """A kink, resolved as far as possible.
 
-    `at`: with the incoming tangent. `switches`: those that vanish. `rays`, shape (k, N + 1): back, onward, others.
-    `onward`: the kink on the next piece, with its `signs`, or None. `reason`: why rays may be missing.
+    `at`: with the incoming tangent. `switches`: those that vanish. `rays`, (k, N + 1): back, onward, others. `onward`:
+    on the next piece, with its `signs`, or None. `reason`: why rays may be missing.
     """
 
     at: Linearization

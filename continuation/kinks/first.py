@@ -18,8 +18,7 @@ DIP = 0.25
 """Part of a switch's values on both sides below which two zeros are possible."""
 
 TIED = NOISE_LOOKS * NOISE_LOOKS
-"""Factor between two round-off samples. A switch this near to zero was zero at the end of the arc before; switches this
-near to zero vanish together."""
+"""Round-off samples differ by this factor: a switch this near to zero has not left it, and several vanish together."""
 
 ZEROS_ON_ARC = 50
 """Most zeros located on one arc."""

@@ -73,8 +73,7 @@ class Corner:
 def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
     """All branches that leave the corner, each once.
 
-    For too many switches, pivots give one ray if a path has `come` there. Raises `UnresolvedError` if the
-    rays cannot be determined.
+    For too many switches, pivots give one ray if a path has `come` there; else `UnresolvedError`.
     """
     if len(corner.beta) > SWITCHES_ENUMERATED and not come:
         raise UnresolvedError(
@@ -112,8 +111,8 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 class _Family:
     """Derivatives of the corner's pieces, as low-rank changes of one.
 
-    `sizes`: of the switches' derivatives `GR` in directions `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad
-    s_j. `Z`: M^{-1} of these. `GZ`: the switches' derivatives along `Z`.
+    `sizes`: of the switches' derivatives `GR` along `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad s_j;
+    `Z`: M^{-1} of these, `GZ`: the switches' derivatives along them.
     """
 
     corner: Corner

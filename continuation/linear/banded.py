@@ -23,14 +23,14 @@ def _diagonals(ab: Any) -> Array:
 
 @frozen(eq=False)
 class Banded:
-    """A banded matrix A in LAPACK's diagonal-ordered form: ``ab[upper + i - j, j] = A[i, j]``.
+    """A banded matrix in LAPACK's form: ``ab[upper + i - j, j] = A[i, j]``.
 
     Parameters
     ----------
     ab : Array
-        Shape (lower + upper + 1, N). Entries outside A are never read.
+        Shape (lower + upper + 1, N). Entries outside A are not read.
     lower, upper : int
-        Number of diagonals below and above the main one.
+        Diagonals below and above the main one.
     """
 
     ab: Array = field(converter=_diagonals)

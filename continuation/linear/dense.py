@@ -18,12 +18,12 @@ from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
-"""Smallest row (column) size over the largest, above which LAPACK does not scale."""
+"""Ratio of smallest to largest row (column) above which LAPACK does not scale."""
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
     """Sign of the determinant, from row exchanges and negative pivots."""
-    # For short arrays counting bytes is three times as fast as numpy.
+    # Counting bytes of short arrays is three times as fast as numpy.
     odd = (exchanges != _rows(len(exchanges))).tobytes().count(1) + np.signbit(pivots).tobytes().count(1)
     return -1 if odd % 2 else 1
 
@@ -34,8 +34,7 @@ def _rows(n: int) -> NDArray[np.int32]:
 
 
 HIDDEN = EPS / SIX_DIGITS
-"""A scaled entry below this, relative to the largest, may decide its row; solutions are corrected, as LU leaves six of
-its digits."""
+"""An entry below this share of the largest may decide its row: solutions are corrected, as LU leaves six digits."""
 
 
 @frozen(eq=False)
@@ -63,7 +62,7 @@ class Dense:
         z = np.empty(r.size + 1)
         z[:-1] = r
         z[-1] = rho
-        # Positional arguments (the last 1: overwrite): for a few unknowns keywords take as long as the work.
+        # Keywords would take as long as the work for few unknowns; the last 1: overwrite.
         if self.scale is not None:
             # BLAS does not warn of overflow.
             z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, 1)

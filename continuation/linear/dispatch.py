@@ -23,7 +23,7 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     Parameters
     ----------
     H_y : ndarray, Symmetric, Banded, scipy sparse array, LinearOperator or Operator
-        Shape (N, N), N >= 1; may be singular if M is not. Only dense ones are copied.
+        Shape (N, N), N >= 1; may be singular if M is not. Dense ones are copied.
     H_lam : Array
         Shape (N,).
     border : Array

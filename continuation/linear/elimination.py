@@ -1,7 +1,4 @@
-"""Block elimination for [[A, P], [R, S]], with k border columns and rows, by factors of A.
-
-W = A^-1 P gives the Schur complement S - R W and the determinant det A det(S - R W).
-"""
+"""Block elimination for [[A, P], [R, S]] with k border rows by factors of A: W = A^-1 P, Schur complement S - R W."""
 
 from __future__ import annotations
 
@@ -21,10 +18,7 @@ from continuation.linear.system import BorderedSystem
 
 @frozen(eq=False)
 class Elimination:
-    """Factors of [[A, P], [R, S]]; `first` solves with A, `small` with the Schur complement.
-
-    W = A^-1 P, (n, k); R, (k, n); `sign`: of det `schur`.
-    """
+    """Factors of [[A, P], [R, S]]; `first` solves with A, `small` with the Schur complement; `sign`: of det `schur`."""
 
     first: Callable[[Array], Array]
     W: Array
@@ -45,9 +39,9 @@ class Elimination:
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:
-    """Border A by W = A^-1 P and rows [R, S], (k, n + k).
+    """Factors of [[A, P], [R, S]] from a solver `first` of A, W = A^-1 P and the rows [R, S], (k, n + k).
 
-    Raises `SingularError` if k > 1 and the whole is singular.
+    `SingularError` if a Schur complement of order k > 1 is singular; for k = 1 solutions are then infinite.
     """
     R, S = np.split(rows, [len(W)], axis=1)
     schur = S - R @ W
@@ -72,7 +66,7 @@ class BlockElimination:
         return self.factor.sign * self.elimination.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution, shape (N + 1,); if inaccurate, by factoring the whole."""
+        """The solution, shape (N + 1,); the whole is factored if elimination is inaccurate."""
         z, accurate = refined(self.bordered, self.elimination.solve, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 
@@ -95,9 +89,8 @@ def eliminate(
 ) -> BorderedSystem:
     """Factor H_y and border it; near a fold factor the whole. `SingularError` if singular or not finite.
 
-    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED both signs in ``det
-    M = det H_y * schur`` are certain (W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM
-    2000, section 3).
+    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED the signs in
+    ``det M = det H_y * schur`` are certain (Govaerts, Numerical Methods for Bifurcations, SIAM 2000, section 3).
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     factors = factor(matrix)

@@ -24,9 +24,7 @@ def real(name: str, entries: Any) -> Array:
 
 
 def extended(matrix: Matrix, columns: Array, rows: Array) -> Matrix:
-    """The matrix [[matrix, columns], [rows]] of shapes (n, m), (n, k), (l, m + k), dense or csc; faster than
-    `block_array`.
-    """
+    """[[matrix, columns], [rows]] of shapes (n, m), (n, k), (l, m + k), dense or csc; faster than `block_array`."""
     if not sp.issparse(matrix):
         return np.vstack([np.hstack([matrix, columns]), rows])
     part, (n, m) = sp.csc_array(matrix), matrix.shape

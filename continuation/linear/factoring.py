@@ -14,8 +14,7 @@ from continuation.linear.superlu import SparseFactor, SuperLUMethod
 METHODS = ("auto", SuperLUMethod.name, "cholmod")
 
 CHOLMOD_FROM = 1000
-"""Least order for CHOLMOD: on five-point Laplacians it halves SuperLU's time from n = 2,000 on; below 400 SuperLU
-wins."""
+"""Least order for CHOLMOD: on five-point Laplacians it takes half of SuperLU's time from 2,000 on, more below 400."""
 
 
 def check_method(argument: str, name: object) -> str:
@@ -30,10 +29,10 @@ def check_method(argument: str, name: object) -> str:
 
 @define(eq=False)
 class Factoring:
-    """Factors sparse matrices and counts the methods.
+    """Factors sparse matrices.
 
-    `method`: "auto", "superlu", or "cholmod" for definite matrices. `direct`: for all others. `used`: number of
-    matrices and largest fill by name.
+    `method`: "auto", "superlu", or "cholmod" for definite matrices. `direct`: for the others. `used`: matrices and
+    largest fill by name.
     """
 
     method: str = "auto"

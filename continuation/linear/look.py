@@ -13,7 +13,7 @@ from continuation.linear.refine import BACKWARD_ERROR
 
 @frozen(eq=False, slots=False)
 class Look:
-    """Statistics of a matrix, (N, N), in canonical format; computed on demand."""
+    """Statistics of a canonical matrix, (N, N), on demand."""
 
     matrix: Matrix
 

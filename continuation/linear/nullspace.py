@@ -1,8 +1,7 @@
 """A bordered system [[A, P], [R, S]] for a matrix A of any rank, and A's null spaces.
 
 If A lost at most as many ranks as P has columns, the whole is regular for almost all borders; solutions for unit
-vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Sections 3.3
-and 4.1).
+vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations, Sections 3.3 and 4.1).
 """
 
 from __future__ import annotations
@@ -24,10 +23,10 @@ from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
-"""Ratio of null vectors to border above which they replace it: at 84 degrees, and a digit is lost."""
+"""Ratio of null vectors to border above which they replace it: at an angle of 84 degrees, where a digit is lost."""
 
 REFRESHED = 4
-"""Limit of attempts; more do not help if two ranks are lost."""
+"""Attempts; more do not help if two ranks are lost."""
 
 BORDERS = 5
 """Lost ranks that are counted: two more than `continuation.events.multiple` resolves, for its message."""
@@ -57,8 +56,8 @@ class Bordered:
         rows = np.hstack([rows, np.zeros((len(rows), m + columns.shape[1] - rows.shape[1]))])
         scale = np.ones((n + len(rows), 1))
         if sparse:
-            # Weak rows are eliminated late and do not fill the factors (Laplacian of two species, 2000 unknowns: 17
-            # thousand entries, 673 thousand at 1e-4); one correction restores the lost digits.
+            # Weak rows are eliminated late and do not fill the factors (two species, 2000 unknowns: 17 thousand entries
+            # instead of 673); one correction restores the lost digits.
             size = max(float(np.abs(part).max(initial=0.0)) for part in (matrix.data, columns))
             scale[n:, 0] = ROOT_OF_ROUND_OFF * size / np.abs(rows).max(axis=1)
         whole = extended(matrix, columns, rows * scale[n:])
@@ -98,7 +97,7 @@ class Bordered:
 
     @property
     def weak(self) -> bool:
-        """Whether solutions are so large that the whole may be singular: more ranks are lost."""
+        """Whether solutions are so large that more ranks may be lost."""
         return largest(self.solve(generic_vector(len(self.scale)))) * ROOT_OF_ROUND_OFF >= 1.0
 
     @cached_property

@@ -61,10 +61,7 @@ class Operator:
 
 @frozen(eq=False)
 class Krylov:
-    """The bordered operator, solved by GMRES.
-
-    `scale` multiplies the last row; `inverse` is the bordered preconditioner.
-    """
+    """The bordered operator, solved by GMRES; `scale` of the last row, `inverse`: bordered preconditioner."""
 
     bordered: BorderedMatrix
     scale: float
@@ -81,7 +78,7 @@ class Krylov:
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
             left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
-        # A singular operator yields z of size 1 / eps, with round-off as residual.
+        # A singular operator yields z of size 1 / eps with a residual of round-off.
         if not (accurate and left <= LARGEST_RESIDUAL):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "

@@ -19,8 +19,8 @@ BACKWARD_ERROR = 16 * EPS
 """Row-wise backward error of round-off."""
 
 TRUSTED = SIX_DIGITS
-"""Largest relative error of H_y^{-1} H_lam, and smallest relative Schur complement: refinement then gains six digits a
-step, and signs are certain."""
+"""Largest relative error of H_y^{-1} H_lam, least relative Schur complement: refinement gains six digits a step, and
+signs are certain."""
 
 
 class Factored(Protocol):
@@ -88,7 +88,7 @@ def join(r: Array, rho: float) -> Array:
 
 @without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
-    """Solve M z = rhs by an approximate inverse with corrections; also whether the residual is round-off."""
+    """Solve M z = rhs by a corrected approximate inverse; also whether the residual is round-off."""
     z = solve(rhs)
     for _ in range(REFINEMENTS):
         gap = bordered.residual(z, rhs)

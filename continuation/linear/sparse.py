@@ -23,13 +23,10 @@ def canonical(matrix: Matrix) -> Matrix:
 
 
 def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
-    """Factor the bordered matrix whole; `SingularError` if singular or not finite.
-
-    The dense border row doubles fill and time (five-point Laplacian, m = 100), so elimination comes first.
-    """
+    """Factor the bordered matrix whole, with twice the fill and time; `SingularError` if singular or not finite."""
     bordered = BorderedMatrix.of(matrix, column, row)
     n = len(column)
-    # A small last row is eliminated late and does not fill the factors.
+    # A small last row is eliminated late, without fill.
     sizes = np.append(bordered.row_sums + np.abs(column), 100 * np.abs(row).max())
     if not sizes.all():
         raise SingularError(f"The bordered matrix is singular: its row {int(np.argmin(sizes))} is zero.")

@@ -24,7 +24,7 @@ WANTED = 6
 """Default number of eigenvalues for others."""
 
 OFF_AXIS = EPS / SIX_DIGITS
-"""Least real part of an unstable eigenvalue, relative to the largest modulus: events are located to that."""
+"""Least real part of an unstable eigenvalue over the largest modulus: events are located to that."""
 
 SHIFT = 0.517
 """Fraction of the bound on real parts; no round number."""
@@ -33,8 +33,8 @@ SHIFT_NEARER = 0.01
 """Part of a shift at which a tenth of Arnoldi's steps suffices."""
 
 DIMENSIONS, TESTS_IN_ALL = 40, 6
-"""DIMENSIONS: largest Krylov dimension per wanted eigenvalue and one more. TESTS_IN_ALL: eigenvalues are tested when
-the dimension has grown by a sixth, so that all tests cost little more than the last."""
+"""Largest Krylov dimension per wanted eigenvalue and one more; eigenvalues are tested whenever the dimension has grown
+by a sixth, so that all tests cost little more than the last."""
 
 
 @frozen(eq=False)
@@ -78,10 +78,10 @@ class Spectrum:
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide stability.
 
-    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by the QR method. Others: the k (default 6)
-    nearest to a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical
-    Equilibria, Section 5.3); the count is complete if their disc covers the right part of the rectangle from `bounds`.
-    Raises `TypeError` for an operator, `ArithmeticError` if Arnoldi's method does not converge.
+    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by QR. Others: the k (default 6) nearest to
+    a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count
+    is complete if their disc covers the right part of the rectangle from `bounds`. Raises `TypeError` for an operator,
+    `ArithmeticError` without convergence.
     """
     if isinstance(matrix, Symmetric):
         return Spectrum(np.empty(0, dtype=complex), factor_ldl(matrix.matrix)[0].count(side))
@@ -150,8 +150,8 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
         try:
             theta, more = dominant(inverse, generic_vector(n), wanted, known)
         except ArithmeticError:
-            # The bound is far from the eigenvalues: Arnoldi's steps grow like the root of the shift (Saad, Numerical
-            # Methods for Large Eigenvalue Problems, Section 6.6).
+            # Arnoldi's steps grow like the root of the shift (Saad, Numerical Methods for Large Eigenvalue Problems,
+            # Section 6.6), and the bound is far from the eigenvalues.
             if shift <= least:
                 raise
             solves += min(n, DIMENSIONS * (wanted + 1))
@@ -173,7 +173,7 @@ def dominant(
 ) -> tuple[Any, int]:
     """The k eigenvalues of largest modulus, by Arnoldi's method, and the number of applications.
 
-    Raises `ArithmeticError` unless `known(theta, error)`.
+    `ArithmeticError` if `known(theta, error)` is never true.
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))

@@ -32,11 +32,7 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 
 @frozen(eq=False)
 class SparseFactor:
-    """A factored sparse matrix.
-
-    `solve`: solves A x = rhs, shape (N,), and keeps `rhs`. `fill`: number of entries, or 0. `tell_sign`: sign of det A,
-    or 0.
-    """
+    """A factored sparse matrix: `solve` keeps rhs, (N,); `fill`: entries; `tell_sign`: of det A; 0 if unknown."""
 
     name: str
     solve: Callable[[Array], Array]
@@ -80,7 +76,7 @@ class SuperLUMethod:
     def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None if a pivot is zero."""
         if not self.weak_pivots:
-            # MMD fills faces of a symmetric pattern half as much as the default.
+            # MMD fills symmetric patterns half as much as the default.
             return factor_superlu(look.matrix, permc_spec="MMD_AT_PLUS_A")
         if not look.symmetric_pattern:
             return factor_superlu(look.matrix, permc_spec="COLAMD")

@@ -26,7 +26,7 @@ class Symmetric:
     Parameters
     ----------
     matrix : Array
-        Shape (N, N). An unsymmetric matrix is solved correctly, but slowly.
+        Shape (N, N); an unsymmetric one is solved correctly, but slowly.
     definite : bool, optional
         True: Cholesky first. None: if the diagonal is positive. False: LDL'. A wrong guess only costs time.
     """

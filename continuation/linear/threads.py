@@ -1,8 +1,7 @@
 """BLAS on one thread while a path is traced or an LCP is solved.
 
-numpy and scipy have their own OpenBLAS pools, whose threads spin on cores that the other needs: two threads take 1.0 to
-6 times as long as one on two idle cores (n = 50 to 4,000), up to 400 times on busy ones. OPENBLAS_NUM_THREADS or
-OMP_NUM_THREADS override this.
+The threads of numpy's and scipy's OpenBLAS spin on cores that the others need: two take 1 to 6 times as long as one on
+two idle cores (n = 50 to 4,000), up to 400 times on busy ones. OPENBLAS_NUM_THREADS or OMP_NUM_THREADS override this.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ class TaylorAlgebra:
     """Truncated series sum_k c_k s**k."""
 
     def degrees(self, length: int) -> list[int]:
-        """Coefficient k has degree k."""
+        """0, 1, ..., length - 1."""
         return list(range(length))
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:

@@ -104,7 +104,7 @@ def following(
 ) -> StepsAndEvents:
     """Steps and events of a second path, counted from the first's end; `ValueError` if the ends do not meet.
 
-    `extent`: the larger of two.
+    `extent`: of the larger path.
     """
     a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):

@@ -44,7 +44,7 @@ class Path:
     references : tuple of str
         BibTeX of homotopy and parts; see `continuation.cite`.
     end_error : float or None
-        At the target: bound of the components' absolute error by round-off; after an endgame, an estimate.
+        At the target: bound of the components' absolute error by round-off, or an endgame's estimate.
     winding_number : int or None
         After an endgame: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
@@ -163,10 +163,10 @@ class Path:
         return np.array(points) if wanted.ndim else points[0]
 
     def error_bound(self, homotopy: Any, s: float | Array) -> Array:
-        """Bound the distance of ``path(s)`` from the path, by component, across the null vector of H'.
+        """Bound the distance of ``path(s)`` from the path, by component.
 
-        Two chord steps are measured, the others bounded if H' changes evenly; infinite if they do not halve. For proofs
-        see `continuation.certify`.
+        Two chord steps toward the path are measured, the others bounded if H' changes evenly; infinite if the steps do
+        not halve. For proofs see `continuation.certify`.
 
         Parameters
         ----------

@@ -31,9 +31,9 @@ DEEPEST = 8
 def refined_path(
     homotopy: Any, path: Sequence[Step], events: Sequence[LocatedEvent], accuracy: float
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps and events of a path with more points, for a given accuracy.
+    """Steps and events of a path with more points.
 
-    An arc's middle is corrected onto the path. If it moves farther than the accuracy (relative to each component's
+    An arc's middle is corrected onto the path. If it moves farther than `accuracy` (relative to each component's
     range), it becomes a step, and both halves are examined.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
@@ -60,10 +60,9 @@ def refined_path(
 def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Sequence[int]) -> Array:
     """How far points of a path's dense output are off, shape (k, N + 1).
 
-    Chord steps across the null vector of H' lead from a point onto the path. The first is Newton's, whose error is half
-    of what H' changes on the way; those after the second shrink by twice the ratio of these two (Deuflhard, Newton
-    Methods for Nonlinear Problems, Section 2.1). Infinite if they do not halve. `points`, shape (k, N + 1); `indices`:
-    the step at the end of each point's arc.
+    Chord steps across the null vector of H' lead onto the path. The first is Newton's, whose error is half of what H'
+    changes on the way; those after the second shrink by twice the ratio of the first two (Deuflhard, Newton Methods for
+    Nonlinear Problems, Section 2.1). Infinite if they do not halve. `indices`: the step at the end of each arc.
     """
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     bounds = np.full_like(points, np.inf)

@@ -28,8 +28,8 @@ class Step:
     index : int
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
-        Sum of lengths of circular arcs through two points with the angle between their tangents, in the step's metric:
-        the curve's length to fourth order in the angle (`continuation.arclength` is accurate to 1e-9).
+        Sum of circular arcs through two points with the angle between their tangents, in the step's metric: the curve's
+        length to fourth order in the angle (`continuation.arclength`: to 1e-9).
     step_length : float
         The predictor's step; 0 at the start.
     residual_norm : float
@@ -106,8 +106,8 @@ class LocatedEvent:
     switches : tuple of int
         At a kink: the vanishing switching functions.
     rays : ndarray, shape (k, N + 1), or None
-        At a kink or simple branch point: outward directions of all branches, of unit length in the metric; first back
-        along the path, then onward. Archives keep those of kinks.
+        At a kink or simple branch point: unit directions of all branches away from it; first back along the path, then
+        onward. Archives keep those of kinks.
     weights : ndarray, shape (N + 1,), or None
         The metric; None after reading.
     observed : mapping

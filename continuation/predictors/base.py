@@ -43,7 +43,7 @@ class Predictor(Protocol):
     Attributes
     ----------
     memory : int
-        Number of knots used, with the current one.
+        Number of knots used, the current one included.
     order : int
         Local error O(h^(order + 1)); the least, if predictions have an `order`.
     interior_fraction : float, optional

@@ -16,7 +16,7 @@ from continuation.metric import norm
 from continuation.point.linearization import Linearization
 
 FITTED_ORDER = 11
-"""Largest order: powers of s magnify round-off by 1e4; by 1e8 with twice as many points."""
+"""Largest order: powers of s magnify round-off by 1e4, by 1e8 at twice the order."""
 
 CHORD = Contraction()
 """The current factorisation serves; divergence shortens the range."""
@@ -35,9 +35,9 @@ def fitted(
 ) -> Array:
     """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
-    The polynomial has the point's tangent and interpolates points of the path, found by chord steps. `first`: first
-    range tried. `reach`: range in which a series is accurate. `accuracy`: in the metric; noise, doubled by each power,
-    lowers the order. Raises `EvaluationError` if no range works.
+    The polynomial has the point's tangent and interpolates points of the path, found by chord steps. `first`: range
+    tried first. `reach`: where a series is accurate. `accuracy`: in the metric; noise, doubled by each power, lowers
+    the order. `EvaluationError` if no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)

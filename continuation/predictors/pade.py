@@ -86,8 +86,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Series | None:
     """The approximant with the longest range, or None.
 
-    In its range successive orders agree, without a pole. A pole of one order is an artefact (Froissart doublet); a
-    pole of the path limits all.
+    In the range successive orders agree, without a pole. A pole of one order alone is an artefact (Froissart doublet).
     """
     order = len(series) - 1
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() * INVERTIBLE > 1.0:

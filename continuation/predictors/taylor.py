@@ -39,8 +39,8 @@ LONGEST_STEP = 100.0
 def best_order(n: int, accuracy: float) -> int:
     """The order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f = 4 + n/60 is at most a third slower than the best. The least (f + K) exp(L/K), L = -ln accuracy, is at K^2 = L (K
-    + f).
+    f = 4 + n/60 is at most a third slower than the best. (f + K) exp(L/K), L = -ln accuracy, is least at
+    K^2 = L (K + f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -62,19 +62,19 @@ def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
 
 @frozen
 class Taylor:
-    """Series prediction of any order, by the plug-in or `continuation.jets`.
+    """Predicts by the path's power series, whose coefficients the homotopy's `taylor` or `continuation.jets` gives.
 
     Parameters
     ----------
     order : int, optional
         Default: `best_order`.
     accuracy : float
-        Size of the last terms at a step's end, in the metric. The corrector squares it; dense output has it times
-        2^-order in mid-step.
+        Size of the series' last terms at the end of a step, in the metric: one corrector step leaves about its square.
+        In mid-step the terms are 2^order times smaller.
     safety : float
-        Factor on the reach.
+        Longest step over the range in which the series has this accuracy.
     rational : bool
-        Pade approximants: a larger range, ended before a pole.
+        Whether to use Pade approximants, whose range is longer and ends before a pole.
     """
 
     order_wanted: int | None = field(default=None, validator=optional(integer(2, LARGEST_ORDER)), alias="order")

@@ -110,9 +110,9 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
 
 
 def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
-    """An accepted arc ends the path.
+    """The verdict if an accepted arc ends the path, else None.
 
-    `infinity`: How it diverges, or "". `event`: Name of the arc's last event.
+    `infinity`: how the path diverges, or "". `event`: name of the arc's last event.
     """
     if end.limit is not None:
         return singular_end(end.limit)

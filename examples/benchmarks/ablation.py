@@ -1,4 +1,4 @@
-"""What each method of `lcp.solve` is worth: a mix of problems with all of them, with each taken out, and with few.
+"""The worth of each method of `lcp.solve`: a mix of problems with all methods, without each one, and with few.
 
     python examples/benchmarks/ablation.py [NUMBER] [SEED] [--limit S]
 

@@ -1,50 +1,20 @@
-"""The archive, measured: cost a step; memory of a long path; what files, sweeps and columns cost beside none or h5py.
+"""The archive, measured: memory of a long path; what files, sweeps and columns cost beside none or h5py.
 
-python examples/benchmarks/archive_benchmark.py [cost] [memory] [beside] [--points N]
+python examples/benchmarks/archive_benchmark.py [memory] [beside] [--points N]
 """
 
 import os
 import tempfile
-from functools import partial
 from pathlib import Path
 
 import h5py
 import numpy as np
-from attrs import evolve
 from campaign import asked, timed
 
-from continuation import Budget, Step, Tracer, from_functions, trace
+from continuation import Budget, Tracer, from_functions, trace
 from continuation.archive import PathLog, open_archive, trace_many
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
-
-
-def cost(folder: Path) -> None:
-    """Microseconds of the processor that a step of the observer alone takes, the least of 7 runs."""
-    for unknowns, steps in ((10, 40_000), (1000, 6_000)):
-        for durable in (False, True):
-            least = min(_cost(folder / f"{unknowns}{durable}{k}.h5", unknowns, steps, durable) for k in range(7))
-            print(f"N = {unknowns:<5} {'durable' if durable else 'default':<8} {least:6.1f} us of the processor a step")
-
-
-def _cost(file: Path, unknowns: int, steps: int, durable: bool) -> float:
-    identity, ones = np.eye(unknowns), np.ones(unknowns)
-    tracer = Tracer(from_functions(lambda y, lam: y - lam, lambda y, lam: (identity, -ones), start=(0.0 * ones, 0.0)))
-    next(iter(tracer))
-    points = np.random.default_rng(0).random((steps, unknowns + 1))
-    states = [evolve(tracer.state, index=k) for k in range(steps)]
-    records = [Step(k, points[k], points[k], 0.1 * k, 0.1, 1e-9, 1, 0, 3, 0) for k in range(steps)]
-
-    def logged(first: int, last: int) -> None:
-        for k in range(first, last):
-            tracer.state = states[k]
-            log.step(tracer, records[k])
-
-    with PathLog(file, durable=durable) as log:
-        logged(0, 1)
-        _, seconds = timed(partial(logged, 1, steps))
-    file.unlink()
-    return 1e6 * seconds / (steps - 1)
 
 
 def memory(folder: Path, points: int) -> None:
@@ -73,7 +43,7 @@ def beside(folder: Path, rounds: int = 15, members: int = 60) -> None:
     names = (folder / f"{k}.h5" for k in range(10 * rounds))
     one, many = FreudensteinRoth(), [FreudensteinRoth() for _ in range(members)]
     read = next(names)
-    trace(ExponentialCosine(10), archive=read)
+    path = trace(ExponentialCosine(10), archive=read)
 
     def column() -> None:
         with open_archive(read) as archive:
@@ -88,18 +58,16 @@ def beside(folder: Path, rounds: int = 15, members: int = 60) -> None:
         "a trace with a file": lambda: trace(one, archive=next(names)),
         "a sweep": lambda: trace_many(many),
         "a sweep with a file": lambda: trace_many(many, archive=next(names)).close(),
-        "a column": column,
-        "a column by h5py": bare,
+        f"a column of {len(path)} points": column,
+        "the column by h5py": bare,
     }
-    least = {name: min(1e3 * timed(job)[1] for _ in range(2)) for name, job in jobs.items()}
-    for _ in range(rounds):
+    least = dict.fromkeys(jobs, np.inf)
+    for _ in range(rounds + 2):
         for name, job in jobs.items():
             least[name] = min(least[name], 1e3 * timed(job)[1])
-    file, sweep = (least[f"{name} with a file"] - least[name] for name in ("a trace", "a sweep"))
-    print(f"a file adds {file:.2f} ms to a trace of {least['a trace']:.2f} ms")
-    alone = least["a sweep"] / members
-    print(f"a file adds {sweep / members:.2f} ms to a path of {alone:.2f} ms in a sweep of {members}")
-    print(f"a column in {least['a column']:.2f} ms, by h5py {least['a column by h5py']:.2f} ms")
+    for name, milliseconds in least.items():
+        share = f", {milliseconds / members:.2f} a path" if "sweep" in name else ""
+        print(f"{name}: {milliseconds:.2f} ms{share}")
 
 
 def _resident() -> float:
@@ -108,7 +76,7 @@ def _resident() -> float:
 
 if __name__ == "__main__":
     names, _, options = asked(points=100_000)
-    rows = {"cost": cost, "memory": lambda folder: memory(folder, options.points), "beside": beside}
+    rows = {"memory": lambda folder: memory(folder, options.points), "beside": beside}
     for row in names or rows:
         with tempfile.TemporaryDirectory() as place:
             rows[row](Path(place))

@@ -25,7 +25,7 @@ from continuation.controllers import Bounds, Fixed
 
 OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.05))}
 SECONDS, MEBIBYTES = 5.0, 200
-"""What one damaged file may cost, all operations together: seconds of the processor, and memory above the start."""
+"""Limits for one damaged file, all operations together: seconds of the processor, and memory above the start."""
 
 PAGE = 4096
 PATHS = {column.name: column.storage for column in PATH_COLUMNS}
@@ -74,7 +74,7 @@ def damaged(whole: bytes, kind: str, generator: random.Random) -> bytes:
 
 
 def content(file: Path) -> dict[str, object]:
-    """All that an archive says, to be compared."""
+    """The whole content of an archive, for comparison."""
     with open_archive(file) as archive:
         text, arrays = archive.problem()
         tables = {"points": archive.points, "paths": archive.paths, "problem": arrays}
@@ -87,7 +87,7 @@ def content(file: Path) -> dict[str, object]:
 
 
 class Judge:
-    """What is right: the content of the file before it was damaged, and the whole path."""
+    """Compares with the content of the file before it was damaged, and with the whole path."""
 
     def __init__(self, file: Path) -> None:
         self.raw, self.content, self.path = file.read_bytes(), content(file), trace(HOMOTOPY, **OPTIONS)
@@ -124,7 +124,7 @@ class Judge:
             return all(self._follows(path) for path in archive)
 
     def verdicts(self, file: Path) -> dict[str, str]:
-        """What each operation gives, in a process that has just begun."""
+        """The result of each operation, in a new process."""
         warnings.simplefilter("error")
         gc.freeze()  # What the parent has is not looked through again in each child.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

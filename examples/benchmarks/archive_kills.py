@@ -1,4 +1,4 @@
-"""Kills by the thousand: whatever is written, what was committed stays, and a final name means a whole file.
+"""Kills by the thousand: committed rows stay, and a file under its final name is whole.
 
     python examples/benchmarks/archive_kills.py [NUMBER] [SEED] [WORK ...]
 
@@ -47,7 +47,7 @@ SHORT = {"budget": Budget(steps=12)}
 
 @frozen
 class Child:
-    """What became of a process: its answer, whether it ended by itself in time, its status, and what it used."""
+    """The result of a process: its answer, whether it ended by itself in time, its status and resource usage."""
 
     answer: Any
     ended: bool
@@ -104,7 +104,7 @@ def pooled(file: Path) -> None:
 
 
 class Kills:
-    """The files to begin with, how long each work takes, and what is right."""
+    """The files before each operation, the duration of each operation, and the right results."""
 
     def __init__(self, folder: Path, seed: int = 0) -> None:
         self.folder, self.generator = folder, random.Random(seed)
@@ -121,7 +121,7 @@ class Kills:
                       "export": (self.whole, 0)}  # fmt: skip
 
     def works(self, file: Path, target: Path) -> dict[str, Callable[[], None]]:
-        """What is done to the file."""
+        """Operations on the file, by name."""
         rows = self.generator.choice([1, 4, 30])
         return {
             "trace": lambda: _nothing(trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)),
@@ -153,7 +153,7 @@ class Kills:
         return found if found.startswith(WRONG) else f"{'ended' if ended else 'killed'}, {found}", np.nan
 
     def found(self, name: str, file: Path, target: Path) -> str:
-        """What is in the file, and what becomes of it."""
+        """Check the file after a kill, recover and resume it; a verdict."""
         if name in ("merge", "export"):
             return self.copied(file, target)
         if name in ("sweep", "pool"):

@@ -22,7 +22,7 @@ PRESETS = {preset.name: preset for preset in (FAST, DEFAULT, CONSERVATIVE, SERIE
 WRONG = "WRONG"
 
 Verdict = tuple[str, float]
-"""What a case came to, "" where there is nothing to say, with WRONG in front where it may not be; and what it cost."""
+"""The result of a case in words, "" if it is as expected, with WRONG in front if it is a fault; and its cost."""
 
 Cases = Callable[[int, int], Iterable[Any]]
 """A number and a seed to as many cases."""
@@ -35,7 +35,7 @@ def drawn(make: Callable[[int, np.random.Generator], Any]) -> Cases:
 
 @frozen
 class Campaign:
-    """Families of cases, a judge of a case under a way (a preset, where nothing else is said), and what a cost is."""
+    """Families of cases, a judge of a case under a way (by default a preset), and the name of the cost."""
 
     families: Mapping[str, Cases]
     judge: Callable[[Any, Any], Verdict]
@@ -65,7 +65,7 @@ class Campaign:
 
 
 def asked(*numbers: int, **defaults: Any) -> tuple[list[str], list[int], argparse.Namespace]:
-    """The command line's names, its numbers or the default ones, and its options, whose defaults say what they are."""
+    """The command line's names, its numbers or the default ones, and its options, of the types of their defaults."""
     parser = argparse.ArgumentParser()
     parser.add_argument("words", nargs="*", default=[])
     for name, default in defaults.items():
@@ -76,7 +76,7 @@ def asked(*numbers: int, **defaults: Any) -> tuple[list[str], list[int], argpars
 
 
 def timed(work: Callable[[], Any], rounds: int = 1) -> tuple[Any, float]:
-    """What it returns, and the least seconds of the processor in so many rounds."""
+    """The result of `work`, and the least seconds of the processor in so many rounds."""
     least, result = math.inf, None
     for _ in range(rounds):
         began = time.process_time()

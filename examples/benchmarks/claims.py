@@ -1,4 +1,4 @@
-"""What must not matter to `lcp.solve`: the units of rows and columns, a common factor, and how far apart entries are.
+"""`lcp.solve` must not depend on units of rows and columns, on a common factor, or on the spread of entries.
 
     python examples/benchmarks/claims.py [NUMBER] [SEED] [units] [factor] [truth] [bounds]
 
@@ -20,23 +20,18 @@ from campaign import WRONG, Campaign, Verdict, drawn, timed
 from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
+from problems.lcp import Outcome
 from problems.lcp.reference.enumeration import exhaust
 
 Data = tuple[Array, Array]
-Outcome = lcp.Outcome
 
 SAME_X = 1e-8
 """Two points closer than this, relative to each component's size in balanced units, are the same."""
 
 FACTORS = tuple(10.0**k for k in (-300, -200, -100, -30, -12, -8, -4, 0, 4, 8, 12, 30, 100, 200, 300))
 
-SLOW = 20.0
-"""Seconds of a solve that count as a failure."""
-
 FARTHEST = 1e-10
 """The relative residual that `solve` allows where it is asked for nothing else."""
-
-BUDGET = Budget(seconds=60.0)
 
 
 def planted(A: Array, r: np.random.Generator) -> Data:
@@ -45,11 +40,6 @@ def planted(A: Array, r: np.random.Generator) -> Data:
     support = r.random(n) < 0.5
     x, w = r.integers(1, 17, (2, n)) / 8.0  # so that no rounding spoils what integers plant
     return A, np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
-
-
-def squared(M: Array) -> Array:
-    """M M'."""
-    return M @ M.T
 
 
 def monotone(n: int, r: np.random.Generator) -> Data:
@@ -81,10 +71,10 @@ def infeasible(n: int, r: np.random.Generator) -> Data:
 
 
 KINDS: dict[str, Callable[[int, np.random.Generator], Data]] = {
-    "definite": lambda n, r: (squared(r.standard_normal((n, n))) / n + 0.1 * np.eye(n), r.standard_normal(n)),
+    "definite": lambda n, r: ((M := r.standard_normal((n, n))) @ M.T / n + 0.1 * np.eye(n), r.standard_normal(n)),
     "monotone": monotone,
     # Of half the rank.
-    "semidefinite": lambda n, r: planted(squared(r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)), r),
+    "semidefinite": lambda n, r: planted((M := r.integers(-2, 3, (n, max(n // 2, 1))).astype(float)) @ M.T, r),
     # No positive entry off the diagonal; often infeasible.
     "z_matrix": lambda n, r: (
         np.diag(r.uniform(0.0, n, n)) - r.random((n, n)) * (1 - np.eye(n)), r.standard_normal(n)
@@ -114,7 +104,7 @@ def solved(A: Array, q: Array) -> lcp.Solution:
     """The answer, with every warning an error."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return lcp.solve(lcp.LCP(A, q), budget=BUDGET)
+        return lcp.solve(lcp.LCP(A, q), budget=Budget(seconds=60.0))
 
 
 def without_solution(found: lcp.Solution) -> bool:
@@ -131,7 +121,7 @@ def by_rounding(one: lcp.Solution, other: lcp.Solution, E: Array) -> bool:
 
 
 def compared(one: lcp.Solution, other: lcp.Solution, exact: bool, E: Array) -> str:
-    """What two answers come to, of which the other is of the same problem with x in units of 1 / E."""
+    """The difference of two answers, of which the other is for x in units of 1 / E."""
     said = f"{one.outcome.name} and {other.outcome.name}"
     if one.outcome is not other.outcome:
         return f"decided by rounding: {said}" if not exact and by_rounding(one, other, E) else f"{WRONG}: {said}"
@@ -200,7 +190,7 @@ def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
 
 
 def truth(k: int, r: np.random.Generator) -> Verdict:
-    """SOLVED and UNSOLVABLE of small problems against enumeration; no exception, no warning, nothing slow."""
+    """SOLVED and UNSOLVABLE of small problems against enumeration; no exception, no warning, nothing over 20 s."""
     A, q = hostile(k, r)
     try:
         found, seconds = timed(lambda: solved(A, q))
@@ -216,7 +206,7 @@ def truth(k: int, r: np.random.Generator) -> Verdict:
         said = f"{WRONG}: {said}, x is no solution"
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None and not proves(A, q, found.farkas.y):
         said = f"{WRONG}: {said}, no Farkas vector"
-    return said if seconds <= SLOW else f"{WRONG}: slow", seconds
+    return said if seconds <= 20.0 else f"{WRONG}: slow", seconds
 
 
 def random_problem(rng: np.random.Generator) -> lcp.MixedLCP:

@@ -17,22 +17,19 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 from campaign import WRONG, Campaign, Verdict
-from subjects import Linear, TwoSheets, subjects
+from subjects import Linear, TwoSheets, proved, subjects
 
-from continuation import Budget, certify, trace
+from continuation import Budget, trace
 from continuation.certificate import Proof
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 
 PART = 250
 
-DISTANT = 1e-3
-"""How far a point is moved at least, in extents of the path."""
 
-
-def proved(homotopy: Any, path: Path) -> bool:
-    """Whether a proof of it is complete."""
-    return homotopy.proved(path) if isinstance(homotopy, Linear) else certify(path, homotopy).complete
+def one_of(among: Any, rng: np.random.Generator) -> Any:
+    """One of some, at random."""
+    return among[int(rng.integers(len(among)))]
 
 
 def numbered(path: Path, steps: list, events: list) -> Path:
@@ -53,14 +50,17 @@ def numbered(path: Path, steps: list, events: list) -> Path:
 
 
 def moved(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
-    """Up to three points in a row moved off the curve, by at least twice the radius of the tubes beside the first."""
+    """Up to three points in a row moved off the curve, by twice the radius of the tubes beside the first at least.
+
+    And by a thousandth of the path's extent at least.
+    """
     k = int(rng.integers(0, len(path)))
     step, extent = path.steps[k], np.ptp(path.u, axis=0)
     beside = np.vstack([proof.radius(float(s)) for s in (path.arclength[k] - 1e-9, path.arclength[k] + 1e-9)])
     tube = np.nan_to_num(beside).max(axis=0)
     v = rng.normal(size=step.u.size)
     v -= step.tangent * float(step.tangent @ v) / float(step.tangent @ step.tangent)
-    size = np.maximum(2.0 * tube, DISTANT * extent) / np.maximum(np.abs(v), 1e-3 * np.abs(v).max())
+    size = np.maximum(2.0 * tube, 1e-3 * extent) / np.maximum(np.abs(v), 1e-3 * np.abs(v).max())
     off = v * float(size.max()) * 10.0 ** rng.uniform(0.0, 1.5)
     last = k + int(rng.integers(3))
     return evolve(path, steps=[evolve(s, u=s.u + off) if k <= s.index <= last else s for s in path.steps])
@@ -108,12 +108,12 @@ def across(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
 def invented(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """A turning point listed at a step of the path, on the curve, where there is none."""
     away = [s for s in path.steps[1:-1] if all(abs(s.arclength - e.arclength) > 0.3 for e in path.turning_points)]
-    return changed(path, None, listed(away[int(rng.integers(len(away)))], Kind.TURNING_POINT)) if away else None
+    return changed(path, None, listed(one_of(away, rng), Kind.TURNING_POINT)) if away else None
 
 
 def elsewhere(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """An event moved off the curve."""
-    event = path.events[int(rng.integers(len(path.events)))]
+    event = one_of(path.events, rng)
     off = rng.normal(size=event.u.size) * np.ptp(path.u, axis=0) * 10.0 ** rng.uniform(-2.0, 1.0)
     return changed(path, event, evolve(event, u=event.u + off))
 
@@ -146,14 +146,13 @@ def changed(path: Path, old: Any, *new: Any) -> Path:
 
 def drawn(path: Path, rng: np.random.Generator) -> Any:
     """One of the kinks; of a smooth path, of its turning points."""
-    among = path.kinks or path.turning_points
-    return among[int(rng.integers(len(among)))]
+    return one_of(path.kinks or path.turning_points, rng)
 
 
 def unlisted(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink dropped, half of the times with its point; or a turning point dropped, or listed twice."""
-    among, twice = [*path.kinks, *path.turning_points], rng.random() < 0.5
-    event = among[int(rng.integers(len(among)))]
+    twice = rng.random() < 0.5
+    event = one_of([*path.kinks, *path.turning_points], rng)
     if event.kind is not Kind.KINK:
         return changed(path, event, *([event, event] if twice else []))
     steps = [s for s in path.steps if twice or s.index != event.step]
@@ -166,7 +165,7 @@ def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None
     away = [s for s in path.steps if not {s.index, s.index + 1} & {e.step for e in path.events}]
     if not away:
         return None
-    step = away[int(rng.integers(len(away)))]
+    step = one_of(away, rng)
     like = evolve(kink, u=step.u, arclength=step.arclength, step=step.index)
     return changed(path, kink, like, *([kink] if rng.random() < 0.5 else []))
 
@@ -174,11 +173,9 @@ def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None
 def pushed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink moved along the arc before it or after it, on the curve or nearly, with its point."""
     kink = drawn(path, rng)
-    k = kink.step
-    other = path.u[k + 1] if rng.random() < 0.5 else path.u[k - 1]
+    other = path.u[kink.step + (1 if rng.random() < 0.5 else -1)]
     u = kink.u + (other - kink.u) * float(10.0 ** rng.uniform(-3.0, -0.3))
-    steps = list(path.steps)
-    steps[k] = evolve(steps[k], u=u)
+    steps = [evolve(s, u=u) if s.index == kink.step else s for s in path.steps]
     return changed(evolve(path, steps=steps), kink, evolve(kink, u=u))
 
 
@@ -236,13 +233,12 @@ def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: An
 
 
 AT_KINKS = (unlisted, misplaced, pushed, renamed, turned_back, straight_on)
-AT_TURNS = (unlisted, misplaced)
-ANYWHERE = (moved, swapped, jumped, invented, left_out, turned_back)
 
 
 def faults(homotopy: Any, path: Path) -> list[Any]:
-    """What can be done to a path."""
-    found = [*ANYWHERE, *(AT_KINKS if path.kinks else AT_TURNS if path.turning_points else ())]
+    """The faults that suit a path."""
+    found = [moved, swapped, jumped, invented, left_out, turned_back]
+    found += AT_KINKS if path.kinks else (unlisted, misplaced) if path.turning_points else ()
     return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]
 
 
@@ -251,7 +247,7 @@ def cases(number: int, seed: int) -> Iterator[tuple[Any, Path, Any, Path]]:
     for part in range(-(-number // PART)):
         rng, tried, left = np.random.default_rng(seed + part), subjects(seed + part), min(PART, number - part * PART)
         while left:
-            homotopy, path, proof = tried[int(rng.integers(len(tried)))]
+            homotopy, path, proof = one_of(tried, rng)
             fault = rng.choice(faults(homotopy, path))
             more = {"homotopy": homotopy} if fault is straight_on and not isinstance(homotopy, Linear) else {}
             corrupted = fault(path, proof, rng, **more)

@@ -1,7 +1,7 @@
 """Random problems on whose path branches cross at known places: transversal, pitchforks, transcritical ones.
 
-In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. What the
-tracer sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
+In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. The tracer
+gets unknowns and equations that are mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
 """
 
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 
@@ -30,8 +30,8 @@ class Crossed:
         On the way, in order.
     begin, end : float
         Of s.
-    mix, shape : ndarray, shape (N, N), (N, 4)
-        T, and the coefficients of the unknowns that follow.
+    mix, shape, unmix : ndarray, shape (N, N), (N, 4), (N, N)
+        T, the coefficients of the unknowns that follow, and T^-1.
     scales, origin, equations : ndarray
         D and a, c and b, E.
     angle : float
@@ -48,12 +48,8 @@ class Crossed:
     scales: Array
     origin: Array
     equations: Array
+    unmix: Array
     angle: float = 1.0
-    unmix: Array = field(init=False)
-
-    @unmix.default
-    def _unmix(self) -> Array:
-        return np.linalg.inv(self.mix)
 
     def _x(self, y: Any, lam: Any) -> tuple[Array, float]:
         return self.unmix @ ((y - self.origin[:-1]) / self.scales[:-1]), (lam - self.origin[-1]) / self.scales[-1]
@@ -75,9 +71,9 @@ class Crossed:
 
     @property
     def resolution(self) -> float:
-        """What round-off leaves of a crossing's place: in y, where zero is far off, and in the matrix products of H'.
+        """The error of a crossing's place by round-off: in y, if zero is far off, and in the matrix products of H'.
 
-        More where branches nearly touch.
+        It grows where branches nearly touch.
         """
         found = 0.0
         for x0, s in self.crossings:
@@ -120,7 +116,8 @@ def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Cr
     shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
     E = 10.0 ** rng.uniform(-units, units, n)
     shape = rng.normal(0.0, 0.5, (n, 4))
-    return Crossed(mix=mix, shape=shape, scales=D, origin=shift, equations=E[:, None] * equations, **known)
+    known |= {"mix": mix, "unmix": np.linalg.inv(mix), "shape": shape, "scales": D}
+    return Crossed(origin=shift, equations=E[:, None] * equations, **known)
 
 
 def _graph(k: Array, s: Any) -> Any:
@@ -132,7 +129,7 @@ def _slope(k: Array, s: Any) -> Any:
 
 
 def _roots(k: Array, s: Array) -> list[float]:
-    """Where a graph changes its sign, by Newton's method from a table."""
+    """The zeros at which a graph changes its sign, by Newton's method from a table."""
     value, roots = _graph(k, s), []
     for t in s[np.flatnonzero(value[:-1] * value[1:] < 0.0)]:
         for _ in range(50):
@@ -141,13 +138,8 @@ def _roots(k: Array, s: Array) -> list[float]:
     return roots
 
 
-def apart(rng: np.random.Generator, n: int, units: float) -> Crossed:
-    """As `transversal`, and the graphs differ by about 1."""
-    return transversal(rng, n, units, near=False)
-
-
 def transversal(rng: np.random.Generator, n: int, units: float, near: bool = True) -> Crossed:
-    """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1 and cross at most three times; the path is the first."""
+    """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1, if `near`, and cross at most three times; the path is f."""
     while True:
         a = rng.normal(0.0, 1.0, 3)
         b = a + rng.normal(0.0, 1.0, 3) * (10.0 ** rng.uniform(-2.0, 0.0) if near else 1.0)
@@ -224,7 +216,7 @@ def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
 
 
 def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
-    """The same along the arms, over the crossing: to x_0 = 0.3; `begin` and `end` are values of x_0."""
+    """`pitchfork` along the arms, over the crossing, to x_0 = 0.3; `begin` and `end` are values of x_0."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0))
     return _dressed(
         rng, n, units, scalar=_forked(at, k), curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],

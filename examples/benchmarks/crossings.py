@@ -5,35 +5,40 @@ python examples/benchmarks/crossings.py [NUMBER] [SEED] [FAMILY ...]
 
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 from campaign import WRONG, Campaign, Cases, Verdict
-from crossed import Crossed, apart, arm, pairs, pitchfork, transcritical, transversal
+from crossed import Crossed, arm, pairs, pitchfork, transcritical, transversal
 
 import continuation as ct
-from continuation.arrays import Array
 
 FAMILIES: dict[str, Callable[..., Crossed]] = {
     "transversal": transversal,
-    "apart": apart,
+    "apart": partial(transversal, near=False),
     "pairs": pairs,
     "pitchfork": pitchfork,
     "arm": arm,
     "transcritical": transcritical,
 }
 LOCATED = 1e-10
-"""Of the path's extent (x_0 and s are of size one)."""
+"""Largest error of a crossing, relative to the path's extent (x_0 and s are of size one)."""
+
+
+def options(problem: Crossed, on_arm: bool, preset: ct.Preset) -> dict[str, Any]:
+    """How a problem is traced; on an arm to an event, as the parameter takes each value twice."""
+    given: dict[str, Any] = {"preset": preset, "budget": ct.Budget(steps=1000)}
+    if not on_arm:
+        return given
+    end = ct.Monitor(lambda u, v: problem.first(u[:-1], float(u[-1]))[0] - problem.end, name="the end", terminal=1)
+    trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1]
+    return given | {"target": None, "direction": -1, "events": [end, ct.TargetValue(trunk)]}
 
 
 def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, float, Any]:
-    """What is wrong with the trace of a problem, "" if nothing; the largest error of a branch point; the path."""
-    options: dict[str, Any] = {"preset": preset, "budget": ct.Budget(steps=1000)}
-    if on_arm:
-        # To the end by an event: the parameter is a function of neither end.
-        trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1]
-        options |= {"target": None, "direction": -1, "events": [_on(problem), ct.TargetValue(trunk)]}
-    path = ct.trace(problem, **options)
+    """The fault of a problem's trace, or ""; the largest error of a branch point; the path."""
+    path = ct.trace(problem, **options(problem, on_arm, preset))
     if not path.success:
         return f"stuck: {path.status.name}", np.nan, path
     found = [event for event in path.events if event.kind == ct.Kind.BRANCH_POINT]
@@ -48,15 +53,6 @@ def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, floa
     return ("" if error <= LOCATED + problem.resolution else "badly located"), error, path
 
 
-def _on(problem: Crossed) -> Any:
-    """A terminal event where x_0 passes its end."""
-
-    def beyond(u: Array, v: Array) -> float:
-        return problem.first(u[:-1], float(u[-1]))[0] - problem.end
-
-    return ct.Monitor(beyond, name="the end of the arm", terminal=1)
-
-
 def drawn(name: str, count: int, seed: int) -> Iterator[Crossed]:
     """So many problems of a family, of 1 to 50 unknowns."""
     rng = np.random.default_rng(seed)
@@ -65,16 +61,15 @@ def drawn(name: str, count: int, seed: int) -> Iterator[Crossed]:
         yield FAMILIES[name](rng, n, float(rng.choice([0.0, 2.0, 6.0])))
 
 
-def judge(case: tuple[str, Crossed], preset: ct.Preset) -> Verdict:
-    """What is wrong, and the number of factorisations."""
-    name, problem = case
-    wrong, _, path = judged(problem, name == "arm", preset)
+def judge(case: tuple[Crossed, bool], preset: ct.Preset) -> Verdict:
+    """The fault of a trace, and the number of factorisations."""
+    wrong, _, path = judged(*case, preset)
     return f"{WRONG}: {wrong}" if wrong else "", path.counts.factorizations
 
 
 def cases(name: str) -> Cases:
     """So many problems of a family, by its name."""
-    return lambda number, seed: ((name, problem) for problem in drawn(name, number, seed))
+    return lambda number, seed: ((problem, name == "arm") for problem in drawn(name, number, seed))
 
 
 CAMPAIGN = Campaign({name: cases(name) for name in FAMILIES}, judge)

@@ -2,9 +2,9 @@
 
     python examples/benchmarks/ends.py [NUMBER] [SEED] [FAMILY ...]
 
-Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 10^-UNITS to 10^UNITS.
-One is wrong if its status is none that it may have, or if it has folds that are none. What it costs is compared with
-the same path in its own units under the Euclidean metric, where that ends rightly, too.
+Paths whose ends are known: imperfections, symmetry, tails, weak parameters, poles; in units of 1e-4 to 1e4.
+A path is wrong if its status is not one of those expected, or its number of folds. Its cost is compared with that of
+the path in its own units under the Euclidean metric, if that is right too.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from continuation.arrays import Array
 
 Residual = Callable[[Any, Any], Any]
 
-UNITS = 4.0
 BUDGET = continuation.Budget(steps=2000, factorizations=6000)
 
 
@@ -134,10 +133,7 @@ def truss(generator: np.random.Generator) -> Case:
     def residual(y: Any, lam: Any) -> Any:
         stretch = [((y - foot) * (y - foot)).sum() - 1.0 - rise**2 for foot in feet]
         force = [0.5 * e * (y - foot) for e, foot in zip(stretch, feet)]
-        total = force[0]
-        for part in force[1:]:
-            total = total + part
-        return total + lam * np.array([0.0, 0.0, 1.0])
+        return sum(force[1:], force[0]) + lam * np.array([0.0, 0.0, 1.0])
 
     # On the axis the force is bars z' (z'^2 - rise^2) / 2, z' = rise + z: its least value is the fold's load.
     fold = bars * rise**3 / 27.0**0.5
@@ -189,20 +185,20 @@ def in_units(family: Callable[[np.random.Generator], Case]) -> Cases:
 
     def draw(_: int, generator: np.random.Generator) -> tuple[Case, Any]:
         case = family(generator)
-        return case, case.homotopy(*10.0 ** generator.uniform(-UNITS, UNITS, 3))
+        return case, case.homotopy(*10.0 ** generator.uniform(-4.0, 4.0, 3))
 
     return drawn(draw)
 
 
 def wrong(path: continuation.Path, case: Case) -> str:
-    """What is wrong with a path; "" if nothing is."""
+    """The fault of a path, or ""."""
     if path.status not in case.ends:
         return f"{WRONG}: {path.status.name}"
     return "" if len(path.turning_points) == case.folds else f"{WRONG}: {len(path.turning_points)} folds"
 
 
 def judge(drawn_one: tuple[Case, Any], preset: continuation.Preset) -> Verdict:
-    """What is wrong, and factorisations over those of the Euclidean metric in the path's own units."""
+    """The fault of a path, and factorisations over those of the Euclidean metric in its own units."""
     case, homotopy = drawn_one
     path = continuation.trace(homotopy, preset=preset, budget=BUDGET)
     plain = continuation.trace(case.homotopy(), preset=preset, budget=BUDGET, metric=continuation.Euclidean())

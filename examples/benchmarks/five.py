@@ -3,11 +3,12 @@
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/five.py [WAY ...] [--rounds 5] [--points 64]
 
 The Brusselator with diffusion, 2 x 64 unknowns, and a network of three layers at rest. Processor seconds a path, the
-least of several rounds; "made" is what it takes before, compilation included. What is not installed is left out.
+least of several rounds; "made": the time to make the homotopy, compilation included. Missing libraries are left out.
 """
 
 from functools import partial
 from importlib.util import find_spec
+from types import SimpleNamespace
 
 import numpy as np
 import scipy.sparse as sp
@@ -42,13 +43,7 @@ def brusselator(n):
         blocks[0][0], blocks[1][1] = blocks[0][0] + DX * L, blocks[1][1] + DY * L
         return sp.csc_array(sp.block_array(blocks)), np.concatenate((-x, x + DY / A * at_ends))
 
-    def casadi(ca, y, lam):
-        x, z = y[:n], y[n:]
-        made = x * x * z
-        rows = DX * (ca.DM(L) @ x + at_ends * (ENDS * A)) + A - (lam + 1.0) * x + made
-        return ca.vertcat(rows, DY * (ca.DM(L) @ z + at_ends * (lam / A)) + lam * x - made)
-
-    return residual, jacobian, casadi, start, target
+    return residual, jacobian, start, target
 
 
 def network(n, seed=13):
@@ -58,7 +53,7 @@ def network(n, seed=13):
     b = random.standard_normal(n)
 
     def residual(np, y, lam):
-        return y - W3 @ np.tanh(W2 @ np.tanh(W1 @ y + lam * b))
+        return y - np.matmul(W3, np.tanh(np.matmul(W2, np.tanh(np.matmul(W1, y) + lam * b))))
 
     def jacobian(y, lam):
         one = np.tanh(W1 @ y + lam * b)
@@ -66,15 +61,12 @@ def network(n, seed=13):
         inner = (W3 * (1.0 - two**2)) @ (W2 * (1.0 - one**2))
         return np.eye(n) - inner @ W1, -inner @ b
 
-    def casadi(ca, y, lam):
-        return y - ca.DM(W3) @ ca.tanh(ca.DM(W2) @ ca.tanh(ca.DM(W1) @ y + lam * ca.DM(b)))
-
-    return residual, jacobian, casadi, (np.zeros(n), 0.0), 4.0
+    return residual, jacobian, (np.zeros(n), 0.0), 4.0
 
 
 def ways(model):
     """By name: how to make the homotopy."""
-    residual, jacobian, casadi, start, target = model
+    residual, jacobian, start, target = model
 
     def in_numpy(y, lam):
         return residual(np, y, lam)
@@ -89,14 +81,15 @@ def ways(model):
         import casadi as ca
 
         y, lam = ca.SX.sym("y", start[0].size), ca.SX.sym("lam")
-        return continuation.from_casadi(ca.Function("H", [y, lam], [casadi(ca, y, lam)]), start, target=target)
+        written = SimpleNamespace(concatenate=lambda parts: ca.vertcat(*parts), tanh=ca.tanh, matmul=ca.mtimes)
+        return continuation.from_casadi(ca.Function("H", [y, lam], [residual(written, y, lam)]), start, target=target)
 
     def by_sympy():
         import sympy
 
         y, lam = sympy.symbols(f"y:{start[0].size}"), sympy.Symbol("lam")
-        shown = residual(Symbolic, np.array(y), lam)
-        return continuation.from_sympy(list(shown), y, lam, start, target=target)
+        written = SimpleNamespace(concatenate=np.concatenate, matmul=np.matmul, tanh=np.vectorize(sympy.tanh, "O"))
+        return continuation.from_sympy(list(residual(written, np.array(y), lam)), y, lam, start, target=target)
 
     made = {
         "numpy": lambda: continuation.from_functions(in_numpy, jacobian, start=start, target=target),
@@ -105,19 +98,6 @@ def ways(model):
         "residual only": lambda: continuation.from_functions(in_numpy, start=start, target=target),
     }  # fmt: skip
     return {name: make for name, make in made.items() if name.split()[0] == "residual" or find_spec(name.split()[0])}
-
-
-class Symbolic:
-    """What numpy does, on arrays of symbols."""
-
-    concatenate = staticmethod(np.concatenate)
-
-    @staticmethod
-    def tanh(values):
-        """Of each."""
-        import sympy
-
-        return np.array([sympy.tanh(value) for value in values])
 
 
 def main():

@@ -5,14 +5,14 @@
 
 The first writes its runs to a file, with which those of the second are compared. A run is a path (the acceptance
 problems, the ten examples, paths through crossings) under a preset, a random LCP, or a scene. It is repeated with its
-equations mixed by random rotations (a path) or its unknowns in another order (an LCP), which reorder all sums. What
-must agree: status, number and kinds of events, the end and the events, and the number of factorisations to a tenth.
+equations mixed by random rotations (a path) or its unknowns in another order (an LCP), which reorder all sums. Status,
+number and kinds of events, the end, the events, and the number of factorisations (to a tenth) must agree.
 """
 
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from pathlib import Path as File
 from typing import Any
@@ -30,11 +30,8 @@ from problems import lcp, scenes
 sys.path.insert(0, str(File(__file__).parents[2] / "tests" / "behaviour"))
 record = import_module("record")
 
-PRESETS = record.PRESETS
 AGREED = 1e-8
-"""Of the largest number in the run: what two runs of well-conditioned paths may differ by at events and ends."""
-MORE, FEW = 0.1, 3
-"""By how much factorisations may differ: a tenth, or so few of them."""
+"""Largest difference of events and ends of two runs of well-conditioned paths, over the largest number in the run."""
 
 
 class Mixed:
@@ -68,53 +65,39 @@ def _path(homotopy: Any, seed: int | None, **options: Any) -> dict[str, Any]:
     path = ct.trace(homotopy if seed is None else Mixed(homotopy, seed), **options)
     # Kind by kind: an arm of a pitchfork turns in its branch point, and round-off decides which of the two comes first.
     events = sorted(path.events, key=lambda event: event.kind.name)
-    return {
-        "status": path.status.name,
-        "points": [path.endpoint.u.tolist(), *[event.u.tolist() for event in events]],
-        "events": [event.kind.name for event in events],
-        "factorizations": path.counts.factorizations,
-    }
+    points, names = [one.u.tolist() for one in (path.endpoint, *events)], [event.kind.name for event in events]
+    return _run(path.status, points, path.counts, names)
+
+
+def _run(status: Any, points: list[Any], counts: Any, events: Iterable[str] = ()) -> dict[str, Any]:
+    work = getattr(counts, "factorizations", 0)
+    return {"status": getattr(status, "name", ""), "points": points, "events": list(events), "factorizations": work}
 
 
 def _solved(problem: Any, seed: int | None) -> dict[str, Any]:
     order = np.arange(problem.n) if seed is None else np.random.default_rng(seed).permutation(problem.n)
     same = problem if seed is None else lcp.LCP(problem.A[np.ix_(order, order)], problem.q[order])
     found = lcp.solve(same, restarts=3, budget=ct.Budget(steps=2000))
-    x = None if found.x is None else np.empty(problem.n)
-    if x is not None:
-        x[order] = found.x
-    return {
-        "status": found.outcome.name,
-        "points": [] if x is None else [x.tolist()],
-        "events": [],
-        "factorizations": found.counts.factorizations,
-    }
+    return _run(found.outcome, [] if found.x is None else [found.x[np.argsort(order)].tolist()], found.counts)
 
 
 def _scene(name: str) -> dict[str, Any]:
     scene = scenes.make(name)
     found = scenes.solve(scene)
-    answer = {key: np.ravel(value).astype(float).tolist() for key, value in scene.answer(found).items()}
-    return {
-        "status": str(getattr(getattr(found, "outcome", None) or getattr(found, "status", ""), "name", "")),
-        "points": list(answer.values()),
-        "events": [],
-        "factorizations": getattr(getattr(found, "counts", None), "factorizations", 0),
-    }
+    points = [np.ravel(value).astype(float).tolist() for value in scene.answer(found).values()]
+    status = getattr(found, "outcome", None) or getattr(found, "status", "")
+    return _run(status, points, getattr(found, "counts", None))
 
 
 def runs(share: float) -> Iterator[tuple[str, Callable[[int | None], dict[str, Any]], bool]]:
-    """Every run: its name, what makes it of a mixing, and whether it can be mixed."""
+    """Every run: its name, a function of the mixing, and whether it can be mixed."""
     for name, (make, options) in record.paths().items():
-        for preset in PRESETS:
+        for preset in record.PRESETS:
             yield f"{name} {preset.name}", lambda s, m=make, o=options, p=preset: _path(m(), s, preset=p, **o), True
-    for family in crossings.FAMILIES:
-        for k, problem in enumerate(crossings.drawn(family, max(1, round(20 * share)), 35)):
-            arm = family == "arm"
-            for preset in PRESETS:
-                trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1] if arm else 0.0
-                stop = {"target": None, "direction": -1, "events": [crossings._on(problem), ct.TargetValue(trunk)]}
-                options = {"preset": preset, "budget": ct.Budget(steps=1000)} | (stop if arm else {})
+    for family, cases in crossings.CAMPAIGN.families.items():
+        for k, (problem, on_arm) in enumerate(cases(max(1, round(20 * share)), 35)):
+            for preset in record.PRESETS:
+                options = crossings.options(problem, on_arm, preset)
                 yield f"{family} {k} {preset.name}", lambda s, h=problem, o=options: _path(h, s, **o), True
     for k in range(round(2000 * share)):
         yield f"lcp {k}", lambda s, k=k: _solved(record.problem(k), s), True
@@ -136,7 +119,7 @@ def differences(found: dict[str, Any], expected: dict[str, Any], unique: bool) -
         if not far <= AGREED * size:
             said.append(f"points {far:.1e} apart, numbers up to {size:.1e}")
     few, many = sorted((found["factorizations"], expected["factorizations"]))
-    if many > few * (1.0 + MORE) and many > few + FEW:
+    if many > few * (1.0 + record.MARGIN) and many > few + record.FEW:
         said.append(f"factorizations {found['factorizations']}, {expected['factorizations']}")
     return said
 

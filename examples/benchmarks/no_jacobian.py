@@ -21,9 +21,6 @@ from continuation.linear import Banded
 from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.bratu_2d import five_point
 
-UPPER = {Bratu1D: 1.0, Bratu2D: 2.0}
-"""Bratu's paths go through the fold, and end where lam falls below this."""
-
 
 @frozen
 class SwiftHohenberg:
@@ -81,16 +78,21 @@ class AllenCahn:
         return sp.csc_array(five_point(self.m) + sp.diags_array(lam * h2 * (1.0 - 3.0 * y * y))), h2 * (y - y**3)
 
 
-def diffusing(n):
-    """The Brusselator of `five.py`."""
-    return written(brusselator(n))["numpy"]()
-
+OPTIONS = {
+    # Bratu's paths go through the fold, and end where lam falls below a value.
+    Bratu1D: {"events": [continuation.TargetValue(1.0, direction=-1)]},
+    Bratu2D: {"events": [continuation.TargetValue(2.0, direction=-1)]},
+    SwiftHohenberg: {"budget": continuation.Budget(steps=30), "direction": 1, "tolerance": 1e-6},
+}
 
 PROBLEMS = {
-    "bratu-1d-100": (Bratu1D, 100), "bratu-1d-1000": (Bratu1D, 1000), "bratu-1d-10000": (Bratu1D, 10_000),
-    "bratu-2d-20": (Bratu2D, 20), "bratu-2d-50": (Bratu2D, 50), "bratu-2d-200": (Bratu2D, 200),
-    "swift-hohenberg-300": (SwiftHohenberg, 300), "swift-hohenberg-3000": (SwiftHohenberg, 3000),
-    "allen-cahn-40": (AllenCahn, 40), "brusselator-64": (diffusing, 64), "brusselator-1000": (diffusing, 1000),
+    f"{name}-{size}": partial(kind, size)
+    for name, kind, sizes in (
+        ("bratu-1d", Bratu1D, (100, 1000, 10_000)), ("bratu-2d", Bratu2D, (20, 50, 200)),
+        ("swift-hohenberg", SwiftHohenberg, (300, 3000)), ("allen-cahn", AllenCahn, (40,)),
+        ("brusselator", lambda n: written(brusselator(n))["numpy"](), (64, 1000)),
+    )
+    for size in sizes
 }  # fmt: skip
 
 
@@ -117,14 +119,8 @@ class Plain:
 
 
 def options(homotopy, preset):
-    """Of the trace of a problem."""
-    given = {"preset": getattr(continuation, preset)}
-    kind = type(homotopy)
-    if kind in UPPER:
-        given["events"] = [continuation.TargetValue(UPPER[kind], direction=-1)]
-    if kind is SwiftHohenberg:
-        given |= {"budget": continuation.Budget(steps=30), "direction": 1, "tolerance": 1e-6}
-    return given
+    """The options of a trace, by problem."""
+    return {"preset": getattr(continuation, preset), **OPTIONS.get(type(homotopy), {})}
 
 
 def ways(homotopy):
@@ -142,8 +138,7 @@ def ways(homotopy):
 
 def measured(name, rounds, preset="FAST", which=None):
     """By way: the path, and its processor seconds."""
-    kind, size = PROBLEMS[name]
-    homotopy = kind(size)
+    homotopy = PROBLEMS[name]()
     given, forms, found = options(homotopy, preset), ways(homotopy), {}
     for way in which or forms:
         more = {"observers": [continuation.Stability()]} if way == "stability" else {}

@@ -26,9 +26,6 @@ from problems import lcp
 from problems.lcp import LCP
 from problems.scenes.game import bimatrix
 
-AGAIN = 0.05
-"""Seconds below which a problem is solved three times, of which the least counts."""
-
 
 def box_qp(k: int, r: np.random.Generator) -> tuple[Array, Array]:
     """An indefinite Q of integers up to 50, and c, of the program min x'Qx/2 + c'x over 0 <= x <= 1, n = 20 to 100."""
@@ -85,7 +82,7 @@ def unit_vectors(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
 
 
 def dual_cyclic(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
-    """Of two polytopes on the moment curve."""
+    """Costs from two polytopes on the moment curve."""
     m = len(Y)
     V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
     V = V - V.mean(axis=0)
@@ -116,7 +113,7 @@ def game_of(kind: str, m: int, r: np.random.Generator) -> LCP:
 
 
 def games(k: int, r: np.random.Generator, actions: tuple[int, ...] = (20, 50, 150)) -> LCP:
-    """Of all kinds, n = 40, 100, 300."""
+    """Games of all kinds, n = 40, 100, 300."""
     return game_of([*KINDS][k % 8], actions[k // 8 % len(actions)], r)
 
 
@@ -210,7 +207,7 @@ def late(*_: object) -> None:
 
 
 def measured(problem: Problem, limit: float, homotopy: str = "auto") -> Verdict:
-    """The outcome, and milliseconds of the processor; "late" at the limit, which is one of the processor's time too."""
+    """The outcome, and milliseconds of the processor, the least of three below 50; "late" at the limit of that time."""
     signal.signal(signal.SIGPROF, late)
     best, outcome = math.inf, "late"
     for _ in range(3):
@@ -222,7 +219,7 @@ def measured(problem: Problem, limit: float, homotopy: str = "auto") -> Verdict:
             outcome = "late"
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         best = min(best, time.thread_time() - began)
-        if best > AGAIN:
+        if best > 0.05:
             break
     return outcome, 1e3 * best
 

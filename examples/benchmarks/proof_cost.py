@@ -1,4 +1,4 @@
-"""What a proof costs: seconds of the processor over those of the trace, and boxes over points.
+"""The cost of a proof: seconds of the processor over those of the trace, and boxes over points.
 
     python examples/benchmarks/proof_cost.py [large]
 
@@ -19,9 +19,9 @@ from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
 
 
-def measured(name: str, homotopy: Any, rounds: int = 1, **options: Any) -> None:
+def measured(name: str, homotopy: Any, rounds: int = 1, budget: Budget | None = None) -> None:
     """Print order, seconds of trace and proof, points, boxes, folds, and whether it is complete."""
-    path, tracing = timed(partial(trace, homotopy, **options), rounds)
+    path, tracing = timed(partial(trace, homotopy, budget=budget), rounds)
     proof, proving = timed(partial(certify, path, homotopy), rounds)
     print(f"{name:24} N {path.u.shape[1] - 1:4} trace {tracing:7.3f} s, proof {proving:7.3f} s, ratio "
           f"{proving / tracing:5.2f}, points {len(path):4}, boxes {proof.boxes:5}, folds {len(path.turning_points):2}, "
@@ -39,13 +39,12 @@ def random_lcps(*orders: int) -> Iterator[tuple[str, Any]]:
 
 if __name__ == "__main__":
     large = "large" in asked()[0]
-    if not large:
-        for example in paper.EXAMPLES:
-            measured(f"example {example.number}", KKTHomotopy(example.problem, example.x0), 3)
-        measured("freudenstein-roth", FreudensteinRoth(), 3)
-        measured("aircraft", Aircraft(), 3, budget=Budget(steps=60))
-    for name, homotopy in random_lcps(*((100,) if large else (20, 40))):
-        measured(name, homotopy)
-    measured("bratu", Bratu1D(100 if large else 30), budget=Budget(steps=14))
-    for n in range(7, 11) if large else range(2, 7):
-        measured(f"exponential-cosine {n}", ExponentialCosine(n))
+    small = [(f"example {e.number}", KKTHomotopy(e.problem, e.x0), 3) for e in paper.EXAMPLES]
+    small += [("freudenstein-roth", FreudensteinRoth(), 3), ("aircraft", Aircraft(), 3, Budget(steps=60))]
+    for row in [
+        *([] if large else small),
+        *random_lcps(*((100,) if large else (20, 40))),
+        ("bratu", Bratu1D(100 if large else 30), 1, Budget(steps=14)),
+        *((f"exponential-cosine {n}", ExponentialCosine(n)) for n in (range(7, 11) if large else range(2, 7))),
+    ]:
+        measured(*row)

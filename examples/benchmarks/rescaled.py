@@ -9,12 +9,6 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import Banded, Symmetric
 
-DECADES = 8.0
-"""Units are 10^-8 to 10^8 of those of the problem."""
-
-SHIFTS = -2.0, 6.0
-"""Zero lies 10 to one of these powers of the path's extent away."""
-
 
 def dense(H_y: Any) -> Array:
     """A Jacobian in whatever structure as an array."""
@@ -25,7 +19,7 @@ def dense(H_y: Any) -> Array:
 
 @frozen(eq=False)
 class Rescaled:
-    """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
+    """A homotopy's path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
 
     homotopy: Any
     D: Array
@@ -41,7 +35,7 @@ class Rescaled:
         return None if target is None else self.a * target + self.b
 
     def start(self) -> tuple[Array, float]:
-        """The same point."""
+        """The homotopy's start, in these units."""
         y, lam = self.homotopy.start()
         return self.D * np.asarray(y) + self.c, self.a * lam + self.b
 
@@ -67,10 +61,10 @@ def plain(homotopy: Any) -> Rescaled:
 
 
 def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:
-    """In random units, with zero at a random place; shifts are measured by the path's extent."""
+    """In units of 1e-8 to 1e8 of the problem's, at random, with zero 1e-2 to 1e6 of the path's extent away."""
     n = extent.size - 1
-    D, E = (10.0 ** generator.uniform(-DECADES, DECADES, n) for _ in range(2))
-    a = float(10.0 ** generator.uniform(-DECADES, DECADES))
-    c = D * extent[:-1] * generator.standard_normal(n) * 10.0 ** generator.uniform(*SHIFTS)
-    b = a * float(extent[-1] * generator.standard_normal() * 10.0 ** generator.uniform(*SHIFTS))
+    D, E = (10.0 ** generator.uniform(-8.0, 8.0, n) for _ in range(2))
+    a = float(10.0 ** generator.uniform(-8.0, 8.0))
+    c = D * extent[:-1] * generator.standard_normal(n) * 10.0 ** generator.uniform(-2.0, 6.0)
+    b = a * float(extent[-1] * generator.standard_normal() * 10.0 ** generator.uniform(-2.0, 6.0))
     return Rescaled(homotopy, D, c, E, a, b)

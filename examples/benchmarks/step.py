@@ -1,5 +1,5 @@
-"""What a step costs: time, calls, factorisations, on the problems of the record of behaviour; and how many times the
-time of a path that is not examined.
+"""The cost of a step: time, calls, factorisations, on the problems of the record of behaviour; and the time of a path
+over that with `examine=False`.
 
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/step.py [NAME ...]
 

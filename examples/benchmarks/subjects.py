@@ -19,38 +19,30 @@ from problems.nonlinear import NormalMap, bratu_under_obstacle
 
 @frozen(eq=False)
 class Linear:
-    """A piecewise linear path, which is proved in rational numbers."""
+    """A piecewise linear path, (q + t d, A), which is proved in rational numbers."""
 
     problem: LCP
     d: np.ndarray
 
-    def proved(self, path: Path) -> bool:
-        """Whether it is."""
-        try:
-            prove_path(self.problem, self.d, path)
-        except (UnprovenError, ValueError):
-            return False
-        return True
+
+def proved(homotopy: Any, path: Path) -> bool:
+    """Whether a path's proof is complete."""
+    if not isinstance(homotopy, Linear):
+        return certify(path, homotopy).complete
+    try:
+        return prove_path(homotopy.problem, homotopy.d, path) is not None
+    except (UnprovenError, ValueError):
+        return False
 
 
 def cubic(seed: int) -> NormalMap:
-    """Of three unknowns between bounds, with a force that is no line; kinks where they meet these."""
+    """A normal map of three unknowns between bounds, with a nonlinear force; kinks where unknowns meet bounds."""
     rng = np.random.default_rng(seed)
     A, q, d = rng.normal(size=(3, 3)), rng.normal(size=3), rng.choice([-1.0, 1.0], 3)
-    return NormalMap(Cubic(A, q, d), x0=d, lam0=-12.0, lower=-1.0, upper=1.0, target=12.0)
-
-
-@frozen(eq=False)
-class Cubic:
-    """F(x, lam) = A x + x^3 / 4 + sin(x lam) / 5 + q + lam d."""
-
-    A: np.ndarray
-    q: np.ndarray
-    d: np.ndarray
-
-    def __call__(self, x: Any, lam: Any) -> Any:
-        """The force."""
-        return self.A @ x + 0.25 * x**3 + 0.2 * np.sin(x * lam) + self.q + lam * self.d
+    return NormalMap(
+        lambda x, lam: A @ x + 0.25 * x**3 + 0.2 * np.sin(x * lam) + q + lam * d,
+        x0=d, lam0=-12.0, lower=-1.0, upper=1.0, target=12.0,
+    )  # fmt: skip
 
 
 @frozen
@@ -65,7 +57,7 @@ class TwoSheets:
         return np.array([np.hypot(1.0, self.gap)]), -1.0
 
     def residual(self, y: Any, lam: Any) -> Any:
-        """Of the equation."""
+        """The residual of y^2 = lam^2 + gap^2."""
         return y**2 - lam**2 - self.gap**2
 
 
@@ -85,15 +77,12 @@ def subjects(seed: int = 0) -> list[tuple[Any, Path, Proof]]:
         *map(KKTHomotopy, drawn_ones),
         *([cubic(int(rng.integers(1000)))] if seed else []),
     ]
-    out = []
-    for homotopy in homotopies:
-        path = trace(homotopy, budget=Budget(steps=60))
-        out.append((homotopy, path, certify(path, homotopy)))
-    for problem in (turning(), *drawn_ones):
-        d = np.ones(problem.n)
-        line, homotopy = along(problem, d, (np.inf, 0.0)), Linear(problem, d)
-        if homotopy.proved(line):
-            out.append((homotopy, line, Proof.empty(problem.n + 1)))
+    paths = [trace(homotopy, budget=Budget(steps=60)) for homotopy in homotopies]
+    out = [(homotopy, path, certify(path, homotopy)) for homotopy, path in zip(homotopies, paths)]
+    for line in (Linear(problem, np.ones(problem.n)) for problem in (turning(), *drawn_ones)):
+        path = along(line.problem, line.d, (np.inf, 0.0))
+        if proved(line, path):
+            out.append((line, path, Proof.empty(line.problem.n + 1)))
     return [one for one in out if len(one[1]) > 4 and one[2].complete]
 
 

@@ -41,11 +41,6 @@ class Problem:
         return continuation.trace(homotopy, preset=preset, events=events, direction=self.direction, budget=budget)
 
 
-def _brown() -> Any:
-    F = brown(10)
-    return fixed_point(F, np.zeros(10), F.jacobian)
-
-
 PROBLEMS = {
     "circle": Problem(Circle),
     "cusp": Problem(Cusp),
@@ -53,7 +48,7 @@ PROBLEMS = {
     "Bratu 1D": Problem(lambda: Bratu1D(30), twice=1.0),
     "Bratu 2D": Problem(lambda: Bratu2D(8), twice=2.0),
     "aircraft": Problem(lambda: Aircraft(-0.008), turns=3, direction=-1),
-    "Brown": Problem(_brown),
+    "Brown": Problem(lambda: fixed_point(brown(10), np.zeros(10), brown(10).jacobian)),
     **{f"exponential-cosine {n}": Problem(lambda n=n: ExponentialCosine(n)) for n in range(2, 7)},
 }
 

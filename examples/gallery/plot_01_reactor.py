@@ -52,8 +52,7 @@ axes.plot(np.where(unstable, lam, np.nan), x, "--", label="unstable")
 for name, turn in (("ignition", ignition), ("extinction", extinction)):
     axes.plot(turn.lam, turn.y[0], "o", color="black", markerfacecolor="white")
     axes.annotate(name, (turn.lam, turn.y[0]), (8, -4), textcoords="offset points")
-axes.set_xlabel(r"Damköhler number $\lambda$")
-axes.set_ylabel("conversion $x$")
+axes.set(xlabel=r"Damköhler number $\lambda$", ylabel="conversion $x$")
 axes.legend(frameon=False, loc="lower right")
 
 # %%

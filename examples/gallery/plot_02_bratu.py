@@ -29,8 +29,7 @@ for name, first, last, style in (
     u = path(np.linspace(first, last, 150))
     axes.plot(u[:, -1], u[:, :-1].max(axis=1), style, label=name)
 axes.plot(fold.lam, fold.y.max(), label="fold", **TURN)
-axes.set_xlabel(r"$\lambda$")
-axes.set_ylabel(r"$\max\,u$")
+axes.set(xlabel=r"$\lambda$", ylabel=r"$\max\,u$")
 axes.legend(frameon=False)
 
 # %%
@@ -43,6 +42,5 @@ x = np.linspace(0, 1, homotopy.n + 2)
 crossings = [event for event in path.events if event.name == at_one.name]
 for name, event, style in zip(("lower branch", "upper branch"), crossings, ("-", "--")):
     axes.plot(x, np.pad(event.y, 1), style, label=f"{name}, max u = {event.y.max():.4f}")
-axes.set_xlabel("$x$")
-axes.set_ylabel("$u$")
+axes.set(xlabel="$x$", ylabel="$u$")
 axes.legend(frameon=False)

@@ -28,7 +28,5 @@ for elevator, (colour, style) in settings.items():
             axes.plot(turn.lam, turn.y[0], **TURN)
         turns = ", ".join(f"{turn.lam:.6f}" for turn in path.turning_points) or "none"
         print(f"elevator {elevator:6g}, aileron towards {0.6 * direction:4}: {path.status.name}, turns at {turns}")
-axes.set_xlabel("aileron deflection")
-axes.set_ylabel("roll rate")
-axes.set_ylim(-5, 6)
+axes.set(xlabel="aileron deflection", ylabel="roll rate", ylim=(-5, 6))
 axes.legend(frameon=False, loc="upper right", ncols=3, fontsize="small")

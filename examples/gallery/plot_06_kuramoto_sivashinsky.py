@@ -31,11 +31,6 @@ class Flame:
     def residual(self, y, lam):
         return 4.0 * self.k**2 * y + lam * (self.back @ ((self.sines @ y) * (self.slopes @ y)) - y)
 
-    def jacobian(self, y, lam):
-        u, slope = self.sines @ y, self.slopes @ y
-        advection = self.back @ (u[:, None] * self.slopes + slope[:, None] * self.sines)
-        return np.diag(4.0 * self.k**2 - lam) + lam * advection, self.back @ (u * slope) - y
-
     def observe(self, y, lam):
         return {"energy": float(np.sqrt(np.sum(y**2)))}
 
@@ -65,6 +60,5 @@ x = np.linspace(0.0, 2.0 * np.pi, 200)
 for branch, name in zip(branches[1:], ("one hump", "two humps")):
     highest = max(branch.steps, key=lambda step: step.observed["energy"])
     axes.plot(x, np.sin(np.outer(x, flame.k)) @ highest.y, label=f"{name}, alpha = {highest.lam:.3g}")
-axes.set_xlabel("$x$")
-axes.set_ylabel("$u$")
+axes.set(xlabel="$x$", ylabel="$u$")
 axes.legend(frameon=False)

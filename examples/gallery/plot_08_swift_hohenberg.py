@@ -2,8 +2,9 @@ r"""
 Swift and Hohenberg: a pattern of many unknowns
 ===============================================
 
-:math:`r u - (1 + \partial_x^2)^2 u + 2 u^2 - u^3 = 0` on half of a line, with mirrors at both ends: a band of five
-diagonals, so that the work of a step is proportional to the number of unknowns. The path of a localized pattern runs
+:math:`r u - (1 + \partial_x^2)^2 u + 2 u^2 - u^3 = 0` on half of a line, with mirrors at both ends. The tracer finds
+that the derivative of the residual is a band of five diagonals: the work of a step is proportional to the number of
+unknowns. The path of a localized pattern runs
 back and forth; each turn adds a hump.
 """
 
@@ -11,7 +12,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import continuation
-from continuation.linear import Banded
 from continuation.plot import plot_bifurcation, plot_heat, plot_profiles
 
 
@@ -25,7 +25,6 @@ class Pattern:
         self.n = n
         self.x = (np.arange(n) + 0.5) * length / n
         self.square = (length / n) ** 2
-        self.band = self.fixed_band()
 
     def start(self):
         return 1.5 * np.cos(self.x) / np.cosh(0.25 * self.x), -0.4
@@ -34,22 +33,8 @@ class Pattern:
         mirrored = np.concatenate((u[:1], u, u[-1:]))
         return u + (mirrored[:-2] - 2.0 * u + mirrored[2:]) / self.square
 
-    def fixed_band(self):
-        """The linear part, column by column: five combs see every column alone."""
-        band = np.zeros((5, self.n))
-        for k in range(5):
-            image = np.pad(self.once(self.once((np.arange(self.n) % 5 == k).astype(float))), 2)
-            for column in range(k, self.n, 5):
-                band[:, column] = -image[column : column + 5]
-        return band
-
     def residual(self, y, lam):
         return (lam + 2.0 * y - y * y) * y - self.once(self.once(y))
-
-    def jacobian(self, y, lam):
-        band = self.band.copy()
-        band[2] += lam + 4.0 * y - 3.0 * y * y
-        return Banded(band, 2, 2), y
 
     def observe(self, y, lam):
         return {"norm": float(np.sqrt(np.mean(y * y)))}

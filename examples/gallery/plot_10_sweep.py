@@ -51,6 +51,5 @@ with (
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
 plot_bifurcation(paths[::4], left, value="amplitude", legend=False)
 right.plot(force, frequency, "o", markersize=4)
-right.set_xlabel("force")
-right.set_ylabel("frequency of a fold")
+right.set(xlabel="force", ylabel="frequency of a fold")
 print(f"{len(paths)} paths, {folds.sum()} folds")

@@ -23,6 +23,5 @@ for name, curve in (
     s = np.linspace(0.0, curve.arclength[-1], 300)
     residual = [np.abs(homotopy.residual(u[:-1], u[-1])).max() + 1e-16 for u in curve(s)]
     axes.semilogy(s, residual, label=f"{name}: {len(curve)} points")
-axes.set_xlabel("arclength")
-axes.set_ylabel("residual of the curve")
+axes.set(xlabel="arclength", ylabel="residual of the curve")
 axes.legend(frameon=False)

@@ -34,8 +34,7 @@ left.plot(u[:, -1], np.trapezoid(homotopy.x(u[:, :-1]), axis=1) / (n + 1), color
 for events, mark, name in ((path.turning_points, TURN, "fold"), (path.kinks, KINK, "kinks")):
     height = [homotopy.x(event.y).sum() / (n + 1) for event in events]
     left.plot([event.lam for event in events], height, label=name, **mark)
-left.set_xlabel(r"$\lambda$")
-left.set_ylabel(r"$\int u$")
+left.set(xlabel=r"$\lambda$", ylabel=r"$\int u$")
 left.legend(frameon=False)
 
 # %%
@@ -51,6 +50,5 @@ for name, event, style in (
     label = rf"{name}, $\lambda$ = {event.lam:.3f}"
     right.plot(x, np.pad(homotopy.x(event.y), 1), style, color="#D55E00", label=label)
 right.axhline(psi, color="0.6", linewidth=0.8)
-right.set_xlabel("$x$")
-right.set_ylabel("$u$")
+right.set(xlabel="$x$", ylabel="$u$")
 right.legend(frameon=False, fontsize="small", loc="lower center")

@@ -11,7 +11,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import continuation
-from continuation.linear import Banded
 
 
 class ChafeeInfante:
@@ -25,11 +24,6 @@ class ChafeeInfante:
     def residual(self, y, lam):
         h = np.pi / (self.n + 1)
         return np.diff(np.concatenate(([0.0], y, [0.0])), 2) / h**2 + lam * (y - y**3)
-
-    def jacobian(self, y, lam):
-        bands = np.full((3, self.n), ((self.n + 1) / np.pi) ** 2)
-        bands[1] = -2.0 * bands[1] + lam * (1.0 - 3.0 * y * y)
-        return Banded(bands, 1, 1), y - y**3
 
 
 def brusselator(y, B):

@@ -7,7 +7,6 @@ from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
-    Start,
     Structure,
     TwoVectorHomotopy,
     WangHomotopy,
@@ -22,7 +21,7 @@ from problems.lcp.parametric.exact import ExactPath, UnprovenError, prove_path
 from problems.lcp.parametric.sensitivity import Gradient, NotDifferentiableError, Sensitivity
 from problems.lcp.parametric.solutions import Solutions, solutions
 from problems.lcp.proof.certificate import Certificate, ExactCertificate, certify, certify_exactly
-from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, farkas
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.reference.enumeration import Exhaustion, solve_by_enumeration
 from problems.lcp.search.many import Answers, solve_many
@@ -33,9 +32,9 @@ from problems.lcp.search.solver import solve
 __all__ = [
     "LCP", "Answers", "Certificate", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas", "Gradient",
     "KKTHomotopy", "KojimaMegiddoMizunoHomotopy", "MixedLCP", "NoStrictlyFeasiblePoint", "NotDifferentiableError",
-    "Outcome", "Program", "Sensitivity", "Solution", "Solutions", "Solver", "Start", "Structure", "TwoVectorHomotopy",
+    "Outcome", "Program", "Sensitivity", "Solution", "Solutions", "Solver", "Structure", "TwoVectorHomotopy",
     "UnprovenError", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "along", "certify", "certify_exactly",
-    "classify", "default_start", "empty_interior", "farkas", "from_lp", "from_qp", "prove_path", "random_start",
+    "classify", "default_start", "farkas", "from_lp", "from_qp", "prove_path", "random_start",
     "solutions", "solve", "solve_by_enumeration", "solve_many", "strictly_feasible_start",
 ]  # fmt: skip
 

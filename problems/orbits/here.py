@@ -17,10 +17,10 @@ from problems.orbits.multipliers import Multipliers
 
 @frozen(eq=False, slots=False)
 class Here:
-    """Quantities at a point, each computed once.
+    """The collocation equations, their derivatives and the multipliers at one point (X, T, p), each computed once.
 
-    `times` are inner mesh points, which equations pin to the grid; `reference` is the reference orbit's derivative over
-    `scale` squared.
+    `times`: the inner mesh points among the unknowns; equations pin them to the grid's. `reference`: the reference
+    orbit's derivative over `scale` squared, for the phase condition.
     """
 
     field: Field

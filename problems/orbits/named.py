@@ -24,7 +24,7 @@ def from_model(model: str = "brusselator", intervals: int = 20, degree: int = 4,
         normal-form, brusselator or lorenz.
     intervals, degree : int
     radius : float
-        Of the first orbit.
+        Size of the first orbit.
     """
     if model not in _AT_HOPF:
         raise ValueError(f"model: expected one of {', '.join(_AT_HOPF)}, found {model!r}")

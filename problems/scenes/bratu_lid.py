@@ -53,7 +53,7 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
     lid : float
         Above 1.1869, the largest u at the fold.
     load : float
-        Where contact is reported.
+        The load at which contact is reported.
     n : int
         Points from the surface (excluded) to the middle.
 

@@ -44,7 +44,7 @@ def Lasso(
     noise : float
         Standard deviation.
     penalty : float
-        Where coefficients are reported.
+        The penalty at which coefficients are reported.
 
     References
     ----------

@@ -26,7 +26,7 @@ def Membrane(
     Parameters
     ----------
     radius : float
-        Of the rim, in ball radii (above 1).
+        The rim's radius in ball radii (above 1).
     tension : float
         N/m.
     n : int

@@ -49,9 +49,9 @@ def Portfolio(
     Parameters
     ----------
     means, variances : sequence of float
-        Of the returns.
+        Means and variances of the returns.
     correlation : float
-        Of any two assets.
+        Correlation of any two assets.
     tolerance : float
         Risk tolerance: variance per unit of return.
     cap : float

@@ -29,7 +29,7 @@ def Puck(
     speed, heading : float
         Before the step: m/s, degrees from the first edge.
     edges : int
-        Of the pyramid.
+        Edges of the pyramid.
 
     References
     ----------

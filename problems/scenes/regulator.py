@@ -31,7 +31,7 @@ def Regulator(
     limit, mass, step : float
         N, kg, s.
     weight : float
-        Of squared force relative to squared distance.
+        Weight of squared force relative to squared distance.
     horizon : int
         Steps.
 

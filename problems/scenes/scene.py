@@ -36,7 +36,7 @@ class Unknown:
     name : str
     count : int
     why : str
-        What the answer needs them for.
+        Their purpose for the answer.
     """
 
     name: str

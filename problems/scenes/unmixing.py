@@ -36,7 +36,7 @@ def Unmixing(
     ----------
     substances, channels, seed : int
     width : float
-        Of a peak, in peak distances.
+        Width of a peak, in peak distances.
     noise : float
         Standard deviation.
 

@@ -216,7 +216,7 @@ def solver(w: World) -> Iterator[Call]:
         *(
             Call(function, right, kinds)
             for function in (
-                lcp.farkas, lcp.empty_interior, lcp.solve_by_enumeration, lcp.strictly_feasible_start,
+                lcp.farkas, lcp.solve_by_enumeration, lcp.strictly_feasible_start,
                 lcp.default_start, lcp.Structure,
             )
         ),

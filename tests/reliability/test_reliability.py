@@ -25,8 +25,8 @@ def test_a_campaign(tmp_path, campaign):
 
 RESULTS = {
     "Certificate", "Counts", "Decision", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas",
-    "Gradient", "Interrupted", "Kind", "Knot", "LocatedEvent", "Options", "Outcome", "Path", "Preset", "Program",
-    "Proof", "Sensitivity", "Settings", "Solution", "Solutions", "Start", "Status", "Step", "StepMeasures",
+    "Gradient", "Interrupted", "Kind", "Knot", "LocatedEvent", "Outcome", "Path", "Preset", "Program",
+    "Proof", "Sensitivity", "Solution", "Solutions", "Status", "Step", "StepMeasures",
     "Answers", "Diagram", "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy",
     "BrownAlmostLinear", "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
     "Tangent", "Followed", "plot_orbits",

@@ -168,9 +168,9 @@ class Faces:
         regular: bool = False,
         near: Array | None = None,
     ) -> Face | None:
-        """The factored face of a state, or None.
+        """The factored face of a state; None if its equations have no factors, or if `regular` and they are singular.
 
-        A proximal problem has q - shift centre. If `regular`, singular equations give None.
+        With a `centre` the face is that of the proximal problem, A + shift I and q - shift centre.
         """
         if self.kept is None or shift or centre is not None:
             return self._made(state, shift, centre, regular, near)

@@ -23,7 +23,7 @@ ON_PATH = Policy(steps=4, singular=12)
 
 @define(eq=False)
 class AlongPath:
-    """The `finish=` of a trace."""
+    """A homotopy's `finish`: tries now and then, as lambda falls, to solve the LCP from the path's point."""
 
     finish: Finish
     homotopy: Any

@@ -28,7 +28,7 @@ Rule = Callable[[int], str]
 
 
 def two_signs(low: str, last: int, high: str) -> Rule:
-    """`low` up to order `last`, `high` beyond."""
+    """The rule that minors have the sign `low` up to order `last`, and `high` beyond."""
     return lambda order: low if order <= last else high
 
 

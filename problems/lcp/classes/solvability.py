@@ -110,7 +110,7 @@ def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
-    """Inner normals of full-dimensional complementary cones."""
+    """For each full-dimensional complementary cone of A the normals of its faces, pointing inwards."""
     n = matrix.n
     identity = [[int(i == j) for j in range(n)] for i in range(n)]
     cones = []

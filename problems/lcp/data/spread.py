@@ -26,7 +26,7 @@ def alike(problem: MixedLCP) -> bool:
 
 
 def largest_entries(problem: MixedLCP) -> tuple[float, float]:
-    """Least and largest of the rows' and columns' largest entries."""
+    """The least and the largest among the largest absolute entries of all rows and columns of A."""
     if "range" not in problem.known:
         problem.known["range"] = _found_entries(problem)
     found: tuple[float, float] = problem.known["range"]

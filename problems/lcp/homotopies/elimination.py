@@ -103,8 +103,8 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
     """The bordered system of a homotopy in (x, y).
 
     Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
-    if A is symmetric positive semidefinite and the sum is definite; otherwise LU factors the core of better pivots.
-    Raises `SingularError`.
+    if A is symmetric positive semidefinite and the sum is definite; otherwise the larger of each pair x_i, y_i stays,
+    and LU factors what is left. Raises `SingularError`.
     """
     homotopy, (_, _, y, gaps, _) = system.of, system.parts
     structure = homotopy.structure

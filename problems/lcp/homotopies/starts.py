@@ -51,7 +51,7 @@ class Start:
 
 def positive_vector(name: str, value: Any, n: int) -> Array:
     """`value` as n positive finite floats, or `ValueError`."""
-    array = finite_vector(name, value)
+    array = finite_vector(name, value) if n else np.zeros(0)
     if array.size != n:
         raise ValueError(f"{name}: expected {n} positive numbers, found shape {array.shape}")
     bad = array <= 0.0

@@ -22,7 +22,7 @@ from problems.options import quiet
 
 @frozen(kw_only=True)
 class Blend:
-    """H1 = ``sign [(1-lam)(Ax+q-y) + lam (x_(x-x0) + y_(y0-y) + A_A(x-x0))]``"""
+    """Weights `x`, `y`, `A` = a, b, c in H1 = sign [(1-lam)(Ax+q-y) + lam (a (x-x0) + b (y0-y) + c A(x-x0))]."""
 
     sign: int
     x: int | Array = 0
@@ -203,7 +203,7 @@ def XuHomotopy(
 ) -> TwoVectorHomotopy:
     """Xu et al., for P-matrices: ``(1-l)(y-Ax-q) - l(x-x0)``, ``xy - l x0 y0``.
 
-    Yu's path for equal y0.
+    From the same x0 and y0 its path is that of `YuHomotopy`.
 
     Parameters
     ----------

@@ -35,14 +35,14 @@ class UnprovenError(ValueError):
 
 @frozen
 class ExactPath:
-    """Rational corners, joined by solutions.
+    """A piecewise linear path proved in rational numbers: its corners, between which all points are solutions.
 
     Attributes
     ----------
     points : tuple of tuples of Fraction
         (x, t) of ends and kinks; all points between them are exact solutions.
     pieces : tuple of tuples of int
-        For each segment the state of every pair (-1, 0, 1: below, between, above its corners).
+        For each segment the state of every pair (x_i, w_i): -1 at the lower bound, 0 between, 1 at the upper bound.
     single : bool
         Whether no other path branches off.
     """

@@ -137,7 +137,7 @@ class Walk:
         return step
 
     def snap(self, pairs: tuple[int, ...]) -> None:
-        """Put x of these pairs exactly on their corners."""
+        """Set x_i of these pairs to the nearer of its two corners, against round-off."""
         at = list(pairs)
         corners = self.stairs.corner_x[:, at]
         self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]

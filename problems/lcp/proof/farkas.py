@@ -208,7 +208,7 @@ def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
 
 
 def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -> tuple[Matrix, Array]:
-    """A over rows and columns, q over rows; exact for powers of two."""
+    """A divided by `rows` and `columns`, q divided by `rows`; exact for powers of two."""
     if problem.sparse:
         return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
     return problem.A / rows[:, None] / columns, problem.q / rows

@@ -1,5 +1,7 @@
 """Sparse derivatives of a residual: the pattern is found, coloured, checked at each evaluation, and grows."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -57,8 +59,8 @@ def test_the_looks_for_a_band_and_for_a_full_matrix_are_few():
 )
 @pytest.mark.parametrize("way", ["alone", "known", "differences"])
 def test_the_same_path_as_with_the_jacobian(name, size, way, monkeypatch):
-    kind = next(kind for key, (kind, _) in alone.PROBLEMS.items() if key.startswith(name))
-    monkeypatch.setitem(alone.PROBLEMS, "small", (kind, size))
+    kind = next(problem.func for key, problem in alone.PROBLEMS.items() if key.startswith(name))
+    monkeypatch.setitem(alone.PROBLEMS, "small", partial(kind, size))
     found = alone.measured("small", 1, which=("own", way))
     (own, _), (path, _) = found["own"], found[way]
     assert path.status is own.status

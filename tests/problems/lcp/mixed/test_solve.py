@@ -82,6 +82,13 @@ def test_free_unknowns_are_a_system_of_equations():
     assert solution.counts.factorizations == 1
 
 
+@pytest.mark.parametrize("homotopy", ["wang", "yu", "kmm", "kkt"])
+def test_free_unknowns_alone_are_traced_by_each_homotopy(homotopy):
+    """Without a bound there is no w, so its start y0 is empty: `wang` and `yu` refused it."""
+    solution = lcp.solve(lcp.MixedLCP([[2.0, 1.0], [0.0, 1.0]], [1.0, -1.0]), homotopy, finish=False)
+    np.testing.assert_allclose(solution.x, [-1.0, 1.0], atol=1e-8)
+
+
 def test_the_nearest_point_of_a_box_is_clipped_exactly():
     c = np.array([3.0, -0.25, 0.1, -7.0])
     solution = lcp.solve(lcp.MixedLCP(np.eye(4), -c, -1 / 3, 1 / 7))
