@@ -71,27 +71,6 @@ def test_a_start_that_is_zero_by_symmetry_counts(preset, lam0):
     assert path.endpoint.lam == 3.0
 
 
-@without_series
-@pytest.mark.parametrize("noise", [0.0, 1e-10, 1e-8, 1e-6])
-def test_noise_is_measured_and_followed(preset, noise):
-    generator = np.random.default_rng(7)
-
-    def residual(y, lam):
-        t, lam = float(y[0]), float(lam)
-        exact = [t**3 - 3.0 * t - lam, float(y[1]) - t * t, float(y[2]) - np.sin(t) * float(y[1])]
-        return np.array(exact) + noise * generator.uniform(-1.0, 1.0, 3)
-
-    t = -2.5
-    start = ([t, t * t, np.sin(t) * t * t], t**3 - 3.0 * t)
-    path = trace(from_functions(residual, start=start, target=8.125), preset=preset, budget=Budget(steps=200))
-    assert path.status is Status.REACHED_TARGET
-    # Those of the clean path: 16, 18 and 52 points.
-    assert len(path) <= {"FAST": 32, "DEFAULT": 36, "CONSERVATIVE": 104}[preset.name]
-    folds = [event.lam for event in path.turning_points]
-    assert folds == pytest.approx([2.0, -2.0], abs=max(1e-12, noise**0.5))
-    assert ("noisy" in path.message) == (noise >= 1e-6)
-
-
 @every_preset
 @pytest.mark.parametrize("d", [1e-2, 1e-6, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15])
 @pytest.mark.parametrize("others", [[], [(2.0, 0.0)], [(0.0, 1e-6)]], ids=["alone", "at rest", "in a small unit"])

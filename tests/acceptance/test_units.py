@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from attrs import evolve
 
 from continuation import (
@@ -225,19 +224,6 @@ def test_derivatives_of_a_residual_alone_wherever_zero_is(preset, scale):
     path = trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
     assert path.endpoint.y[0] - 1e5 == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-9)
-
-
-@every_preset
-def test_a_sparse_matrix_times_the_unknowns(preset):
-    """SERIES evaluates the residual on jets, A @ u too."""
-    A = sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(50, 50), format="csc") * 51.0**2
-    homotopy = from_functions(
-        lambda u, lam: A @ u + lam * np.exp(u),
-        lambda u, lam: (A + sp.diags_array(lam * np.exp(u)), np.exp(u)),
-        start=(np.zeros(50), 0.0),
-        target=2.0,
-    )
-    assert trace(homotopy, preset=preset).status is Status.REACHED_TARGET
 
 
 # -- what is called -----------------------------------------------------------------------------------------------

@@ -18,7 +18,6 @@ from continuation import (
     trace_both,
 )
 from continuation.archive import open_archive
-from continuation.arguments import plugins
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
@@ -130,18 +129,6 @@ def test_refined_until_it_is_as_accurate_as_asked():
     assert len(fine) > len(path)
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT])
-def test_many_chord_steps_go_no_farther_than_the_bound(preset):
-    path = trace(Circle(), target=-0.9999, preset=preset)
-    for s in np.linspace(0.0, path.arclength[-1], 41):
-        u, bound = path(s), path.error_bound(Circle(), s)
-        step = path.steps[int(np.clip(np.searchsorted(path.arclength, s, "right"), 1, len(path) - 1))]
-        matrix, end = np.vstack([2.0 * u, step.weights * np.array([-u[1], u[0]])]), u
-        for _ in range(20):
-            end = end - np.linalg.solve(matrix, [end @ end - 1.0, 0.0])
-        assert (np.abs(end - u) <= bound + 1e-15).all()
-
-
 class Empty(Circle):
     """No point solves it, and chord steps from the circle do not halve."""
 
@@ -217,20 +204,3 @@ def test_a_budget_of_arclength():
     assert path.status is Status.BUDGET_EXHAUSTED
     assert 2.0 <= path.arclength[-1] < 2.25
     assert path.message.endswith("Reached: 2 of arclength.")
-
-
-def test_an_exception_of_the_homotopys_own_is_no_edge_of_its_domain():
-    def residual(y, lam):
-        if lam > 0.5:
-            raise ValueError("the table ends")
-        return y - lam
-
-    path = trace(from_functions(residual, start=([0.0], 0.0), target=1.0))
-    assert path.status is Status.RAISED
-    assert "ValueError: the table ends (test_path.py, line " in path.message
-    assert path.lam[-1] == pytest.approx(0.5, abs=1e-8)
-
-
-@pytest.mark.parametrize("name", ["bratu-1d", "bratu-2d", "aircraft", "cusp", "pitchfork", "circle"])
-def test_every_plug_in_of_ours_ends_well_when_nothing_is_said(name):
-    assert trace(plugins.make(name)).success

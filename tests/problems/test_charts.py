@@ -72,16 +72,6 @@ def test_the_plain_loop_arrives_and_is_counted():
     assert row.counts.factorizations > 0
 
 
-def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
-    monkeypatch.setattr(rivals, "installed", lambda module: False)
-    for module in (lcp_charts, robustness, scaling):
-        study = module.studies("smoke", True)[-1]
-        assert "Lemke" in [method.name for method in study.methods]
-        missing = ("quantecon", "piqp", "clarabel")
-        assert study.notes == [f"outside solvers: {', '.join(f'{name} is not installed' for name in missing)}"]
-    assert module.studies("smoke", False)[-1].notes == []
-
-
 def test_a_direct_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
     def gives_up(problem):
         if problem.n > 1:
@@ -118,25 +108,6 @@ def test_the_adapters_of_installed_solvers_work(name):
     x, iterations = solve(problem)
     assert lcp.certify(problem, x).solves(1e-6)
     assert iterations > 0
-
-
-def test_methods_for_the_lcp_are_judged_by_the_certificate():
-    problem = lcp_charts.problem("semidefinite", 5, 0)
-    study = chart.Study(
-        name="judged",
-        problems=[problem],
-        methods=[lcp_charts.path("KKT", lcp.KKTHomotopy), *lcp_charts.direct_methods(False)],
-        ladder=chart.tolerances(1e-8),
-        errors=[lcp_charts.RESIDUAL],
-        repeats=0,
-    )
-    rows = {row.method: row for row in chart.run(study).rows}
-    assert {name: row.failure for name, row in rows.items()} == dict.fromkeys(
-        ("KKT", "Lemke", "modulus", "min-Newton"), ""
-    )
-    assert rows["KKT"].errors["natural_residual"] < 1e-12
-    path = continuation.trace(lcp.KKTHomotopy(problem.subject))
-    assert rows["KKT"].counts == path.counts
 
 
 def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():

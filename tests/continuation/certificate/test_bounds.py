@@ -11,7 +11,6 @@ from continuation.certificate.certifying import engine_of
 from continuation.numbers.ends import thin
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy, YuHomotopy
-from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.quadratic.polynomial import Polynomial
 
 SLACK = 1.0 + 1e-6
@@ -72,41 +71,6 @@ def test_what_is_bounded_is_smaller(Homotopy, n):
     assert (shares <= SLACK).all()
     # Bounds that are far too large would prove nothing.
     assert shares.max(axis=0)[0] > 0.1
-
-
-def test_the_parameter_moves_along_the_curve_as_is_bounded():
-    rng = np.random.default_rng(0)
-    problem = LCP(rng.normal(size=(20, 20)), rng.normal(size=20))
-    homotopy = KKTHomotopy(problem, np.full(20, natural_units(problem)[0]))
-    path = trace(homotopy)
-    proof = certify(path, homotopy)
-    slabs = slabs_of(proof.cells)
-    judged = engine_of(homotopy).judge(slabs, slabs.cells.radius)
-    first, second = judged.pace(slabs.cells.radius, slabs.cells.radius)
-    parts = first.lo.shape[1]
-    share = rng.uniform(-1.0, 1.0, len(slabs))
-    value, slope, bend = (u.middle() for u in evaluated(slabs.cubic, thin((slabs.half * share)[:, None])))
-    for k, chart in enumerate(slabs.cells.chart):
-
-        def matrix(u, chart=chart):
-            return np.vstack([np.column_stack(homotopy.jacobian(u[:-1], u[-1])), chart])
-
-        u = value[k].copy()
-        for _ in range(4):
-            u -= np.linalg.solve(matrix(u), np.append(homotopy.residual(u[:-1], u[-1]), chart @ (u - value[k])))
-        t = np.linalg.solve(matrix(u), np.append(np.zeros(len(u) - 1), chart @ slope[k]))
-        # H is quadratic: its second derivative along t is a difference of first ones.
-        curved = (matrix(u + t) - matrix(u))[:-1] @ t
-        tt = np.linalg.solve(matrix(u), np.append(-curved, 2.0 * chart @ bend[k]))
-        part = min(int((share[k] + 1.0) / 2.0 * parts), parts - 1)
-        for x, ends in ((t[-1], first), (tt[-1], second)):
-            room = 1e-6 * abs(x)
-            assert np.isnan(ends.lo[k, part]) or ends.lo[k, part] - room <= x <= ends.hi[k, part] + room
-    # Both turning points are told by bounds of the whole cells: none is halved for them.
-    assert len(proof.turning_points) == len(path.turning_points) == 2
-    assert proof.complete
-    assert proof.boxes == len(path)
-    assert (np.isfinite(second.lo).all(axis=1) | (first.lo > 0.0).all(axis=1) | (first.hi < 0.0).all(axis=1)).all()
 
 
 @pytest.mark.parametrize("A", [np.eye(2), [[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]])

@@ -174,17 +174,6 @@ def test_the_products_are_the_residual(name):
         np.testing.assert_allclose(plain + first * second_, homotopy.residual(u[:-1], u[-1]), rtol=1e-12, atol=1e-12)
 
 
-def test_a_preconditioner_that_follows_the_path_needs_few_boxes():
-    """The path of the LCP took 180 boxes and that of the cosines 2,130 with one of first order, and a constant one."""
-    rng = np.random.default_rng(0)
-    matrix, q = rng.normal(size=(40, 40)), rng.normal(size=40)
-    for homotopy, most in ((homotopies.KKTHomotopy(LCP(matrix, q)), 1.1), (ExponentialCosine(5), 6.5)):
-        path = trace(homotopy)
-        proof = certify(path, homotopy)
-        assert proof.complete, str(proof)
-        assert proof.boxes <= most * len(path)
-
-
 @pytest.mark.parametrize("name", FORMS)
 def test_both_engines_prove_it(name):
     homotopy = FORMS[name]

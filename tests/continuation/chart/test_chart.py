@@ -1,6 +1,5 @@
 """Studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
 
-import json
 import math
 
 import matplotlib as mpl
@@ -33,13 +32,6 @@ def test_what_went_wrong_is_named_with_its_reason(results):
         tuple(line) for line in chart.failures(results).rows
     ]
     assert "the path has 10" in row(results, "jumps").message
-
-
-def test_counts_are_those_of_a_single_trace(results):
-    path = continuation.trace(ExponentialCosine(5), predictor=Hermite(), tolerance=1e-4)
-    found = row(results, "Hermite", 1e-4)
-    assert found.counts == path.counts
-    assert found.turns == len(path.turning_points)
 
 
 def test_errors_are_those_of_the_path(results):
@@ -91,13 +83,6 @@ def test_results_come_back_from_their_file_to_the_last_bit(results, tmp_path):
             chart.read(tmp_path / "other.json")
 
 
-def test_the_file_is_one_for_pandas(results, tmp_path):
-    pandas = pytest.importorskip("pandas")
-    data = pandas.json_normalize(json.loads(chart.write(results, tmp_path / "x.json").read_text())["rows"])
-    assert data["counts.factorizations"].tolist() == [row.counts.factorizations for row in results.rows]
-    np.testing.assert_array_equal(data["errors.end_point"], [row.errors["end_point"] for row in results.rows])
-
-
 def names(axes):
     """What is written at lines: by the place of its line's end."""
     return {text.get_text(): text.xy for text in axes.texts}
@@ -144,15 +129,6 @@ def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio
     labels = [label.get_text() for label in every.get_yticklabels()]
     assert labels == ["won:  ours", "slow", "quick", "", "even:  ours", "quick", "slow"]
     assert "wrong end" in [text.get_text() for text in every.texts]
-
-
-def test_ours_are_in_colours_and_others_in_grey():
-    rows = [made("p", f"{k}", 1e-6, 10 * k + 1, outside=k > 2) for k in range(6)]
-    results = chart.Results("s", "t", "tolerance", {"e": "error"}, ["factorizations"], rows)
-    (panel,) = chart.Lines("e", "factorizations").draw(results).axes
-    colours = [mpl.colors.to_rgb(line.get_color()) for line in panel.get_lines()]
-    assert [len(set(colour)) == 1 for colour in colours] == [False] * 3 + [True] * 3
-    assert len(set(colours)) == 6
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,10 @@
 
 import io
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
-import continuation
 from continuation import Budget, trace
 from continuation.archive import open_archive, trace_many
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
@@ -103,13 +100,6 @@ def test_colours_are_for_terminals(monkeypatch):
     assert paint("SOLVED", True, io.StringIO()) == "SOLVED"
     monkeypatch.setenv("NO_COLOR", "1")
     assert paint("SOLVED", True, Terminal()) == "SOLVED"
-
-
-def test_the_version_is_said_without_importing_the_library():
-    code = "import sys; sys.argv = ['continuation', '--version']; from problems.commands.script import main; main(); "
-    code += "print([name for name in sys.modules if name.startswith(('numpy', 'continuation'))])"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout == f"continuation {continuation.__version__}\n[]\n"
 
 
 def test_a_sweep_shows_its_progress():

@@ -1,11 +1,9 @@
 """Curves of branch points, kinks, values and monitors; what a curve is asked for; files, proofs, and the suite."""
 
-import pickle
 import re
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
@@ -16,7 +14,6 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import difference_along
 from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import null_vectors
-from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
 
@@ -48,14 +45,6 @@ def steep(u, v):
 
 def not_homogeneous(u, v):
     return v[0] ** 2 - 0.3 * u[0] ** 2 * v[1]
-
-
-def test_the_pitchfork_of_the_lorenz_equations_stays():
-    path = continuation.trace(
-        Curve(Family(Lorenz(), "b"), Kind.BRANCH_POINT, (np.full(3, 1e-3), 0.95)), box={"lam": (None, 8.0)}
-    )
-    assert np.abs(path.y - [0.0, 0.0, 0.0, 1.0]).max() <= 1e-10
-    assert path.lam[-1] == 8.0
 
 
 def test_branch_points_that_part_are_refused():
@@ -154,18 +143,6 @@ def test_elimination_is_the_bordered_matrix():
         np.testing.assert_allclose(whole[:-1] @ (1e-2 * r), difference, atol=1e-8)
 
 
-@pytest.mark.parametrize("make", [np.array, sp.csc_array])
-def test_a_border_nearly_orthogonal_is_replaced(make):
-    matrix = np.random.default_rng(8).standard_normal((7, 7))
-    left, sizes, right = np.linalg.svd(matrix)
-    matrix = matrix - (sizes[-1] - 1e-3) * np.outer(left[:, -1], right[-1])
-    for b, c in ((left[:, 0] + 1e-4 * left[:, -1], right[-1]), (left[:, -1], right[2] + 1e-4 * right[-1])):
-        near = null_vectors(make(matrix), b, c)
-        assert max(np.linalg.norm(near.right), np.linalg.norm(near.left)) <= 10.0
-        assert near.factors.sign * np.sign(near.s) == np.sign(np.linalg.det(matrix))
-        np.testing.assert_allclose(abs(right[-1] @ near.right), np.linalg.norm(near.right), rtol=1e-5)
-
-
 def test_the_border_does_not_fill_sparse_factors():
     homotopy = Diffusing(n=300)
     curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
@@ -187,16 +164,6 @@ def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
     assert [event.name for event in again.events] == [event.name for event in whole.events]
     with open_archive(tmp_path / "a.h5") as stored:
         assert stored.path(0).labels.parameter_name == "mu"
-
-
-def test_a_curve_is_pickled_drawn_and_named():
-    curve = folds()
-    again = pickle.loads(pickle.dumps(curve))
-    y, mu = curve.start()
-    assert np.array_equal(again.residual(y, mu), curve.residual(y, mu))
-    path = continuation.trace(curve, budget=Budget(steps=3))
-    axes = plot_bifurcation(path, value=1)
-    assert axes.get_xlabel() == "mu"
 
 
 def test_the_suite_passes():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Curve, Family, Kind, LocatedEvent, Status
+from continuation import Curve, Family, Kind, Status
 
 from .util import Diffusing, brusselator, cusp_form, named, takens_bogdanov, zero_hopf
 
@@ -39,14 +39,6 @@ def test_sparse(n, accuracy):
     exact = np.array([Diffusing(A, n).hopf for A in path.lam])
     assert np.abs(path.u[:, -3:-1] - exact).max() <= accuracy
     assert abs(path.y[0, -1] - frequency) <= accuracy
-
-
-def test_a_located_point_will_do():
-    u = np.array([1.0, 2.0, 2.0])
-    event = LocatedEvent("Hopf point", Kind.HOPF, 0.0, u, np.array([0.0, 1.0, 1.0]), 0.0, 0.0, 1, 1)
-    y, A = Curve(brusselator, event, mu=1.0).start()
-    np.testing.assert_allclose(y, [1.0, 2.0, 2.0, 1.0], atol=1e-13)
-    assert A == 1.0
 
 
 def test_no_pair_near_the_axis_is_said():

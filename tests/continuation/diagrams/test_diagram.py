@@ -58,11 +58,6 @@ def test_the_solutions_at_a_value_are_those_of_all_branches():
     np.testing.assert_allclose(np.sort(found.at(1.0).ravel()), np.sort(np.roots([1.0, 0.0, -1.0, -0.01])), atol=1e-3)
 
 
-def test_branches_leave_a_kink():
-    ends = {tuple(np.sign(u)) for branch in diagram(CROSSED, box=WIDE).branches for u in branch.path.u[[0, -1]]}
-    assert {end for end in ends if all(end)} == {(a, b) for a in (-1, 1) for b in (-1, 1)}
-
-
 def test_the_diagram_of_a_cubic_equation_has_its_five_branch_points_to_second_order():
     errors = []
     for n in (19, 39):
@@ -138,16 +133,6 @@ def test_a_branch_that_meets_another_twice_is_traced_once_whoever_traces_it():
     assert outline(together) == outline(alone)
     assert [branch.path.status for branch in alone.branches] == [Status.STOPPED_AT_EVENT, Status.CLOSED]
     assert labels(alone) == [("BP1", (0, 1)), ("BP2", (0, 1)), ("LP1", (1,)), ("LP2", (1,))]
-
-
-def test_all_branches_leave_a_multiple_branch_point():
-    # (lam - 1) y_k = y_k^3: of the 3^3 - 1 states two are the ends of one curve.
-    found = diagram(Forks(3 * (1.0,)), box={"lam": (0.0, 3.0)})
-    assert found.complete, found.message
-    assert [point.event.kind for point in found.points] == [Kind.SINGULAR_POINT]
-    states = {tuple(np.round(y, 6)) for b in found.branches[1:] for y in b.path.y[[0, -1]]}
-    assert (len(found), len(states)) == (14, 3**3 - 1)
-    assert {abs(x) for state in states for x in state} == {0.0, round(np.sqrt(2.0), 6)}
 
 
 @pytest.mark.parametrize(

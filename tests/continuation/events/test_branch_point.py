@@ -9,7 +9,6 @@ from continuation import (
     DEFAULT,
     FAST,
     SERIES,
-    BranchPoint,
     Budget,
     Kind,
     Status,
@@ -86,12 +85,6 @@ def test_no_step_ends_beside_a_branch_point(beside):
     path = trace(pitchfork(beside), **steps(0.5))
     (event,) = branch_points(path)
     assert np.abs(path.arclength - event.arclength).min() > 0.05
-
-
-def test_it_may_end_the_trace():
-    path = trace(pitchfork(), events=[BranchPoint()])
-    assert (path.status, path.endpoint.kind) == (Status.STOPPED_AT_EVENT, Kind.BRANCH_POINT)
-    np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-10)
 
 
 LEVELS = [TargetValue(1.0), TargetValue(-1.0)]

@@ -186,14 +186,6 @@ def test_values_that_choose_by_the_leading_coefficient():
     assert max(x, key=lambda entry: entry.c[0]).c[1] == -1
 
 
-def test_norm():
-    x = variable([3.0, 4.0], [1.0, 2.0], 5)
-    expected = np.sqrt(x[0] ** 2 + x[1] ** 2)
-    for found in (np.linalg.norm(x), np.linalg.norm(x, 2), np.linalg.norm(x.reshape(1, 2), axis=1)[0]):
-        np.testing.assert_allclose(found.c, expected.c, rtol=1e-15)
-    np.testing.assert_allclose(np.linalg.norm(x.reshape(1, 2), "fro").c, expected.c, rtol=1e-15)
-
-
 def test_object_arrays_of_scalar_jets_keep_the_series_in_elementary_functions():
     y = variable([0.3, 0.6], [1.0, 1.0], 8)
     entries = np.array([y[0], y[1] * 2])

@@ -1,7 +1,5 @@
 """The series of a path, in plain numpy of any style, against closed forms."""
 
-from math import factorial
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -40,17 +38,6 @@ def test_path_series_of_the_circle(residual):
         root = mp.taylor(lambda s: mp.sqrt(1 - s * s), 0, ORDER)
     assert np.array_equal(found[:, 0], np.eye(ORDER + 1)[1])
     np.testing.assert_allclose(found[:, 1], np.array(root, dtype=float), rtol=1e-13, atol=1e-16)
-
-
-def test_path_series_of_a_system_with_floats_among_its_components():
-    # y0 = exp(lam), y1 = lam, in lam: the border is e_3
-    def residual(y, lam):
-        return np.array([y[0] - np.exp(y[1]), y[1] - lam, y[2] - 1.0])
-
-    u0, tangent, border = np.array([1.0, 0, 1, 0]), np.array([1.0, 1, 0, 1]), np.eye(4)[3]
-    found = path_series(residual, u0, tangent, solver(residual, u0, border), 12)
-    np.testing.assert_allclose(found[:, 0], [1 / factorial(k) for k in range(13)], rtol=1e-14)
-    assert np.array_equal(found[2:, 1:], np.zeros((11, 3)))
 
 
 def test_path_series_of_bratu_in_plain_numpy():

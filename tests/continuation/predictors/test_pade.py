@@ -41,11 +41,5 @@ def test_reaches_beyond_the_circle_of_convergence():
     np.testing.assert_allclose(rational(s), [1.0 / (1.0 + s * s), np.arctan(s)], atol=1e-5)
 
 
-def test_the_pole_ends_the_range():
-    c = rational_curve(0.7, 10)
-    rational = best(c, np.ones(3), 1e-3, series_reach(c, 1e-3, np.ones(3)), 1.0)
-    assert rational is None or rational.reach < 0.7
-
-
 def test_terms_whose_squares_overflow_are_no_reason_to_raise():
     assert best(rational_curve(1e-12, 15), np.ones(3), 1e-5, 1e-13, 0.95) is None

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from problems.lcp import classes
 from problems.lcp.classes import ExactMatrix
-from problems.lcp.classes.exact import consistent, principal_minors
+from problems.lcp.classes.exact import principal_minors
 from problems.lcp.classes.simplex import at_least, exactly, feasible_point
 from problems.lcp.strategies import matrices
 
@@ -58,11 +58,3 @@ def test_floats_are_taken_as_the_rationals_that_they_are():
     tiny = np.diag([1e-300, 1.0])
     assert classes.is_p(tiny).holds
     assert classes.is_psd(tiny - np.diag([2e-300, 0.0])).holds is False
-
-
-@given(st.integers(1, 5), st.integers(1, 5), st.data())
-def test_equations_are_consistent_where_the_ranks_agree(m, n, data):
-    rows = np.array([[data.draw(st.integers(-2, 2)) for _ in range(n + 1)] for _ in range(m)])
-    rows[-1, :-1] = rows[0, :-1]
-    ranks = [np.linalg.matrix_rank(matrix) for matrix in (rows[:, :-1], rows)]
-    assert consistent(rows.tolist()) == (ranks[0] == ranks[1])

@@ -159,13 +159,3 @@ def test_vectors_are_checked_under_their_name(tmp_path, name, size, write, messa
     with pytest.raises(InputError, match=message) as caught:
         read_vector("x0", tmp_path / name, size)
     assert caught.value.argument == "x0"
-
-
-def test_a_bad_q_file_is_the_argument_at_fault(tmp_path):
-    np.save(tmp_path / "a.npy", A)
-    with pytest.raises(InputError, match=r"^q: expected a file, found nothing"):
-        read_problem(tmp_path / "a.npy", tmp_path / "q.npy")
-    np.save(tmp_path / "q.npy", Q[:2])
-    with pytest.raises(InputError, match=r"q: expected 3 numbers, one a row of A, found 2, in .*q.npy") as caught:
-        read_problem(tmp_path / "a.npy", tmp_path / "q.npy")
-    assert caught.value.argument == "q"

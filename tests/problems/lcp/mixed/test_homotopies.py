@@ -74,12 +74,6 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
             lcp.KKTHomotopy(EVERY_KIND, **{name: value})
 
 
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_the_default_multipliers_of_a_box_balance_its_forces(unit):
-    z2 = lcp.KKTHomotopy(EVERY_KIND, w0=unit * np.array([1.0, 2.0, 3.0, 4.0])).origin.z2
-    assert z2[2] * 2.0 == pytest.approx((2.0 - z2[2]) * 4.0)
-
-
 def test_the_kkt_equations_of_a_box_by_hand():
     """A = 2, q = -3 on [1, 4], x0 = 2, z1 = (5, 6), z2 = 1, (s0, t0) = (7, 8); rho = 7 - 8 - 1."""
     homotopy = lcp.KKTHomotopy(lcp.MixedLCP([[2.0]], [-3.0], 1, 4), [2.0], [5.0, 6.0], [1.0], [7.0, 8.0])
@@ -127,14 +121,6 @@ def test_a_solution_is_a_stationary_point(planted):
     low, high = problem.lower, problem.upper
     d = np.where(np.isfinite(low), x - low, np.where(np.isfinite(high), x - high, x))
     assert stationarity(problem).natural_residual(np.concatenate([x, d])) == 0.0
-
-
-def test_without_row_sufficiency_a_stationary_point_need_not_solve():
-    """A = -1 on [0, 2] with q = -1: x = 0, z = 2 is stationary, and w = -1 there; x = 2 solves."""
-    problem = lcp.MixedLCP([[-1.0]], [-1.0], 0.0, 2.0)
-    assert stationarity(problem).natural_residual(np.array([0.0, 2.0])) == 0.0
-    assert problem.natural_residual(np.array([0.0])) > 0.0
-    assert problem.natural_residual(np.array([2.0])) == 0.0
 
 
 def kojima_shindo(x):

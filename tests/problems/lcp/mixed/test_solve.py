@@ -74,20 +74,6 @@ def test_a_path_alone_solves_every_mixture_of_bounds(homotopy, seed):
     assert len(solution.paths) == 1
 
 
-def test_free_unknowns_are_a_system_of_equations():
-    rng = np.random.default_rng(0)
-    A, q = rng.standard_normal((30, 30)), rng.standard_normal(30)
-    solution = lcp.solve(lcp.MixedLCP(A, q))
-    np.testing.assert_allclose(solution.x, np.linalg.solve(A, -q), rtol=1e-10)
-    assert solution.counts.factorizations == 1
-
-
-def test_the_nearest_point_of_a_box_is_clipped_exactly():
-    c = np.array([3.0, -0.25, 0.1, -7.0])
-    solution = lcp.solve(lcp.MixedLCP(np.eye(4), -c, -1 / 3, 1 / 7))
-    np.testing.assert_array_equal(solution.x, np.clip(c, -1 / 3, 1 / 7))
-
-
 @pytest.mark.parametrize("stored", list(itertools.product((np.asarray, sp.csr_array), repeat=3)))
 @pytest.mark.parametrize(("equations", "rows"), [(4, 8), (4, 0), (0, 0)])
 def test_multipliers_by_name_satisfy_the_optimality_conditions(stored, equations, rows):

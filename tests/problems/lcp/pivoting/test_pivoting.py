@@ -1,7 +1,6 @@
 """Pivoting: paths from basis to basis against an independent Lemke, against closed forms, and through ties."""
 
 import numpy as np
-import pytest
 
 from problems import lcp
 from problems.lcp import LCP
@@ -43,16 +42,6 @@ def test_pivots_end_at_a_solution_or_on_a_ray():
         else:
             assert path.ended is Ended.RAY
     assert solved > 200
-
-
-@pytest.mark.parametrize("n", range(2, 9))
-def test_murty_s_path_has_all_its_kinks(n):
-    A = np.eye(n) + np.tril(np.full((n, n), 2.0), -1)
-    q = -np.cumsum(2.0 ** np.arange(n - 1, -1, -1))
-    path = covering(LCP(A, q), np.ones(n))
-    assert path.run(5000) is Ended.REACHED
-    # A pivot at each of the 2^n - 1 kinks, and one where t leaves.
-    assert path.pivots == 2**n
 
 
 def test_pivots_that_wait_are_the_same_ones(monkeypatch):

@@ -6,7 +6,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,15 +22,6 @@ ORDERS = st.integers(1, 4)
 
 def assert_exact(problem, found):
     assert all(solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w for s in found.solutions)
-
-
-def test_two_by_two_in_closed_form():
-    """[[2, 1], [1, 2]], q = (-5, -6): x = (4/3, 7/3)."""
-    found = solve_by_enumeration(LCP([[2, 1], [1, 2]], [-5, -6]))
-    (solution,) = found.solutions
-    assert solution.x == (Fraction(4, 3), Fraction(7, 3))
-    assert (solution.faces, solution.strictly_complementary) == (((0, 1),), True)
-    np.testing.assert_array_equal(found.points, [[4 / 3, 7 / 3]])
 
 
 def test_the_edge_of_solvability_is_decided_exactly():
@@ -122,12 +112,6 @@ def test_a_planted_solution_is_found(pair):
 def test_hard_numbers_are_exact_too(pair):
     problem, _ = pair
     assert_exact(problem, solve_by_enumeration(problem))
-
-
-def test_sparse_and_dense_agree():
-    A = np.diag([2.0, 3.0, 4.0]) - np.eye(3, k=1)
-    q = [-1.0, 1.0, -3.0]
-    assert solve_by_enumeration(LCP(A, q)) == solve_by_enumeration(LCP(sp.csr_array(A), q))
 
 
 @pytest.mark.parametrize("method", [solve_by_enumeration, exhaust])
