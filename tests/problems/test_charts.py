@@ -11,7 +11,6 @@ from problems import lcp
 from problems.charts import engine, families, rivals, robustness, scaling, scenes, subjects
 from problems.charts import lcp as lcp_charts
 from problems.charts.chandrasekhar import Chandrasekhar
-from problems.lcp.classes.exact import principal_minors
 from problems.scenes import Rival
 
 MODULES = (engine, lcp_charts, scaling, robustness, scenes)
@@ -42,17 +41,6 @@ def test_a_planted_problem_has_a_solution_and_depends_on_the_seed_alone(family):
     np.testing.assert_array_equal(problem.q, again.q)
     assert (problem.q != other.q).any()
     assert lcp.solve_by_enumeration(problem)
-
-
-def test_the_families_are_what_they_are_called():
-    random = np.random.default_rng(0)
-    for _ in range(5):
-        symmetric = families.semidefinite(random, 5)
-        assert np.linalg.eigvalsh(symmetric + symmetric.T).min() > -1e-12
-        scaled = (1e6 * families.scaled_p(random, 4)).round().astype(int).tolist()
-        assert min(principal_minors(scaled)) > 0
-        negative = (1e6 * families.n_matrix(random, 4)).round().astype(int).tolist()
-        assert max(principal_minors(negative)[1:]) < 0
     with pytest.raises(ValueError, match="family: expected one of"):
         families.planted("none", 2, 0)
 

@@ -10,7 +10,6 @@ import continuation
 from continuation import chart
 from continuation.chart.run import report
 from continuation.counts import Counts
-from continuation.predictors import Hermite
 from problems.bifurcation import Circle, ExponentialCosine
 from problems.charts.subjects import cosine
 from tests.truth import circle, exponential_cosine
@@ -32,17 +31,6 @@ def test_what_went_wrong_is_named_with_its_reason(results):
         tuple(line) for line in chart.failures(results).rows
     ]
     assert "the path has 10" in row(results, "jumps").message
-
-
-def test_errors_are_those_of_the_path(results):
-    n = 5
-    path = continuation.trace(ExponentialCosine(n), predictor=Hermite(), tolerance=1e-8)
-    end = cosine(n).truth.end
-    found = row(results, "Hermite").errors
-    assert found["end_point"] == np.abs(path.endpoint.u - end).max() / (1.0 + np.abs(end).max())
-    # Between the points the dense output is a cubic, so it is far worse than the corrected end; but it stays near.
-    assert found["end_point"] < found["curve_distance"] < 1e-2
-    assert math.isnan(row(results, "lies").errors["curve_distance"])
 
 
 def test_the_distance_without_a_closed_form_is_that_to_the_nearest_point():

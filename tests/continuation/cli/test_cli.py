@@ -173,10 +173,3 @@ def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatc
     status, _, err = run("broken", "--anything", "file")
     assert status == BAD_INPUT
     assert "broken: no.such.module:register (no.such.module:register) cannot be loaded: ModuleNotFoundError" in err
-
-
-def test_two_packages_with_one_command_are_both_named(run, monkeypatch):
-    monkeypatch.setattr(plugins, "entry_points", points(("solve", "here.solve:register"), ("solve", "there:register")))
-    status, _, err = run("solve", "file.npz")
-    assert status == BAD_INPUT
-    assert "found here.solve:register (here.solve:register) and there:register (there:register)" in err

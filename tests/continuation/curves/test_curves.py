@@ -11,15 +11,11 @@ from continuation.archive import open_archive, resume
 from continuation.counts import Counts
 from continuation.evaluation.errors import RaisedError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.evaluation.products import difference_along
-from continuation.events.singularity import full_derivative
-from continuation.linear.nullspace import null_vectors
 from continuation.testing import check_homotopy
 from problems import lcp
 
 from .util import (
     Bent,
-    Diffusing,
     Lorenz,
     coupled,
     cusp_form,
@@ -43,8 +39,9 @@ def steep(u, v):
     return v[0] + 0.4 * v[1]
 
 
-def not_homogeneous(u, v):
-    return v[0] ** 2 - 0.3 * u[0] ** 2 * v[1]
+def uneven(u, v):
+    """It has no power of the tangent's length as a factor."""
+    return v[0] ** 4 - 0.09 * u[0] ** 4 * v[1] ** 2
 
 
 def test_branch_points_that_part_are_refused():
@@ -116,44 +113,6 @@ def test_what_looks_at_the_tangent():
     assert np.abs(1.2 * y**2 - 0.4 * lam + y).max() <= 1e-10
 
 
-def test_elimination_is_the_bordered_matrix():
-    generator = np.random.default_rng(5)
-    trunk = continuation.trace(coupled(), direction=-1, box={"lam": (2.5, None)})
-    (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
-    for curve in (
-        folds(),
-        Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
-        Curve(coupled, point, mu=1.0),
-        Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
-        Curve(imperfect, Monitor(not_homogeneous), (np.array([-1.2]), 1.4), mu=0.1),
-    ):
-        y, mu = curve.start()
-        for aside in (0.0, 0.03):
-            y = y * (1.0 + aside * generator.standard_normal(y.size))
-            border = generator.standard_normal(y.size + 1)
-            H_y, H_mu = curve.jacobian(y, mu)
-            whole = np.vstack([np.column_stack([H_y, H_mu]), border])
-            system = curve.bordered(y, mu, border)
-            r = generator.standard_normal(y.size + 1)
-            np.testing.assert_allclose(whole @ system.solve(r[:-1], r[-1]), r, atol=1e-11 * np.abs(whole).max())
-            assert system.sign == np.sign(np.linalg.det(whole))
-            np.testing.assert_allclose(curve.differential(y, mu, r), whole[:-1] @ r, atol=1e-12)
-        u = np.append(y, mu)
-        difference = difference_along(curve.residual, u, 1e-2 * r)[0]
-        np.testing.assert_allclose(whole[:-1] @ (1e-2 * r), difference, atol=1e-8)
-
-
-def test_the_border_does_not_fill_sparse_factors():
-    homotopy = Diffusing(n=300)
-    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
-    (y, mu), condition = curve.start(), curve._condition
-    matrix = condition.matrix(full_derivative(Evaluator(curve.family(mu), Counts()), y[:-1]), y[-1])
-    near = null_vectors(matrix, condition.b, condition.c)
-    assert near.factors.lu.nnz <= 30 * 600
-    np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)
-    np.testing.assert_allclose(matrix.conj().T @ near.left, -np.conj(near.s) * condition.c, atol=1e-9)
-
-
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
     curve, box = folds(), {"lam": (-1.0, 0.4)}
     continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=3), box=box, direction=-1)
@@ -166,8 +125,25 @@ def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
         assert stored.path(0).labels.parameter_name == "mu"
 
 
-def test_the_suite_passes():
-    check_homotopy(folds(), steps=5)
+def pitchforks():
+    """From the first of the coupled trunk."""
+    trunk = continuation.trace(coupled(), direction=-1, box={"lam": (2.5, None)})
+    return Curve(coupled, next(event for event in trunk.events if event.kind == Kind.BRANCH_POINT), mu=1.0)
+
+
+KINDS = {
+    "folds": folds,
+    "Hopf points": lambda: Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
+    "branch points": pitchforks,
+    "a slope": lambda: Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
+    "no homogeneous condition": lambda: Curve(imperfect, Monitor(uneven), (np.array([-0.95]), 1.008), mu=0.1),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_suite_of_homotopies_passes(kind):
+    """Its eliminations are the bordered matrix, with the sign of the determinant, and its derivatives right."""
+    check_homotopy(KINDS[kind](), steps=5)
 
 
 class Plain:

@@ -72,17 +72,6 @@ def test_the_diagram_of_a_cubic_equation_has_its_five_branch_points_to_second_or
     np.testing.assert_allclose(errors[0] / errors[1], 4.0, rtol=0.05)
 
 
-def test_ten_pitchforks_on_a_trunk_are_eleven_branches():
-    found = diagram(Forks(tuple(range(1, 11)), coupled=True), box={"lam": (0.0, 12.0)})
-    assert found.complete, found.message
-    np.testing.assert_allclose([p.event.lam for p in found.points], range(1, 11), rtol=0, atol=1e-10)
-    assert [branch.generation for branch in found.branches] == [0, *10 * [1]]
-    for k, branch in enumerate(found.branches[1:], start=1):
-        # One smooth curve through the branch point, from one end of the box to the other.
-        ends = branch.path.y[[0, -1], k - 1]
-        np.testing.assert_allclose(sorted(ends), [-np.sqrt(12.0 - k), np.sqrt(12.0 - k)], atol=1e-9)
-
-
 def test_branches_that_leave_branches_are_all_there_none_twice_and_none_compared_with_all(monkeypatch):
     looked = []
     monkeypatch.setattr("continuation.diagrams.places.norm", lambda w, d: looked.append(1) or norm(w, d))
@@ -96,17 +85,6 @@ def test_branches_that_leave_branches_are_all_there_none_twice_and_none_compared
     ends = np.vstack([y for branch in found.branches for y in branch.path.y[[0, -1]] if branch.generation])
     assert len({tuple(np.sign(np.round(y, 6))) for y in ends}) == len(ends) == 3**4 - 1
     assert len(found.at(5.5)) == 3**4
-
-
-def test_pitchforks_that_leave_each_other_have_an_arm_for_each_and_a_crossing_for_each_later_one():
-    # All of them are 122 branches: the trunk and its arms, by the limit on generations.
-    found = diagram(Forks((1.0, 2.0, 3.0, 4.0, 5.0)), box={"lam": (0.0, 7.0)}, generations=1)
-    assert found.message == "Not complete: 40 rays beyond generation 1 were not followed."
-    assert labels(found)[:5] == [(f"BP{k}", (0, k)) for k in range(1, 6)]
-    # On the arm of y_k, of either sign, each later one crosses once.
-    wanted = sorted((k, sign * np.sqrt(j - k), j) for k in range(1, 6) for j in range(k + 1, 6) for sign in (-1, 1))
-    places = sorted((p.branches[0], p.event.y[p.branches[0] - 1], p.event.lam) for p in found.points[5:])
-    np.testing.assert_allclose(places, wanted, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("executor", [ThreadPoolExecutor, ProcessPoolExecutor])

@@ -103,13 +103,6 @@ def test_terminal_after_the_kth(terminal):
         assert "lam = 0.5" in path.message
 
 
-@pytest.mark.parametrize(("direction", "expected"), [(1, [1.0]), (-1, [-1.0]), (0, [1.0, -1.0])])
-def test_directions(direction, expected):
-    # sin(2 angle) rises through zero at angle 0 and pi, and falls at pi/2 and 3 pi/2; x = cos(angle) rises at 3 pi/2.
-    path = trace(Circle(), events=values(0.0, component=0, direction=-direction))
-    assert [event.lam for event in named(path, "component 0 = 0")] == pytest.approx(expected, abs=1e-12)
-
-
 def test_the_start_is_no_event():
     path = trace(Circle(), events=values(0.0))
     np.testing.assert_allclose(named(path, "lam = 0")[0].u, (-1.0, 0.0), rtol=0, atol=1e-12)

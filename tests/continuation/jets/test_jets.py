@@ -219,13 +219,9 @@ def test_overflow_is_silent_and_shows():
         (lambda: path_series(np.subtract, [0.0, 1], [1.0], lambda r, rho: r, 3), "u0 and tangent have shapes"),
         (lambda: path_series(np.subtract, [0.0, 1], [1.0, 0], lambda r, rho: r, 0), "order is 0; expected 1"),
         (lambda: path_series(lambda y, lam: [lam, lam], [0.0, 1], [1.0, 0], lambda r, rho: r, 3), "residual has shape"),
+        (lambda: taylor(lambda x: taylor(np.exp, x, 2), 0.0, 2), "jets of jets"),
     ],
 )
 def test_bad_input_is_refused_at_the_door(call, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((TypeError, ValueError), match=message):
         call()
-
-
-def test_jets_of_jets_are_refused():
-    with pytest.raises(TypeError, match="jets of jets"):
-        taylor(lambda x: taylor(np.exp, x, 2), 0.0, 2)

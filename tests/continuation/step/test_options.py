@@ -9,7 +9,7 @@ from continuation.chart import traced
 from continuation.metric import Weighted
 from continuation.predictors import Hermite
 from problems import lcp
-from problems.bifurcation import Bratu1D, Circle
+from problems.bifurcation import Circle
 
 from ...util import by_preset
 
@@ -21,23 +21,15 @@ TAKERS = {
     "traced": lambda **options: traced("a method", **options),
     "solve": lambda **options: lcp.solve(LCP, **options),
 }
-
-
-@pytest.mark.parametrize("taker", TAKERS)
-def test_an_unknown_option_is_refused_with_the_nearest_one(taker):
-    with pytest.raises(TypeError, match=r"^predicter: expected one of the options .*; did you mean predictor\?$"):
-        TAKERS[taker](predicter=Hermite())
-
-
-@pytest.mark.parametrize("name", ["target", "direction", "start", "state", "observers"])
-def test_an_option_that_the_solver_owns_is_refused(name):
-    with pytest.raises(TypeError, match=f"^{name}: expected no such option here, solve says"):
-        lcp.solve(LCP, **{name: 0.5})
+UNKNOWN = r"^predicter: expected one of the options .*; did you mean predictor\?$"
+OWNED = "target", "direction", "start", "state", "observers"
 
 
 @pytest.mark.parametrize(
     ("taker", "options", "error", "words"),
     [
+        *((taker, {"predicter": Hermite()}, TypeError, UNKNOWN) for taker in TAKERS),
+        *(("solve", {name: 0.5}, TypeError, f"^{name}: expected no such option here, solve says") for name in OWNED),
         ("trace_many", {"start": (np.zeros(2), np.ones(2))}, TypeError, "start: expected no such option here, where"),
         # Active sets alone solve this problem: no path is traced that could complain.
         ("solve", {"preset": "fast"}, TypeError, "preset: expected FAST, .*, found 'fast'"),
@@ -97,11 +89,6 @@ def test_an_option_that_the_solver_owns_is_refused(name):
 def test_a_bad_option_is_named_with_what_was_found(taker, options, error, words):
     with pytest.raises(error, match=words):
         TAKERS[taker](**options)
-
-
-def test_a_class_is_not_taken_for_a_homotopy():
-    with pytest.raises(TypeError, match=r"homotopy: expected an object, found the class Bratu1D; make one"):
-        trace(Bratu1D)
 
 
 def test_numbers_of_numpy_are_numbers():

@@ -106,13 +106,6 @@ def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_fe
     assert classes.ExactMatrix.of(whole).minors[-1] == 0
 
 
-@given(mine.badly_scaled_lcps("P"))
-def test_badly_scaled_problems_keep_their_class_and_start(pair):
-    problem, x0 = pair
-    assert classes.is_p(problem.A).holds
-    assert min(*x0, *exact_w(problem, x0)) > 0
-
-
 def test_the_hook_registers_the_problem_type_for_from_type():
     hypothesis_hook.register()
     assert find(st.from_type(LCP), lambda p: p.n == 2 and p.q.any(), settings=HUNT).n == 2

@@ -40,18 +40,6 @@ def small(value, *sizes):
 
 @share(50)
 @given(feasible_lcps())
-def test_the_start_is_regular(pair):
-    """Theorem 3.1: det H_y(y0, 1) = prod x0_i w0_i > 0; exactly, on integers."""
-    problem, x0 = pair
-    homotopy = KKTHomotopy(problem, x0)
-    y0, lam0 = homotopy.start()
-    assert not homotopy.residual(y0, lam0).any()
-    H_y, _ = homotopy.jacobian(y0, lam0)
-    assert determinant(H_y) == int(np.prod(x0) * np.prod(problem.w(x0))) > 0
-
-
-@share(50)
-@given(feasible_lcps())
 def test_the_determinant_is_negative_in_the_positive_direction(pair):
     """Theorem 3.10: det [[H'], [tau']] < 0 at the start for the direction tau in which lambda falls."""
     homotopy = KKTHomotopy(*pair)

@@ -39,19 +39,6 @@ def unique_solution(problem):
 
 
 @share(30)
-@given(feasible_lcps(), st.integers(-6, 6))
-def test_the_kkt_path_scales_with_its_unit(pair, power):
-    """With q, x0, z1 and z2 multiplied by s the KKT path is s times itself: H1 has degree 1 in them, H2 and H3 two."""
-    problem, x0 = pair
-    s, ones = 2.0**power, np.ones(problem.n)
-    plain = trace(KKTHomotopy(problem, x0, ones, ones))
-    scaled = trace(KKTHomotopy(LCP(problem.A, s * problem.q), s * x0, s * ones, s * ones))
-    assert scaled.status is plain.status
-    np.testing.assert_allclose(scaled.endpoint.y / s, plain.endpoint.y, rtol=1e-6, atol=1e-6)
-    assert len(scaled.turning_points) == len(plain.turning_points)
-
-
-@share(30)
 @given(st.data())
 def test_the_path_of_wang_scales_with_all_units(data):
     """x -> x/E, y -> D y takes Wang's path for A, q to that for D A E, D q, with any positive diagonals D and E."""
@@ -133,15 +120,3 @@ def test_an_end_of_the_earlier_homotopies_is_a_solution(make, pair):
     truth = solve_by_enumeration(problem)
     assert truth.solvable
     assert not truth.complete or any(near(x, point) for point in truth.points)
-
-
-@share(60)
-@given(feasible_lcps(n=SMALL_ORDERS))
-def test_a_certified_end_of_the_kkt_path_is_one_of_the_solutions(pair):
-    """And an end that is not certified is none of them."""
-    problem, x0 = pair
-    x, truth = np.maximum(end(KKTHomotopy(problem, x0)), 0.0), solve_by_enumeration(problem)
-    solved = certify(problem, x, 1e-7).solves(1e-7)
-    assert truth.solvable or not solved
-    if truth.complete:
-        assert solved == any(near(x, point) for point in truth.points)

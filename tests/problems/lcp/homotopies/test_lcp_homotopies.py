@@ -52,8 +52,3 @@ def test_max_step_is_sharp(make, problem, seed):
     assert h > 0.0
     assert (positives(homotopy, u + min(h * (1 - 1e-9), 1e6) * v) > 0.0).all()
     assert h == np.inf or not (positives(homotopy, u + h * (1 + 1e-9) * v) > 0.0).all()
-
-
-def test_observe():
-    homotopy = lcp.KKTHomotopy(lcp.LCP(np.eye(2), [-1.0, 2.0]))
-    assert homotopy.observe(np.array([1.5, 0.25, 9, 9, 9, 9.0]), 0.1) == {"natural_residual": 0.5, "gap": 1.3125}

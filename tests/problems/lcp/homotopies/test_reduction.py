@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from continuation.linear.symmetric import Cholesky
 from problems import lcp
-from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.strategies import matrices
 
 from .util import bordered_at, every, interior, made, random_lcp
@@ -55,22 +54,6 @@ def test_components_that_are_zero_and_a_point_that_moves_on(make):
     y += 1.0
     np.testing.assert_allclose(system.solve(rhs[:-1], rhs[-1]), np.linalg.solve(M, rhs), rtol=1e-11, atol=1e-14)
     assert system.sign == np.linalg.slogdet(M)[0]
-
-
-@pytest.mark.parametrize("name", ["kkt", "yu"])
-def test_without_refinement_the_quick_core_answers_alone(name):
-    rng = np.random.default_rng(1)
-    problem = random_lcp(rng, 5, "symmetric psd")
-    refined, alone = (
-        HOMOTOPIES[name].at(problem, lcp.default_start(problem), lcp.Structure(problem), refine)
-        for refine in (True, False)
-    )
-    y, lam = interior(rng, refined, 0.5)
-    border, rhs = rng.standard_normal((2, y.size + 1))
-    system = refined.bordered(y, lam, border)
-    z = alone.bordered(y, lam, border).solve(rhs[:-1], rhs[-1])
-    np.testing.assert_array_equal(z, system.quick.solve(rhs[:-1], rhs[-1]))
-    np.testing.assert_allclose(z, system.solve(rhs[:-1], rhs[-1]), rtol=1e-8)
 
 
 def test_singular_matrix_is_said_to_be_singular():

@@ -94,13 +94,6 @@ def test_lemke_and_howson_from_every_label():
     assert {tuple(path.active) for path in paths} == {(True, False, True, False), (False, True, False, True)}
 
 
-def test_what_is_no_game():
-    assert Game.of(LCP(np.eye(2), -np.ones(2))) is None
-    assert Game.of(LCP([[0.0, 1.0], [1.0, 0.0]], [-1.0, 1.0])) is None
-    assert Game.of(LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])) is None
-    assert Game.of(LCP(np.zeros((2, 2)), [-1.0, -1.0])) is None
-
-
 def test_a_bounded_program_has_no_other_ray():
     r, n = np.random.default_rng(8), 12
     Q = r.integers(-50, 51, (n, n)).astype(float)

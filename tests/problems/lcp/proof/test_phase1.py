@@ -53,12 +53,6 @@ def test_start_or_proof_against_exact_truth(data, n, sparse):
         assert empty_interior(problem) is None
 
 
-@pytest.mark.parametrize("x", [[0.0], [-0.5], [np.inf]])
-def test_a_point_of_the_boundary_or_beyond_is_no_start(x):
-    assert is_strictly_feasible(LCP([[1.0]], [1.0]), np.array([0.5]))
-    assert not is_strictly_feasible(LCP([[1.0]], [1.0]), np.array(x))
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_rows_and_columns_over_sixteen_orders_of_magnitude(seed):
     rng = np.random.default_rng(seed)

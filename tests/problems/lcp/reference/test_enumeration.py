@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import LARGEST_FACES, exhaust, solve_by_enumeration
-from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps, planted_lcps
+from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps
 from problems.paper import EXAMPLES
 
 from ....exact import exact_w, solves
@@ -91,21 +91,6 @@ def test_for_q0_matrices_solvable_means_feasible(problem):
     rows = zip(problem.A.astype(int).tolist(), problem.q.astype(int).tolist(), strict=True)
     feasible = feasible_point([at_least(row, -right) for row, right in rows], problem.n) is not None
     assert solve_by_enumeration(problem).solvable == feasible
-
-
-@given(lcps("PSD", ORDERS))
-def test_the_solutions_of_a_monotone_problem_are_one_or_a_continuum(problem):
-    """The solution set is convex (CPS, theorem 3.1.7): two isolated solutions cannot be."""
-    found = solve_by_enumeration(problem)
-    if found.complete:
-        assert len(found.solutions) <= 1
-
-
-@given(planted_lcps("degenerate", "any", ORDERS))
-def test_a_planted_solution_is_found(pair):
-    problem, x = pair
-    found = solve_by_enumeration(problem)
-    assert tuple(map(Fraction, x)) in {s.x for s in found.solutions} or not found.complete
 
 
 @given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
