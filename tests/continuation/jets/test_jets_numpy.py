@@ -167,23 +167,31 @@ def test_same_as_numpy(name):
     assert_same_as_numpy(gathered, *jets)
 
 
-def test_values_that_choose_by_the_leading_coefficient():
-    x = Jet([[-2.0, 1.0, 3.0], [1.0, 2.0, -1.0]])
-    assert np.array_equal(x > 0, [False, True, True])
-    assert np.array_equal(np.ones(3) <= x, [False, True, True])
-    assert np.array_equal(x == Jet([[0.0, 1, 3], [0, 0, 0]]), [False, True, True])
-    assert np.array_equal(x != 1, [True, False, True])
-    assert np.array_equal(np.less(x, 0), [True, False, False])
-    assert np.array_equal(np.abs(x).c, [[2, 1, 3], [-1, 2, -1]])
-    assert np.array_equal(abs(x).c, np.fabs(x).c)
-    assert np.array_equal(np.maximum(x, 0.5).c, [[0.5, 1, 3], [0, 2, -1]])
-    assert np.array_equal(np.minimum(2.0, x).c, [[-2, 1, 2], [1, 2, 0]])
-    assert np.array_equal(np.clip(x, -1, 2).c, [[-1, 1, 2], [0, 2, 0]])
-    assert np.array_equal(np.where(x > 0, x, 0.0).c, [[0, 1, 3], [0, 2, -1]])
-    assert np.array_equal(x[x > 0].c, [[1, 3], [2, -1]])
-    assert bool(x[0])
-    assert x[0] < x[1] < x[2]
-    assert max(x, key=lambda entry: entry.c[0]).c[1] == -1
+SIGNED = Jet([[-2.0, 1.0, 3.0], [1.0, 2.0, -1.0]])
+
+
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        (SIGNED > 0, [False, True, True]),
+        (np.ones(3) <= SIGNED, [False, True, True]),
+        (Jet([[0.0, 1, 3], [0, 0, 0]]) == SIGNED, [False, True, True]),
+        (SIGNED != 1, [True, False, True]),
+        (np.less(SIGNED, 0), [True, False, False]),
+        (np.abs(SIGNED), [[2, 1, 3], [-1, 2, -1]]),
+        (np.fabs(SIGNED), [[2, 1, 3], [-1, 2, -1]]),
+        (np.maximum(SIGNED, 0.5), [[0.5, 1, 3], [0, 2, -1]]),
+        (np.minimum(2.0, SIGNED), [[-2, 1, 2], [1, 2, 0]]),
+        (np.clip(SIGNED, -1, 2), [[-1, 1, 2], [0, 2, 0]]),
+        (np.where(SIGNED > 0, SIGNED, 0.0), [[0, 1, 3], [0, 2, -1]]),
+        (SIGNED[SIGNED > 0], [[1, 3], [2, -1]]),
+        (SIGNED[0] < SIGNED[1] < SIGNED[2], True),
+        (bool(SIGNED[0]), True),
+        (max(SIGNED, key=lambda entry: entry.c[0]), [3, -1]),
+    ],
+)
+def test_values_choose_by_the_leading_coefficient(found, expected):
+    np.testing.assert_array_equal(getattr(found, "c", found), expected)
 
 
 def test_object_arrays_of_scalar_jets_keep_the_series_in_elementary_functions():

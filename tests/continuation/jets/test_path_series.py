@@ -44,25 +44,9 @@ def test_path_series_of_bratu_in_plain_numpy():
     n, h = 20, 1 / 21
     second = (np.eye(n, k=1) - 2 * np.eye(n) + np.eye(n, k=-1)) / h**2
 
-    def by_slices(y, lam):
-        r = -2 * y
-        r[1:] += y[:-1]
-        r[:-1] += y[1:]
-        r /= h**2
-        return r + lam * np.exp(y)
-
-    def by_loop(y, lam):
-        r = np.empty_like(y)
-        for i in range(len(y)):
-            left, right = y[i - 1] if i else 0.0, y[i + 1] if i + 1 < len(y) else 0.0
-            r[i] = (left - 2 * y[i] + right) / h**2 + lam * np.exp(y[i])
-        return r
-
     styles = (
         lambda y, lam: second @ y + lam * np.exp(y),
         lambda y, lam: np.diff(np.concatenate([[0.0], y, [0.0]]), 2) / h**2 + lam * np.exp(y),
-        by_slices,
-        by_loop,
     )
     y, lam = np.zeros(n), 1.0
     for _ in range(20):

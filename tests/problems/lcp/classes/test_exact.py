@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -48,13 +49,21 @@ def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m
         assert all(times([row], y)[0] >= right for row, right in alternative)
 
 
-def test_floats_are_taken_as_the_rationals_that_they_are():
+TINY = np.diag([1e-300, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("A", "answer", "expected"),
+    [
+        ([[0.1 + 0.2 - 0.3]], lambda A: classes.is_p(A).holds, True),
+        ([[0.3 - 0.1 - 0.2]], lambda A: classes.is_n(A).holds, True),
+        ([[0.1, 0.3], [0.1, 0.3]], lambda A: classes.is_nondegenerate(A).certificate.value, 0),
+        ([[0.8]], lambda A: ExactMatrix.of(A).minor(1), Fraction(0.8)),
+        ([[Fraction(4, 5)]], lambda A: ExactMatrix.of(A).minor(1), Fraction(4, 5)),
+        (TINY, lambda A: classes.is_p(A).holds, True),
+        (TINY - np.diag([2e-300, 0.0]), lambda A: classes.is_psd(A).holds, False),
+    ],
+)
+def test_floats_are_taken_as_the_rationals_that_they_are(A, answer, expected):
     """0.1 + 0.2 - 0.3 is 2^-54, not zero; 0.8 is not 4/5."""
-    assert classes.is_p([[0.1 + 0.2 - 0.3]]).holds
-    assert classes.is_n([[0.3 - 0.1 - 0.2]]).holds
-    assert classes.is_nondegenerate([[0.1, 0.3], [0.1, 0.3]]).certificate.value == 0
-    assert ExactMatrix.of([[0.8]]).minor(1) == Fraction(0.8) != Fraction(4, 5)
-    assert ExactMatrix.of([[Fraction(4, 5)]]).minor(1) == Fraction(4, 5)
-    tiny = np.diag([1e-300, 1.0])
-    assert classes.is_p(tiny).holds
-    assert classes.is_psd(tiny - np.diag([2e-300, 0.0])).holds is False
+    assert answer(A) == expected

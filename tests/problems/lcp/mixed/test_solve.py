@@ -96,16 +96,20 @@ def test_multipliers_by_name_satisfy_the_optimality_conditions(stored, equations
     assert solution.objective == pytest.approx(0.5 * x @ P @ x + c @ x)
 
 
-def test_infeasible_and_unbounded_programs_are_proved():
-    infeasible = lcp.solve(lcp.from_lp([1, 1], [[1, 1]], [-1], lower=0))
-    assert infeasible.outcome is Outcome.UNSOLVABLE
-    assert "The constraints have no common point." in infeasible.message
-    unbounded = lcp.solve(lcp.from_qp([[1, 0], [0, 0]], [0, -1], [[1, 0]], [1]))
-    assert unbounded.outcome is Outcome.UNSOLVABLE
-    assert "the objective falls for ever" in unbounded.message
-    parallel = lcp.solve(lcp.from_qp(np.eye(2), [0, 0], A_eq=[[1, 2], [2, 4]], b_eq=[1, 3]))
-    assert parallel.outcome is Outcome.UNSOLVABLE
-    assert parallel.farkas.holds(parallel.problem)
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        (lcp.from_lp([1, 1], [[1, 1]], [-1], lower=0), "The constraints have no common point."),
+        (lcp.from_qp([[1, 0], [0, 0]], [0, -1], [[1, 0]], [1]), "the objective falls for ever"),
+        (lcp.from_qp(np.eye(2), [0, 0], A_eq=[[1, 2], [2, 4]], b_eq=[1, 3]), ""),
+    ],
+    ids=["infeasible", "unbounded", "parallel"],
+)
+def test_infeasible_and_unbounded_programs_are_proved(program, words):
+    solution = lcp.solve(program)
+    assert solution.outcome is Outcome.UNSOLVABLE
+    assert words in solution.message
+    assert solution.farkas.holds(solution.problem)
 
 
 def test_a_multiplier_of_bounds_is_checked_exactly():
