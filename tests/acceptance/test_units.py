@@ -10,7 +10,6 @@ from continuation import (
     FAST,
     SERIES,
     Budget,
-    Kind,
     Status,
     TargetValue,
     Tracer,
@@ -109,27 +108,6 @@ def test_turning_points_in_celsius_and_in_kelvin(preset, offset, a):
     expected = [x + 2.0 * np.pi * k for k in range(3) for x in (first, 2.0 * np.pi - first)]
     found = [event.y[0] - offset for event in path.turning_points]
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8)
-
-
-@every_preset
-@pytest.mark.parametrize(("y_unit", "lam_unit"), [(1e-8, 1.0), (1.0, 1e-8), (1e6, 1e-6), (1e-4, 1e8)])
-def test_a_reactor_in_other_units(preset, y_unit, lam_unit):
-    """A -> B in a stirred tank (Uppal, Ray and Poore 1974): on y_2 = 4.5 y_1 two folds, at roots of one equation."""
-
-    def residual(y, lam):
-        y, lam = y / y_unit, lam / lam_unit
-        rate = lam * (1.0 - y[0]) * np.exp(y[1])
-        return np.stack([rate - y[0], 18.0 * rate - 4.0 * y[1]])
-
-    path = trace(from_functions(residual, start=(np.zeros(2), 0.0), target=0.15 * lam_unit), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert {event.kind for event in path.events} == {Kind.TURNING_POINT}
-    # lam = y / ((1 - y) exp(4.5 y)) is extremal where 4.5 y (1 - y) = 1.
-    y = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(0.25 - 1.0 / 4.5)
-    np.testing.assert_allclose([e.y[0] / y_unit for e in path.turning_points], y, rtol=1e-8)
-    np.testing.assert_allclose(
-        path.turning_points[0].lam / lam_unit, y[0] / ((1 - y[0]) * np.exp(4.5 * y[0])), rtol=1e-12
-    )
 
 
 @every_preset

@@ -81,18 +81,6 @@ def test_parts_keep_arclength_and_events_and_join_to_the_whole(ahead):
     assert steps(whole) == steps(ahead) == steps(ahead[:])
 
 
-def test_a_saved_path_is_read_as_it_was(tmp_path, both):
-    both.save(tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        again = archive.path(0)
-    np.testing.assert_array_equal(again.u, both.u)
-    np.testing.assert_array_equal(again.tangents, both.tangents)
-    assert steps(again)[1:] == steps(both)[1:]
-    assert (again.status, again.counts) == (both.status, both.counts)
-    with pytest.raises(FileExistsError):
-        both.save(tmp_path / "run.h5")
-
-
 def test_tables(ahead):
     pytest.importorskip("xarray")
     pytest.importorskip("pandas")

@@ -13,10 +13,7 @@ from continuation.cli.parser import paint
 from continuation.step.progress import SweepProgress
 from problems.bifurcation import Cusp
 
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
+from ...util import Terminal
 
 
 def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):

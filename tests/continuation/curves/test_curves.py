@@ -23,6 +23,7 @@ from .util import (
     imperfect,
     named,
     ring,
+    steep,
     wing,
 )
 
@@ -33,10 +34,6 @@ def folds():
 
 def unit_circle(u, v):
     return u[0] ** 2 + u[1] ** 2 - 1.0
-
-
-def steep(u, v):
-    return v[0] + 0.4 * v[1]
 
 
 def uneven(u, v):

@@ -32,13 +32,12 @@ def test_it_passes_where_the_equilibrium_turns():
 
 @pytest.mark.parametrize(("n", "accuracy"), [(10, 1e-10), (300, 1e-9)])
 def test_sparse(n, accuracy):
-    homotopy = Diffusing(n=n)
-    B, frequency = homotopy.hopf
-    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(B + 0.01))
-    path = continuation.trace(curve, box={"lam": (None, 1.2)})
-    exact = np.array([Diffusing(A, n).hopf for A in path.lam])
-    assert np.abs(path.u[:, -3:-1] - exact).max() <= accuracy
-    assert abs(path.y[0, -1] - frequency) <= accuracy
+    homotopy = Diffusing(n)
+    curve = Curve(Family(homotopy, "turn"), Kind.HOPF, (np.zeros(2 * n), homotopy.rate(1) + 0.01))
+    path = continuation.trace(curve, box={"lam": (None, 4.0)})
+    assert path.success
+    np.testing.assert_allclose(path.y[:, -2], homotopy.rate(1), rtol=accuracy)
+    np.testing.assert_allclose(path.y[:, -1], path.lam, rtol=accuracy)
 
 
 def test_no_pair_near_the_axis_is_said():

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from attrs import field, frozen
 
 from continuation import DEFAULT, SERIES, TargetValue, TurningPoint, from_functions, trace
 from continuation.auditing import refine
-from continuation.controllers import AllgowerGeorg, Bounds, SeriesRange
+from continuation.controllers import SeriesRange
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Euclidean
@@ -84,33 +83,6 @@ def test_no_choice_of_order_and_safety_loses_the_path(order, safety):
 def test_settings_are_checked(bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
         Taylor(**bad)
-
-
-@frozen
-class Noting:
-    """A controller that notes the orders which it is told."""
-
-    orders: list[int]
-    rule: AllgowerGeorg = field(factory=AllgowerGeorg)
-    bounds: Bounds = field(factory=Bounds)
-
-    def init(self):
-        return self.rule.init()
-
-    def update(self, state, attempt):
-        self.orders.append(attempt.order)
-        return self.rule.update(state, attempt)
-
-
-@pytest.mark.parametrize(
-    ("predictor", "orders"),
-    # Of the rational curves the one that reaches farthest is taken, which may be of an order less.
-    [(Taylor(), {15}), (Taylor(rational=True), {14, 15}), (Taylor(6), {6})],
-)
-def test_a_controller_is_told_the_order_that_was_used(predictor, orders):
-    noting = Noting([])
-    trace(Circle(), predictor=predictor, controller=noting)
-    assert set(noting.orders) == orders
 
 
 def floats(homotopy):

@@ -12,28 +12,15 @@ from hypothesis.extra.numpy import arrays
 from problems.lcp import LCP, MixedLCP, Outcome, solve
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.proof.certificate import certify, certify_exactly, farkas
-from problems.lcp.proof.compensated import accurate_w
 from problems.lcp.proof.rational import PRIMES, solve_exactly
 
 from ....exact import check_farkas, exact_w, gauss_jordan, solves
 
 SMALL = st.integers(-2, 2)
-WIDE = st.floats(-1e40, 1e40, allow_nan=False).filter(lambda v: v == 0 or abs(v) > 1e-40)
 
 
 def dense_or_sparse(A, q, sparse):
     return LCP(sp.csr_array(A) if sparse else A, q)
-
-
-@given(st.data(), st.integers(1, 5), st.booleans())
-@settings(deadline=None)
-def test_accurate_w_is_within_its_bound(data, n, sparse):
-    A = data.draw(arrays(float, (n, n), elements=WIDE))
-    q, x = data.draw(arrays(float, n, elements=WIDE)), data.draw(arrays(float, n, elements=WIDE))
-    problem = dense_or_sparse(A, q, sparse)
-    w, bound = accurate_w(problem, x)
-    for value, limit, truth in zip(w, bound, exact_w(problem, x)):
-        assert abs(Fraction(value) - truth) <= Fraction(limit)
 
 
 NO_SOLUTIONS = {
