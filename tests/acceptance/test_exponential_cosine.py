@@ -50,14 +50,6 @@ def test_the_right_end_and_every_turning_point(n, preset, longest):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("n", "preset"), [*((n, preset) for n in (2, 3) for preset in (FAST, CONSERVATIVE)), *((n, DEFAULT) for n in TABLE)]
-)
-def test_the_right_length(n, preset):
-    length = arclength(ExponentialCosine(n), trace(ExponentialCosine(n), preset=preset))
-    assert length == pytest.approx(TABLE[n][1], rel=1e-8)
-
-
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import TurningPoint, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint, trace
 from continuation.controllers import AllgowerGeorg, Bounds
 from problems.bifurcation import FreudensteinRoth
-
-from ..util import every_preset
 
 TABLE = [
     ("turning point of component 0", (14.28309125009385, -1.741376892197492, 0.258577871376728)),
@@ -18,27 +16,20 @@ TABLE = [
 ]
 
 
-def assert_all_limit_points(path):
+@pytest.mark.parametrize(
+    "options",
+    [
+        *({"preset": preset} for preset in (FAST, DEFAULT, CONSERVATIVE)),
+        *({"controller": AllgowerGeorg(bounds=Bounds(maximum=longest))} for longest in (30.0, 20.0, 3.0, 0.5)),
+    ],
+    ids=["FAST", "DEFAULT", "CONSERVATIVE", "30", "20", "3", "0.5"],
+)
+def test_freudenstein_roth_under_every_preset_and_whatever_the_longest_step(options):
+    path = trace(FreudensteinRoth(), events=[TurningPoint(0)], **options)
     assert path.status is continuation.Status.REACHED_TARGET
     assert [event.name for event in path.events] == [name for name, _ in TABLE]
     for event, (_, point) in zip(path.events, TABLE):
         np.testing.assert_allclose(event.u, point, rtol=0, atol=1e-10)
     np.testing.assert_allclose(path.endpoint.u, (5.0, 4.0, 1.0), rtol=1e-9)
     assert path.endpoint.lam == 1.0
-
-
-@every_preset
-def test_freudenstein_roth_under_every_preset(preset):
-    assert_all_limit_points(trace(FreudensteinRoth(), events=[TurningPoint(0)], preset=preset))
-
-
-@pytest.mark.parametrize("longest", [30.0, 20.0, 3.0, 0.5])
-def test_freudenstein_roth_whatever_the_longest_step(longest):
-    path = trace(FreudensteinRoth(), events=[TurningPoint(0)], controller=AllgowerGeorg(bounds=Bounds(maximum=longest)))
-    assert_all_limit_points(path)
-
-
-def test_freudenstein_roth_within_sixty_factorisations():
-    path = trace(FreudensteinRoth(), events=[TurningPoint(0)])
-    assert_all_limit_points(path)
-    assert path.counts.factorizations <= 60
+    assert options.get("preset") is not DEFAULT or path.counts.factorizations <= 60

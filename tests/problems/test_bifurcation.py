@@ -73,17 +73,6 @@ def test_truths_are_those_that_were_published(found, published):
     np.testing.assert_allclose(found, published, rtol=3e-15)
 
 
-@pytest.mark.parametrize("theta", [0.5, 3.0, 4.798714561030935, 9.0])
-def test_bratu_solution_satisfies_the_differential_equation(theta):
-    # Differences of second order: halving h divides their error by 4.
-    errors = []
-    for n in (49, 99):
-        x = np.arange(1, n + 1) / (n + 1)
-        defect = Bratu1D(n).residual(truth.bratu.solution_1d(x, theta), float(truth.bratu.parameter_1d(theta)))
-        errors.append(np.abs(defect).max() * (n + 1) ** 2)
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02)
-
-
 def test_aircraft_without_an_equilibrium_near_level_flight_says_so(monkeypatch):
     monkeypatch.setattr("problems.bifurcation.aircraft._NEWTON_STEPS", 1)
     with pytest.raises(ArithmeticError, match=r"elevator = 0\.1: no equilibrium at aileron 0"):

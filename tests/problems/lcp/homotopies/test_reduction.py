@@ -6,12 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
-from continuation.linear.symmetric import Cholesky
 from problems import lcp
-from problems.lcp.strategies import matrices
 
 from .util import bordered_at, every, interior, made, random_lcp
 
@@ -60,27 +56,6 @@ def test_singular_matrix_is_said_to_be_singular():
     homotopy = lcp.WangHomotopy(lcp.LCP([[1.0]], [1.0]))
     with pytest.raises(ArithmeticError, match=r"singular|not finite"):
         homotopy.bordered(np.zeros(2), 0.0, np.array([1.0, 0.0, 0.0])).solve(np.ones(2), 1.0)
-
-
-@given(A=matrices("PSD", n=st.integers(1, 4)), seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=50, deadline=None)
-def test_psd_matrix_gives_cholesky(A, seed):
-    """G is positive definite wherever x, z1, z2, w > 0, whatever the rank of A."""
-    rng = np.random.default_rng(seed)
-    homotopy = made(lcp.KKTHomotopy, lcp.LCP(A, np.ones(len(A))), rng)
-    y, lam = homotopy.start()[0], 0.9
-    y[len(A) :] *= rng.uniform(0.2, 5.0, 2 * len(A))
-    assume((homotopy.problem.w(y[: len(A)]) + lam * homotopy.rho > 0.05).all())
-    assert isinstance(homotopy.bordered(y, lam, np.ones(y.size + 1)).quick.core.factor, Cholesky)
-
-
-@pytest.mark.parametrize("make", [lcp.YuHomotopy, lcp.WangHomotopy, lcp.KojimaMegiddoMizunoHomotopy, lcp.XuHomotopy])
-@pytest.mark.parametrize("kind", ["symmetric psd", "psd"])
-def test_a_symmetric_psd_matrix_alone_gives_cholesky(make, kind):
-    rng = np.random.default_rng(0)
-    homotopy = made(make, random_lcp(rng, 6, kind), rng)
-    quick = homotopy.bordered(*interior(rng, homotopy, 0.5), np.ones(13)).quick
-    assert isinstance(quick.core.factor, Cholesky) if kind == "symmetric psd" else quick is None
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """The homotopies with bounds: the checks of every plug-in, their starts, and what row sufficiency is good for."""
 
+from itertools import cycle
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -20,8 +22,7 @@ MONOTONE = np.array([[2.0, 1.0, 0.0, 0.0], [-1.0, 1.0, 0.5, 0.0], [0.0, -0.5, 3.
 EVERY_KIND = lcp.MixedLCP(MONOTONE, [-1.0, 2.0, -6.0, 0.5], [0.0, -INF, -1.0, -INF], [INF, 1.0, 1.0, INF])
 
 
-@pytest.mark.parametrize("name", BOUNDED)
-@pytest.mark.parametrize("sparse", [False, True])
+@pytest.mark.parametrize(("name", "sparse"), list(zip(BOUNDED, cycle([False, True]))))
 def test_every_check_of_a_plug_in_passes(name, sparse):
     problem = EVERY_KIND
     if sparse:
