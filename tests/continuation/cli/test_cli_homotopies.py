@@ -1,8 +1,7 @@
-"""``continuation plugins``, ``trace`` and ``check``: any homotopy by its name, from a shell."""
+"""``continuation trace`` and ``check``: any homotopy by its name, from a shell."""
 
 import json
 
-import numpy as np
 import pytest
 
 from continuation.archive import open_archive
@@ -29,14 +28,6 @@ def test_a_homotopy_without_target_is_asked_for_none(run):
     assert status == FAILURE
     end = next(line for line in out.splitlines() if line.startswith("end"))
     assert float(end.split("=")[1]) < -1.0
-
-
-def test_the_lcp_of_a_file(run, tmp_path):
-    np.savez(tmp_path / "p.npz", A=[[1, -1], [-1, 1]], q=[-0.5, 2])
-    for name in ("kkt", "wang", "yu", "xu", "kmm"):
-        status, out, _ = run("trace", name, f"file={tmp_path / 'p.npz'}", "--json")
-        assert status == SUCCESS, name
-        np.testing.assert_allclose(json.loads(out)["y"][:2], [0.5, 0], atol=1e-8)
 
 
 def test_cite_prints_bibtex(run):

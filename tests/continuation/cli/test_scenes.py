@@ -9,16 +9,6 @@ import pytest
 from continuation.cli import SUCCESS
 
 
-def test_a_scene_by_its_name(run, tmp_path):
-    picture = tmp_path / "block.png"
-    status, out, err = run("solve", "scene", "block", "speed=0.03", "--plot", picture)
-    assert (status, err) == (SUCCESS, "")
-    assert "scene      block speed=0.03" in out
-    assert "friction impulse  -0.03 N s" in out
-    assert "2 tangential impulses: friction" in out
-    assert picture.read_bytes().startswith(b"\x89PNG")
-
-
 def test_as_json(run):
     status, out, _ = run("solve", "scene", "cournot", "costs=[10,20]", "--json")
     assert status == SUCCESS

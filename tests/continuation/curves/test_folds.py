@@ -1,26 +1,12 @@
-"""Curves of folds by differences, in banded and sparse families, and of the aircraft; others are in `test_units.py`."""
+"""Curves of folds in families of every structure; those in closed form are in `test_units.py`."""
 
 import numpy as np
 import pytest
 
 import continuation
 from continuation import Curve, Family, TargetValue
-from problems.bifurcation import Cusp
 
 from .util import GelfandBanded, first_fold, named
-
-
-def test_the_whole_curve_by_differences_since_a_validator_wants_floats():
-    path = continuation.trace_both(
-        Curve(Family(Cusp(1.0), "splitting"), first_fold(Cusp(1.0))),
-        box={"lam": (-4.0, 4.0), "y": (-16.0, 16.0)},
-        tolerance=1e-12,
-    )
-    _, a, b = path.u.T
-    assert np.abs(27.0 * a**2 - 4.0 * b**3).max() <= 1e-10
-    (cusp,) = named(path, "cusp")
-    assert np.abs(cusp.u).max() <= 1e-10
-    assert {np.sign(u) for u in a} >= {-1.0, 1.0}
 
 
 @pytest.mark.parametrize("kind", ["banded", "sparse", "symmetric"])

@@ -10,7 +10,6 @@ from continuation.jets import (
     Jet,
     JetDomainError,
     directional_derivatives,
-    evaluate,
     jacobian,
     path_series,
     second_derivatives,
@@ -88,33 +87,6 @@ def test_compositions(f, reference, x0):
     assert_series(taylor(f, x0, ORDER), by_mpmath(reference, x0))
 
 
-def test_powers_mix_whole_and_fractional_exponents():
-    exponents = np.array([3, -1, 0.5, 0, 2.5, 1])
-    found = taylor(lambda x: x**exponents, 1.7, 8)
-    for k, exponent in enumerate(exponents):
-        assert_series(found[:, k], by_mpmath(lambda x, p=exponent: x ** mp.mpf(p), 1.7, 8))
-    # whole powers are exact at a zero, where fractional ones have no series
-    assert np.array_equal(taylor(lambda x: x ** np.array([0, 1, 3]), 0.0, 3), np.eye(4)[:, [0, 1, 3]])
-
-
-tame = st.lists(st.floats(-1, 1), min_size=12, max_size=12)
-
-
-INVERSES = [
-    (np.exp, np.log), (np.expm1, np.log1p), (np.sin, np.arcsin), (np.cos, np.arccos), (np.tan, np.arctan),
-    (np.sinh, np.arcsinh), (np.tanh, np.arctanh), (np.square, np.sqrt), (lambda y: y**3, np.cbrt),
-    (lambda y: np.cosh(y) - 1.0, lambda y: np.arccosh(y + 1.0)), (np.reciprocal, np.reciprocal),
-    (lambda y: y**2.5, lambda y: y**0.4),
-]  # fmt: skip
-
-
-@given(st.floats(0.3, 0.75), tame)
-def test_a_function_of_its_inverse_is_the_identity(x0, rest):
-    x = Jet([x0, *(0.05 * np.array(rest))])  # inside every domain, and the series' coefficients stay small
-    for f, inverse in INVERSES:
-        np.testing.assert_allclose(f(inverse(x)).c, x.c, rtol=0, atol=1e-12, err_msg=str(inverse))
-
-
 @settings(max_examples=20)
 @given(st.floats(0.5, 2.0), st.floats(-2, 2))
 def test_directional_derivatives_agree_with_mpmath(x0, v):
@@ -156,13 +128,6 @@ def test_second_derivatives_are_those_of_the_jacobian(m):
     wanted = (np.array([1.0, -8.0, 8.0, -1.0]) @ np.array(jacobians).reshape(4, -1)).reshape(found.shape) / (12.0 * h)
     np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
     np.testing.assert_array_equal(second_derivatives(lambda x: x[:1] * 0.0 + 1.0, x, v), np.zeros((1, m)))
-
-
-def test_evaluate_sums_the_polynomial():
-    jet = Jet([[1.0, 2], [3, 4], [5, 6]])
-    assert np.array_equal(evaluate(jet, 2.0), [27, 34])
-    assert np.array_equal(evaluate(jet, [[0.0, 2.0]]), [[[1, 2], [27, 34]]])
-    assert evaluate(jet[0], 2.0) == 27
 
 
 # --- errors -----------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The one list of options: documented, typed, checked, and the same for everything that takes options."""
+"""The one list of options: checked, and the same for everything that takes options."""
 
 import numpy as np
 import pytest

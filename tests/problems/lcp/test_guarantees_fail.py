@@ -1,4 +1,4 @@
-"""Where the paper's guarantees fail: counterexamples found, shrunk and in closed form, and the exact class instead."""
+"""Where the paper's guarantees fail: from the middle of two solutions, and beside it, where they hold again."""
 
 import numpy as np
 import pytest

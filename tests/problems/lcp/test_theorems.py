@@ -4,6 +4,8 @@ Numbers are those of Dutta, Das and Jana, "Bounded Homotopy Path Approach to Fin
 Problems". Where their statement is wrong (3.7, 3.9) or unproven (3.4) the test is of what is true in its place.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -12,7 +14,7 @@ from continuation import Status, trace
 from problems.lcp import KKTHomotopy, certify, random_start
 from problems.lcp.classes.exact import ExactMatrix
 from problems.lcp.strategies import feasible_lcps, lcps
-from problems.paper import COUNTEREXAMPLES
+from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
 from ...util import share
 
@@ -133,3 +135,17 @@ def test_row_sufficient_matrices_are_solved(pair):
     assert path.status is Status.REACHED_TARGET
     certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0), 1e-8)
     assert certificate.solves(1e-8), (certificate.relative_residual, path.message)
+
+
+@share(25)
+@given(feasible_lcps())
+@example((EXAMPLES[9].problem, EXAMPLES[9].x0))
+def test_reduced_and_full_steps_agree(pair):
+    """The path with n + 1 unknowns a solve is that with 3n + 1, factored whole and differentiated by jets."""
+    one = KKTHomotopy(*pair)
+    names = ("target", "metric", "start", "residual", "jacobian", "max_step")
+    full = trace(SimpleNamespace(**{name: getattr(one, name) for name in names}))
+    reduced = trace(one)
+    assert full.status is reduced.status
+    np.testing.assert_allclose(full.u, reduced.u, rtol=1e-8, atol=1e-8)
+    assert [turn.step for turn in full.turning_points] == [turn.step for turn in reduced.turning_points]

@@ -1,4 +1,4 @@
-"""The LCP homotopies: their equations, derivatives, series and steps."""
+"""The LCP homotopies: their equations, by hand, and how far they go."""
 
 import numpy as np
 import pytest

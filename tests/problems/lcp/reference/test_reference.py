@@ -1,4 +1,4 @@
-"""The reference methods do what is known of them: the table of the ten examples, P matrices, rays, cycling."""
+"""The reference methods do what is known of them: the table of the ten examples, P matrices, rays."""
 
 import numpy as np
 import pytest
