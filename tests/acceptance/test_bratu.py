@@ -39,11 +39,6 @@ def test_the_fold_in_two_dimensions(m):
     assert m not in bratu.FOLD_MAX_2D or fold.y.max() == pytest.approx(bratu.FOLD_MAX_2D[m], abs=1e-11)
 
 
-@pytest.mark.parametrize(("homotopy", "lam", "most"), [(Bratu1D(1000), 0.99, 40), (Bratu2D(50), 1.99, 50)])
-def test_the_upper_branch_within_so_many_factorisations(homotopy, lam, most):
-    assert upper_branch(homotopy, lam)[0].counts.factorizations <= most
-
-
 def test_the_number_of_steps_does_not_grow_with_the_grid():
     lengths = [len(upper_branch(Bratu1D(n), 1.0)[0]) for n in (50, 500, 5000)]
     assert max(lengths) <= 1.3 * min(lengths)

@@ -1,12 +1,9 @@
-"""Bratu's problem: the continuum in closed form, and folds of the difference equations.
+"""Bratu's problem: folds of the difference equations.
 
 The tables were computed by an independent Newton method on Moore and Spence's system, to the digits shown.
 """
 
 from __future__ import annotations
-
-import numpy as np
-from scipy.optimize import brentq
 
 FOLD_1D = {
     100: (3.513651506259, 1.186668404831),
@@ -21,9 +18,3 @@ FOLD_2D = {10: 6.795336259705, 20: 6.804690882680, 30: 6.806555879189, 50: 6.807
 
 FOLD_MAX_2D = {50: 1.390069754724, 100: 1.391255352067}
 """m: max u at the fold of `problems.bifurcation.Bratu2D`."""
-
-
-def continuum_fold_1d() -> tuple[float, float, float]:
-    """(theta, lam, max u) at the continuum's fold: z tanh z = 1, z = th/4, lam = 8 z^2/cosh(z)^2."""
-    z: float = brentq(lambda z: z * np.tanh(z) - 1.0, 1.0, 1.5, xtol=1e-15)
-    return 4.0 * z, float(8.0 * (z / np.cosh(z)) ** 2), float(2.0 * np.log(np.cosh(z)))

@@ -1,9 +1,9 @@
-"""The Taylor predictor: coefficients, range, order, dense output, and how few factorisations it needs."""
+"""The Taylor predictor: coefficients, range, order and dense output."""
 
 import numpy as np
 import pytest
 
-from continuation import DEFAULT, SERIES, TargetValue, TurningPoint, from_functions, trace
+from continuation import DEFAULT, SERIES, TargetValue, from_functions, trace
 from continuation.auditing import refine
 from continuation.controllers import SeriesRange
 from continuation.counts import Counts
@@ -13,7 +13,6 @@ from continuation.point.linearization import linearize
 from continuation.predictors import Taylor
 from continuation.predictors.taylor import coefficients_at
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
-from tests.truth import exponential_cosine, freudenstein_roth
 
 from ...util import by_preset
 
@@ -33,31 +32,6 @@ def test_circle_coefficients_are_those_of_the_square_root():
     np.testing.assert_allclose(c[1::2, 0], 0.0, atol=1e-15)
     np.testing.assert_allclose(c[:, 1], np.eye(13)[1], atol=1e-15)
     assert evaluator.counts.factorizations == 1
-
-
-def folds(points):
-    return sorted(points, key=lambda u: u[1])
-
-
-@pytest.mark.parametrize("rational", [False, True])
-def test_freudenstein_roth_in_at_most_25_factorisations(rational):
-    path = trace(FreudensteinRoth(), preset=SERIES, predictor=Taylor(rational=rational), events=[TurningPoint(0)])
-    np.testing.assert_allclose(path.endpoint.u, [5, 4, 1], atol=1e-12)
-    found = [event.u for event in path.events if event.name.startswith("turning point")]
-    truth = [*freudenstein_roth.limit_points("x1"), *freudenstein_roth.limit_points("lam")]
-    np.testing.assert_allclose(folds(found), folds(truth), atol=1e-10)
-    assert path.counts.factorizations <= 25
-
-
-def test_exponential_cosine_needs_one_factorisation_a_step_and_half_those_of_hermite():
-    series, hermite = (trace(ExponentialCosine(8), preset=preset) for preset in (SERIES, DEFAULT))
-    end = exponential_cosine.curve(8, np.array(exponential_cosine.end(8)))
-    for path in (series, hermite):
-        np.testing.assert_allclose(path.endpoint.u, end, atol=1e-10)
-        assert len(path.turning_points) == 24
-    assert 2 * series.counts.factorizations <= 1.2 * hermite.counts.factorizations
-    few = trace(ExponentialCosine(2), preset=SERIES)
-    assert few.counts.factorizations == few.counts.accepted + 1
 
 
 def test_dense_output_is_on_the_path_everywhere():
