@@ -13,7 +13,6 @@ from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.proof.verdict import stationary
 from problems.nonlinear import InteriorHomotopy, MixedComplementarity, solve_complementarity
 
-from ...test_normal_map import kojima_shindo
 from .util import stationarity
 
 BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
@@ -86,6 +85,14 @@ def test_an_end_of_the_kkt_path_is_stationary(seed):
     assert not stationary(homotopy.problem, y + 0.1)
     x, _, z, _ = homotopy.split(y)
     assert stationarity(homotopy.problem).relative_residual(np.append(x, z)) <= 1e-8
+
+
+def kojima_shindo(x):
+    a, b, c, d = x
+    return np.stack([
+        3 * a * a + 2 * a * b + 2 * b * b + c + 3 * d - 6, 2 * a * a + a + b * b + 10 * c + 2 * d - 2,
+        3 * a * a + a * b + 2 * b * b + 2 * c + 9 * d - 9, a * a + 3 * b * b + 2 * c + 3 * d - 3,
+    ])  # fmt: skip
 
 
 def test_both_solutions_of_kojima_and_shindo():
