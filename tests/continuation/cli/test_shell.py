@@ -89,14 +89,19 @@ def test_a_problem_comes_on_stdin(run, monkeypatch, form):
     assert json.loads(out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
 
 
-def test_colours_are_for_terminals(monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
+@pytest.mark.parametrize(
+    ("text", "good", "stream", "plain", "painted"),
+    [
+        ("SOLVED", True, Terminal(), "", "\x1b[32mSOLVED\x1b[0m"),
+        ("DIVERGED", False, Terminal(), "", "\x1b[31mDIVERGED\x1b[0m"),
+        ("SOLVED", True, io.StringIO(), "", "SOLVED"),
+        ("SOLVED", True, Terminal(), "1", "SOLVED"),
+    ],
+)
+def test_colours_are_for_terminals(monkeypatch, text, good, stream, plain, painted):
+    monkeypatch.setenv("NO_COLOR", plain)
     monkeypatch.setenv("TERM", "xterm")
-    assert paint("SOLVED", True, Terminal()) == "\x1b[32mSOLVED\x1b[0m"
-    assert paint("DIVERGED", False, Terminal()) == "\x1b[31mDIVERGED\x1b[0m"
-    assert paint("SOLVED", True, io.StringIO()) == "SOLVED"
-    monkeypatch.setenv("NO_COLOR", "1")
-    assert paint("SOLVED", True, Terminal()) == "SOLVED"
+    assert paint(text, good, stream) == painted
 
 
 def test_a_sweep_shows_its_progress():
