@@ -47,6 +47,11 @@ def test_branch_points_that_part_are_refused():
         continuation.trace(curve)
 
 
+def test_a_condition_that_nothing_near_meets_has_no_curve():
+    curve = Curve(imperfect, Monitor(lambda u, v: 1.0 + u[0] ** 2), (np.array([-1.2]), 1.4), mu=0.1)
+    assert continuation.trace(curve).status is continuation.Status.START_NOT_ON_PATH
+
+
 def test_kinks_until_another_switch_vanishes():
     homotopy = Bent()
     (_, kink) = continuation.trace(homotopy, start=(np.array([-1.6]), -0.8), box={"lam": (None, 2.0)}).kinks

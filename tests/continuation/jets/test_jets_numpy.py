@@ -171,26 +171,27 @@ SIGNED = Jet([[-2.0, 1.0, 3.0], [1.0, 2.0, -1.0]])
 
 
 @pytest.mark.parametrize(
-    ("found", "expected"),
+    ("f", "expected"),
     [
-        (SIGNED > 0, [False, True, True]),
-        (np.ones(3) <= SIGNED, [False, True, True]),
-        (Jet([[0.0, 1, 3], [0, 0, 0]]) == SIGNED, [False, True, True]),
-        (SIGNED != 1, [True, False, True]),
-        (np.less(SIGNED, 0), [True, False, False]),
-        (np.abs(SIGNED), [[2, 1, 3], [-1, 2, -1]]),
-        (np.fabs(SIGNED), [[2, 1, 3], [-1, 2, -1]]),
-        (np.maximum(SIGNED, 0.5), [[0.5, 1, 3], [0, 2, -1]]),
-        (np.minimum(2.0, SIGNED), [[-2, 1, 2], [1, 2, 0]]),
-        (np.clip(SIGNED, -1, 2), [[-1, 1, 2], [0, 2, 0]]),
-        (np.where(SIGNED > 0, SIGNED, 0.0), [[0, 1, 3], [0, 2, -1]]),
-        (SIGNED[SIGNED > 0], [[1, 3], [2, -1]]),
-        (SIGNED[0] < SIGNED[1] < SIGNED[2], True),
-        (bool(SIGNED[0]), True),
-        (max(SIGNED, key=lambda entry: entry.c[0]), [3, -1]),
+        (lambda x: x > 0, [False, True, True]),
+        (lambda x: np.ones(3) <= x, [False, True, True]),
+        (lambda x: Jet([[0.0, 1, 3], [0, 0, 0]]) == x, [False, True, True]),
+        (lambda x: x != 1, [True, False, True]),
+        (lambda x: np.less(x, 0), [True, False, False]),
+        (lambda x: np.abs(x), [[2, 1, 3], [-1, 2, -1]]),
+        (lambda x: np.fabs(x), [[2, 1, 3], [-1, 2, -1]]),
+        (lambda x: np.maximum(x, 0.5), [[0.5, 1, 3], [0, 2, -1]]),
+        (lambda x: np.minimum(2.0, x), [[-2, 1, 2], [1, 2, 0]]),
+        (lambda x: np.clip(x, -1, 2), [[-1, 1, 2], [0, 2, 0]]),
+        (lambda x: np.where(x > 0, x, 0.0), [[0, 1, 3], [0, 2, -1]]),
+        (lambda x: x[x > 0], [[1, 3], [2, -1]]),
+        (lambda x: x[0] < x[1] < x[2], True),
+        (lambda x: bool(x[0]), True),
+        (lambda x: max(x, key=lambda entry: entry.c[0]), [3, -1]),
     ],
 )
-def test_values_choose_by_the_leading_coefficient(found, expected):
+def test_values_choose_by_the_leading_coefficient(f, expected):
+    found = f(SIGNED)
     np.testing.assert_array_equal(getattr(found, "c", found), expected)
 
 
