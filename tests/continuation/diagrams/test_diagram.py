@@ -87,10 +87,12 @@ def test_branches_that_leave_branches_are_all_there_none_twice_and_none_compared
     assert len(found.at(5.5)) == 3**4
 
 
-@pytest.mark.parametrize("executor", [ThreadPoolExecutor, ProcessPoolExecutor])
 @pytest.mark.parametrize(
-    "options",
-    [{"box": FIVE}, {"box": {**FIVE, "y": (-1.6, 1.7)}, "budget": Budget(steps=12)}],
+    ("executor", "options"),
+    [
+        (ThreadPoolExecutor, {"box": FIVE}),
+        (ProcessPoolExecutor, {"box": {**FIVE, "y": (-1.6, 1.7)}, "budget": Budget(steps=12)}),
+    ],
     ids=["whole", "box and budget"],
 )
 def test_several_workers_find_the_same_branches_in_the_same_order(executor, options):

@@ -58,7 +58,7 @@ def test_the_path_of_a_feasible_start_is_feasible_throughout_and_ends_at_lambda_
         assert problem.w(step.y[: problem.n]).min() > 0
 
 
-@share(40)
+@share(25)
 @given(lcps(), st.integers(0, 2**32 - 1))
 def test_the_path_of_any_positive_start_is_positive_throughout(problem, seed):
     """The same off the feasible set, with w = A x + q + lambda (w0 - A x0 - q) in the place of A x + q."""
@@ -89,7 +89,7 @@ def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
         assert step.tangent[-1] < 0
 
 
-@share(100)
+@share(60)
 @with_the_counterexamples
 def test_the_end(pair):
     """With dx = x - z2, dw = w - z1: A' dx = -dw and x_i w_i + z1_i z2_i = dx_i dw_i >= 0 (from Remark 2).
@@ -123,7 +123,7 @@ def test_the_end(pair):
         assert values[-1] <= SMALL * max(1.0, values[0])
 
 
-@share(100)
+@share(60)
 @given(feasible_lcps("row_sufficient"))
 def test_row_sufficient_matrices_are_solved(pair):
     """What is true in the place of Theorems 3.7 and 3.9: where A is row sufficient every KKT point solves the LCP.

@@ -64,7 +64,7 @@ def test_the_paths_do_not_depend_on_the_order_of_the_unknowns(data):
     assert len(other.turning_points) == len(one.turning_points)
 
 
-@share(40)
+@share(25)
 @given(lcps("P"), st.integers(0, 2**32 - 1))
 @pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
 def test_every_start_leads_to_the_unique_solution(make, problem, seed):
@@ -96,7 +96,7 @@ def test_solve_agrees_with_brute_force(problem):
 
 
 @pytest.mark.parametrize("make", TWO_VECTOR, ids=lambda make: make.__name__)
-@share(25)
+@share(15)
 @given(pair=feasible_lcps(n=SMALL_ORDERS))
 def test_an_end_of_the_earlier_homotopies_is_a_solution(make, pair):
     """Yu, Zhao, Xu, Wang, Kojima-Megiddo-Mizuno: at lambda = 0 they ask for y = A x + q, x y = 0 and x, y >= 0."""
