@@ -99,15 +99,6 @@ def test_why_a_path_ended_before_its_end_is_said_where_it_ends(axes):
     assert said.xy == (path.endpoint.lam, path.endpoint.y[0])
 
 
-def test_against_arclength(path, axes):
-    plot_components(path, axes, against="arclength", components=[1])
-    s, y = lines(axes)[0].get_data()
-    assert (s[0], s[-1]) == (0, path.arclength[-1])
-    np.testing.assert_allclose(y, path(s)[:, 1], atol=2e-3)
-    assert marks(axes)[0].get_xdata()[0] == path.turning_points[0].arclength
-    assert axes.get_ylabel() == "$y_{1}$"
-
-
 @pytest.mark.parametrize(("asked", "drawn"), [({}, 7), ({"components": range(12)}, 12)])
 def test_colours_and_styles_both_tell_curves_apart_of_which_there_are_seven_unless_asked(axes, asked, drawn):
     plot_components(trace(straight(15)), axes, **asked)

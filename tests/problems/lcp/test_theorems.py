@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from continuation import Status, trace
 from problems.lcp import KKTHomotopy, certify, random_start
-from problems.lcp.classes.exact import ExactMatrix
 from problems.lcp.strategies import feasible_lcps, lcps
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
@@ -67,26 +66,6 @@ def test_the_path_of_any_positive_start_is_positive_throughout(problem, seed):
     for step in trace(homotopy).steps[:-1]:
         assert step.y.min() > 0
         assert (problem.w(step.y[: problem.n]) + step.lam * homotopy.rho).min() > 0
-
-
-@share(40)
-@given(feasible_lcps("PSD"))
-def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
-    """A PSD, symmetric or not: G = (1 - lam) [A + A' + diag(z1/x) + A' diag(z2/w) A] + lam I > 0, so lambda falls.
-
-    G is taken as the rational matrix that it is in floats, its leading minors exactly.
-    """
-    problem, _ = pair
-    n, A = problem.n, problem.A
-    path = kkt_path(pair)
-    assert not path.turning_points
-    assert (np.diff(path.lam) < 0).all()
-    for step in path.steps[:-1]:
-        x, z1, z2 = step.y[:n], step.y[n : 2 * n], step.y[2 * n :]
-        inner = A + A.T + np.diag(z1 / x) + A.T @ np.diag(z2 / problem.w(x)) @ A
-        minors = ExactMatrix.of((1 - step.lam) * inner + step.lam * np.eye(n)).minors
-        assert all(minors[(1 << k) - 1] > 0 for k in range(1, n + 1))
-        assert step.tangent[-1] < 0
 
 
 @share(60)

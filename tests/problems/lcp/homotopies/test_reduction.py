@@ -72,37 +72,6 @@ def test_what_is_taken_for_semidefinite_in_any_unit(A, expected, power):
     assert lcp.Structure(lcp.LCP(A, [0, 0])).semidefinite is expected
 
 
-def sparse_examples(rng):
-    n = 40
-    band = sp.diags_array([rng.standard_normal(n - abs(k)) for k in (-2, 0, 1)], offsets=[-2, 0, 1])
-    scattered = sp.random_array((n, n), density=0.08, rng=rng) + sp.diags_array(rng.standard_normal(n))
-    arrow = sp.lil_array((n, n))
-    arrow.setdiag(rng.standard_normal(n))
-    arrow[0, :] = rng.standard_normal(n)
-    return {"banded": sp.csr_array(band), "scattered": sp.csr_array(scattered), "full row": sp.csr_array(arrow)}
-
-
-@every
-@pytest.mark.parametrize("kind", ["banded", "scattered", "full row"])
-def test_sparse_and_banded_agree_with_dense(make, kind):
-    rng = np.random.default_rng(7)
-    A, q = sparse_examples(rng)[kind], rng.standard_normal(40)
-    sparse, dense = lcp.LCP(A, q), lcp.LCP(A.toarray(), q)
-    one, other = made(make, sparse, np.random.default_rng(1)), made(make, dense, np.random.default_rng(1))
-    y, lam = interior(rng, one, 0.7)
-    (system, M, rhs), (reference, expected_M, _) = (
-        bordered_at(h, y, lam, np.random.default_rng(2)) for h in (one, other)
-    )
-    assert np.allclose(one.residual(y, lam), other.residual(y, lam), rtol=1e-12, atol=1e-12)
-    assert sp.issparse(one.jacobian(y, lam)[0])
-    assert np.allclose(M, expected_M, rtol=1e-14)
-    expected = reference.solve(rhs[:-1], rhs[-1])
-    for found, digits in ((system, 1e-10), (system.robust, 1e-9)):
-        z = found.solve(rhs[:-1], rhs[-1])
-        assert np.allclose(z, expected, rtol=1e-9, atol=digits * np.abs(expected).max())
-        assert found.sign == reference.sign
-
-
 @pytest.mark.parametrize("make", [lcp.KKTHomotopy, lcp.WangHomotopy])
 def test_tridiagonal_problem_costs_no_dense_array(make):
     n = 100_000

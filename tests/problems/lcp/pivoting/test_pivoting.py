@@ -4,7 +4,6 @@ import numpy as np
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
@@ -42,26 +41,6 @@ def test_pivots_end_at_a_solution_or_on_a_ray():
         else:
             assert path.ended is Ended.RAY
     assert solved > 200
-
-
-def test_pivots_that_wait_are_the_same_ones(monkeypatch):
-    """Put into the table together or one by one, with ties, which look at all of it, and without."""
-    draws = map(np.random.default_rng, range(10))
-    large = [LCP(np.abs(r.standard_normal((60, 60))), -r.random(60)) for r in draws]
-    most = 0
-    for problem in (*map(random_problem, range(50)), *large):
-        ends = []
-        for largest in (10**9, 0):
-            monkeypatch.setattr(dictionary, "LARGE", largest)
-            path = covering(problem, np.ones(problem.n))
-            ends.append((path.run(1000), path.pivots, tuple(path.active)))
-            (one,) = path.dictionaries
-            pivoted, basic = one.table.copy(), one.basic.copy()
-            assert one.rebuilt() > -1e-7
-            np.testing.assert_allclose(one.table[np.argsort(one.basic), -1], pivoted[np.argsort(basic), -1], atol=1e-7)
-        assert ends[0] == ends[1]
-        most = max(most, path.pivots)
-    assert most > dictionary.DELAYED
 
 
 def test_a_singular_basis_is_noticed():

@@ -1,7 +1,5 @@
 """Certificates: compensated residuals against Fractions, exact solutions, Farkas multipliers against exact truth."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -12,9 +10,8 @@ from hypothesis.extra.numpy import arrays
 from problems.lcp import LCP, MixedLCP, Outcome, solve
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.proof.certificate import certify, certify_exactly, farkas
-from problems.lcp.proof.rational import PRIMES, solve_exactly
 
-from ....exact import check_farkas, exact_w, gauss_jordan, solves
+from ....exact import check_farkas, exact_w, solves
 
 SMALL = st.integers(-2, 2)
 
@@ -60,33 +57,6 @@ def test_parts_of_the_certificate():
     assert certificate.residual == 1.0
     # x1 = -1/2 is 1/3 of the terms of row 1, 1/2 + 1, and w2 = -1 is 1/7 of those of row 2, 3 + 4.
     assert certificate.relative_residual == 1.0 / 3.0
-
-
-@given(st.data(), st.integers(1, 5), st.integers(1, 5))
-@settings(deadline=None)
-def test_solve_exactly_against_gauss_jordan(data, m, k):
-    """Consistent systems of any shape and rank get an exact solution; inconsistent ones None."""
-    matrix = data.draw(arrays(np.int64, (m, k), elements=st.integers(-3, 3))).astype(object)
-    right = data.draw(st.lists(st.integers(-5, 5), min_size=m, max_size=m))
-    guess = data.draw(arrays(float, k, elements=st.floats(-4, 4)))
-    found = solve_exactly(matrix, right, guess)
-    if found is not None:
-        numerators, denominator = found
-        assert denominator > 0
-        assert list(matrix @ np.array(numerators, dtype=object)) == [b * denominator for b in right]
-    else:
-        ranks = [np.linalg.matrix_rank(M.astype(float)) for M in (matrix, np.column_stack([matrix, right]))]
-        assert ranks[0] < ranks[1]
-    if m == k:
-        truth, _ = gauss_jordan(matrix.tolist(), right)
-        if truth is not None:
-            assert [Fraction(v, found[1]) for v in found[0]] == truth
-
-
-def test_a_determinant_divisible_by_the_first_prime():
-    """Singular modulo the first prime, regular in truth: the next prime solves it."""
-    matrix = np.array([[PRIMES[0], 0], [0, 1]], dtype=object)
-    assert solve_exactly(matrix, [1, 2], np.array([0.0, 2.0])) == ([1, 2 * PRIMES[0]], PRIMES[0])
 
 
 @given(st.data(), st.integers(1, 4), st.booleans(), st.sampled_from([0.0, 1e-9]))
