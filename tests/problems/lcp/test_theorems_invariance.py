@@ -17,11 +17,6 @@ SMALL_ORDERS = st.integers(1, 3)
 TWO_VECTOR = [homotopy.make for name, homotopy in HOMOTOPIES.items() if name != "kkt"]
 
 
-def powers(n):
-    """Units of n unknowns: powers of two, by which every product is exact."""
-    return st.lists(st.integers(-6, 6).map(lambda k: 2.0**k), min_size=n, max_size=n).map(np.array)
-
-
 def end(homotopy):
     path = trace(homotopy)
     assert path.status is Status.REACHED_TARGET
@@ -36,18 +31,6 @@ def unique_solution(problem):
     """That of a P-matrix (Cottle, Pang and Stone, Theorem 3.3.7), exact but for its rounding."""
     (solution,) = solve_by_enumeration(problem).solutions
     return solution.point
-
-
-@share(30)
-@given(st.data())
-def test_the_path_of_wang_scales_with_all_units(data):
-    """x -> x/E, y -> D y takes Wang's path for A, q to that for D A E, D q, with any positive diagonals D and E."""
-    problem, x0 = data.draw(feasible_lcps("P"))
-    left, right = data.draw(powers(problem.n)), data.draw(powers(problem.n))
-    y0 = problem.w(x0)
-    scaled = LCP(left[:, None] * problem.A * right, left * problem.q)
-    x = end(WangHomotopy(problem, x0, y0))
-    assert near(right * end(WangHomotopy(scaled, x0 / right, left * y0)), x)
 
 
 @share(30)
