@@ -25,6 +25,23 @@ def test_the_benchmark_of_units_finds_nothing_wrong(capsys, mode, number):
     assert campaign.CAMPAIGN.run(number, 3, [mode]) == 0, capsys.readouterr().out
 
 
+@pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
+def test_scaling_brings_rows_and_columns_to_about_one_keeps_symmetry_and_is_undone(make):
+    rng = np.random.default_rng(0)
+    M, D, E = rng.standard_normal((30, 30)), powers(rng, 30, 26), powers(rng, 30, 26)
+    problem = lcp.LCP(make(D[:, None] * (M + M.T) * E), rng.standard_normal(30) * 1e7)
+    scaled = balanced(problem)
+    A = scaled.problem.A.toarray() if scaled.problem.sparse else scaled.problem.A
+    np.testing.assert_array_equal(A, A.T)
+    for largest in (np.abs(A).max(axis=0), np.abs(A).max(axis=1)):
+        assert 0.2 < largest.min() <= largest.max() < 3.0
+    assert 0.5 <= np.abs(scaled.problem.q).max() < 2.0
+    u = rng.random(30)
+    np.testing.assert_array_equal(scaled.u(scaled.x(u)), u)
+    np.testing.assert_array_equal(np.ldexp(problem.w(scaled.x(u)), scaled.rows), scaled.problem.w(u))
+    assert scaled.exact
+
+
 @pytest.mark.parametrize(("bounds", "rows", "columns"), [(False, 300, 300), (True, 900, 100)])
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None)
