@@ -87,20 +87,6 @@ def test_what_stability_and_a_hopf_point_cost_on_a_large_sparse_branch(target, f
     assert all(step.observed["covered"] for step in watched.steps)
 
 
-def test_a_jacobian_that_is_one_array_all_the_time_does_no_harm():
-    whole, J, column = brusselator(1.0), np.empty((2, 2)), np.empty(2)
-
-    def filled(y, B):
-        made = 2.0 * y[0] * y[1]
-        J[:], column[:] = [[made - B - 1.0, y[0] ** 2], [B - made, -(y[0] ** 2)]], [-y[0], y[0]]
-        return J, column
-
-    one = from_functions(whole.residual, filled, start=([1.0, 0.5], 0.5), target=4.0)
-    found = [trace(homotopy, observers=[Stability()], max_step=0.1) for homotopy in (whole, one)]
-    stable, other = ([step.observed["rightmost"] for step in path.steps] for path in found)
-    np.testing.assert_allclose(other, stable, atol=1e-9)
-
-
 @every_preset
 def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(preset):
     # MatCont's catalytic oscillator: long steps have a Hopf point, the split of its pair and a turning point in one.

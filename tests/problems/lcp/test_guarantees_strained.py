@@ -100,19 +100,6 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
     assert apart <= path.end_error + reference.end_error
 
 
-@for_interior_paths
-@pytest.mark.parametrize("n", [1, 2, 8])
-@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
-def test_all_pairs_zero_is_an_end_of_half_powers(make, n, preset):
-    """LCP(0, I): x = w = 0, where x and w go like the square root of lambda; the endgame's limit has all digits."""
-    path = trace(make(LCP(np.eye(n), np.zeros(n)), np.arange(1.0, n + 1.0)), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert path.winding_number == 2
-    assert "lam - target|^(1/2)" in path.message
-    assert path.endpoint.y.max() < 1e-12
-    assert path.end_error < 1e-7
-
-
 @share(25)
 @given(planted_lcps("degenerate", "P", st.integers(1, 3)))
 def test_degenerate_vertices_of_p_matrices(pair):
