@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, trace
+from continuation import Budget, HopfPoint, Kind, Stability, Status, TargetValue, from_functions, trace
 from continuation.archive import open_archive, resume
+from continuation.controllers import Bounds, Fixed
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Symmetric, factor_bordered
+from continuation.metric import Euclidean
 
 from ..util import every_preset
 from .curves.util import Diffusing
@@ -119,6 +121,13 @@ def test_a_pair_of_branch_points_within_a_step_is_told_apart_by_the_count():
     path = trace(homotopy, observers=[Stability()])
     np.testing.assert_allclose([event.lam for event in path.events], [1.0, 1.003], rtol=0, atol=1e-10)
     assert any("change sides" in str(failed) for step in path.steps for failed in step.rejected)
+
+
+def test_what_lies_before_a_terminal_event_is_accounted_for():
+    options = {"controller": Fixed(Bounds(initial=1.0)), "metric": Euclidean(), "target": 3.0}
+    path = trace(Forks((1.0,)), observers=[Stability()], events=[TargetValue(1.2)], **options)
+    assert [event.name for event in path.events] == ["branch point", "lam = 1.2"]
+    assert [step.rejections for step in path.steps] == [0, 0]
 
 
 def test_what_never_can_be_told_apart_does_not_stop_the_path():

@@ -40,8 +40,8 @@ def test_cite_prints_bibtex(run):
 
 
 def test_check_says_what_is_wrong_with_a_homotopy_of_the_working_directory(run, own):
-    assert run("check", f"{own}:Own")[0] == SUCCESS
-    status, out, _ = run("check", f"{own}:Wrong")
+    assert run("check", f"{own}:Own", "--steps", 4)[0] == SUCCESS
+    status, out, _ = run("check", f"{own}:Wrong", "--steps", 4)
     assert status == FAILURE
     assert "failed   jacobian\n" in out
     assert "H_y[0, 0] is 2, expected 1 (by jets), at the start" in out

@@ -22,7 +22,7 @@ from continuation.archive import open_archive
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 
-from ...util import by_preset, every_preset
+from ...util import every_preset
 from ..util import scalar
 from .util import branch_points, pitchfork, two_graphs
 
@@ -183,8 +183,14 @@ NEAR = {
 }
 
 
-@by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
-@pytest.mark.parametrize("name", NEAR)
+@pytest.mark.parametrize(
+    ("name", "preset"),
+    [
+        *((name, preset) for name in NEAR for preset in (FAST, DEFAULT, CONSERVATIVE)),
+        *((name, SERIES) for name in NEAR if "millionth" in name),
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
 def test_curves_that_come_near_each_other_do_not_cross(name, preset):
     homotopy, options, turns, end = NEAR[name]
     path = trace(homotopy, preset=preset, **options)
