@@ -14,6 +14,10 @@ from ...util import every_preset
 PRESETS = continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE
 
 
+def named(value):
+    return getattr(value, "name", str(value))
+
+
 class Trunk:
     """(E - f(lam)) z + z^3 = 0 along z = y / D - c sin(w lam) = 0: H' loses as many ranks as E has eigenvalues f(lam).
 
@@ -66,7 +70,9 @@ def passed(trunk, preset, **options):
     return path
 
 
-@pytest.mark.parametrize(("seed", "preset"), [*zip(range(6), cycle(PRESETS)), *((93, preset) for preset in PRESETS)])
+@pytest.mark.parametrize(
+    ("seed", "preset"), [*zip(range(6), cycle(PRESETS)), *((93, preset) for preset in PRESETS)], ids=named
+)
 def test_every_branch_point_is_found_with_its_multiplicity(seed, preset):
     trunk = Trunk(seed)
     path = passed(trunk, preset)
@@ -75,7 +81,9 @@ def test_every_branch_point_is_found_with_its_multiplicity(seed, preset):
 
 
 @pytest.mark.parametrize(
-    ("seed", "beside", "preset"), list(zip(range(6), (1e-16, 1e-13, 1e-10, 1e-8, 1e-6, 1e-4), cycle(PRESETS)))
+    ("seed", "beside", "preset"),
+    list(zip(range(6), (1e-16, 1e-13, 1e-10, 1e-8, 1e-6, 1e-4), cycle(PRESETS))),
+    ids=named,
 )
 def test_a_start_beside_a_symmetric_trunk_is_put_on_it(seed, beside, preset):
     # What Newton's method leaves of an unknown, 1e-40, is no size: 28 of 100 paths ended at their start.
