@@ -172,9 +172,7 @@ CLAIMS = {
         ),
     },
     "robustness": {
-        "kkt_solves_n_matrices": lambda r: (
-            solved(r, "KKT", family="N") == 1.0 and solved(r, "Wang", family="N") == 0.0
-        ),
+        "kkt_solves_n_matrices": lambda r: solved(r, "KKT", family="N") == 1.0 and solved(r, "Wang", family="N") == 0.0,
         "zhao_never_arrives": lambda r: solved(r, "Zhao") == 0.0,
         "solve_is_robust_where_theory_says_so": lambda r: all(
             solved(r, "solve, auto", family=family) == 1.0 for family in ("semidefinite", "scaled P", "copositive")

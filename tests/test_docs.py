@@ -110,18 +110,3 @@ def test_the_files_that_a_page_names_exist(page):
     if page.name == "CONTRIBUTING.md":
         named += re.findall(r"`((?:continuation|problems|tests|docs)/[\w/*.]*)`", text)
     assert [name for name in named if not list(ROOT.glob(name))] == []
-
-
-def test_a_failing_block_is_named_with_its_line(tmp_path):
-    text = "# Title\n\n```python\nx = 1\n```\n\n```python\nx += 1\nx / 0\n```\n"
-    with pytest.raises(ZeroDivisionError) as caught:
-        list(executed.run(text, tmp_path, "page.md"))
-    last = caught.traceback[-1]
-    assert (Path(last.path).name, last.lineno + 1) == ("page.md", 9)
-
-
-def test_what_a_block_prints_and_draws_follows_it(tmp_path):
-    text = "```python\nprint('said')\nopen('drawn.png', 'wb').close()\n```\n\nAfter.\n"
-    page = executed.with_results(text, tmp_path, "page.md", "/generated/page")
-    assert "said\n```\n\n![drawn](/generated/page/drawn.png)\n" in page
-    assert page.index("said\n") < page.index("After.")

@@ -4,8 +4,6 @@ import ast
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[1]
 
 UPWARDS = {("continuation.path.path", "continuation.archive.growing")}
@@ -66,22 +64,3 @@ def test_the_engine_imports_no_problems():
         if target.split(".")[0] == "problems"
     }
     assert outside == set()
-
-
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [
-        ("from room.other import f", "from room import one"),
-        ("from . import other", "def g():\n    from .one import f"),
-        ("import room.other", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import room.one"),
-    ],
-    ids=["absolute", "inside a function", "for types"],
-)
-def test_a_circle_is_seen_however_it_is_written(tmp_path, one, other):
-    room = tmp_path / "room"
-    room.mkdir()
-    for name, text in (("__init__", ""), ("one", one), ("other", other)):
-        (room / f"{name}.py").write_text(text)
-    assert set(circle(graph(tmp_path, "room"))) == {"room.one", "room.other"}
-    (room / "other.py").write_text("")
-    assert circle(graph(tmp_path, "room")) == []

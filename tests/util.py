@@ -1,6 +1,7 @@
 """What tests of several rooms have in common."""
 
 import importlib.util
+import io
 import os
 import sys
 from functools import cache
@@ -39,6 +40,18 @@ def benchmark(name):
 def share(examples):
     """So many of a hundred examples of the profile: a hundred times as many in the nightly one."""
     return settings(max_examples=settings.default.max_examples * examples // 100)
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+def interrupt():
+    """Ctrl-C is pressed."""
+    raise KeyboardInterrupt
 
 
 every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE)

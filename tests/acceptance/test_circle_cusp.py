@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from continuation import Status, TargetValue, trace
+from continuation import Status, trace
 from continuation.auditing.length import arclength
-from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
 
 from ..util import every_preset
@@ -23,31 +22,6 @@ def test_the_circle_closes_after_one_turn(preset, direction):
 
 
 @every_preset
-def test_the_circle_measures_its_own_length(preset):
-    path = trace(Circle(), preset=preset, metric=Euclidean())
-    assert path.endpoint.arclength == pytest.approx(2.0 * np.pi, rel=1e-8)
-
-
-def test_a_start_in_a_fold_of_the_circle():
-    class FromTheTop(Circle):
-        def start(self):
-            return np.zeros(1), 1.0
-
-    path = trace(FromTheTop())
-    assert path.status is Status.CLOSED
-    lowest = [event.lam for event in path.turning_points if event.lam < 0.0]
-    assert lowest == pytest.approx([-1.0], abs=1e-12)
-
-
-def test_the_circle_stops_where_it_is_told():
-    path = trace(Circle(), events=[TargetValue(0.5, terminal=2)])
-    assert path.status is Status.STOPPED_AT_EVENT
-    assert path.endpoint.lam == 0.5
-    np.testing.assert_allclose(path.endpoint.u, (-np.sqrt(0.75), 0.5), rtol=0, atol=1e-14)
-    assert [event.name for event in path.events] == ["lam = 0.5", "turning point", "lam = 0.5"]
-
-
-@every_preset
 @pytest.mark.parametrize("splitting", [1.0, 0.003, 0.01, 0.0324, 0.07, 30.0])
 def test_both_folds_of_the_cusp(preset, splitting):
     path = trace(Cusp(splitting), preset=preset)
@@ -59,9 +33,3 @@ def test_both_folds_of_the_cusp(preset, splitting):
     # The published digits of lambda = 1.
     if splitting == 1.0:
         assert folds[0][1] == pytest.approx(0.3849001794597505, abs=1e-14)
-
-
-def test_a_cusp_that_does_not_turn():
-    path = trace(Cusp(-0.7))
-    assert path.status is Status.REACHED_TARGET
-    assert path.turning_points == []

@@ -1,19 +1,12 @@
 """Freudenstein-Roth: every limit point, in the order of the path, and none that does not exist."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from numpy.polynomial import Polynomial
-from scipy.integrate import quad
 
 import continuation
-from continuation import TurningPoint, trace
-from continuation.auditing.length import arclength
+from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint, trace
 from continuation.controllers import AllgowerGeorg, Bounds
 from problems.bifurcation import FreudensteinRoth
-
-from ..util import every_preset
 
 TABLE = [
     ("turning point of component 0", (14.28309125009385, -1.741376892197492, 0.258577871376728)),
@@ -23,61 +16,20 @@ TABLE = [
 ]
 
 
-def assert_all_limit_points(path):
+@pytest.mark.parametrize(
+    "options",
+    [
+        *({"preset": preset} for preset in (FAST, DEFAULT, CONSERVATIVE)),
+        *({"controller": AllgowerGeorg(bounds=Bounds(maximum=longest))} for longest in (30.0, 20.0, 3.0, 0.5)),
+    ],
+    ids=["FAST", "DEFAULT", "CONSERVATIVE", "30", "20", "3", "0.5"],
+)
+def test_freudenstein_roth_under_every_preset_and_whatever_the_longest_step(options):
+    path = trace(FreudensteinRoth(), events=[TurningPoint(0)], **options)
     assert path.status is continuation.Status.REACHED_TARGET
     assert [event.name for event in path.events] == [name for name, _ in TABLE]
     for event, (_, point) in zip(path.events, TABLE):
         np.testing.assert_allclose(event.u, point, rtol=0, atol=1e-10)
     np.testing.assert_allclose(path.endpoint.u, (5.0, 4.0, 1.0), rtol=1e-9)
     assert path.endpoint.lam == 1.0
-
-
-@every_preset
-def test_freudenstein_roth_under_every_preset(preset):
-    assert_all_limit_points(trace(FreudensteinRoth(), events=[TurningPoint(0)], preset=preset))
-
-
-@pytest.mark.parametrize("longest", [30.0, 20.0, 3.0, 0.5])
-def test_freudenstein_roth_whatever_the_longest_step(longest):
-    path = trace(FreudensteinRoth(), events=[TurningPoint(0)], controller=AllgowerGeorg(bounds=Bounds(maximum=longest)))
-    assert_all_limit_points(path)
-
-
-def test_freudenstein_roth_within_sixty_factorisations():
-    path = trace(FreudensteinRoth(), events=[TurningPoint(0)])
-    assert_all_limit_points(path)
-    assert path.counts.factorizations <= 60
-
-
-def test_counts_are_those_of_the_homotopy():
-    calls = {"residual": 0, "jacobian": 0}
-    homotopy = FreudensteinRoth()
-
-    def counted(name, function):
-        def call(y, lam):
-            calls[name] += 1
-            return function(y, lam)
-
-        return call
-
-    path = trace(
-        continuation.from_functions(
-            counted("residual", homotopy.residual),
-            counted("jacobian", homotopy.jacobian),
-            start=homotopy.start(),
-            target=1.0,
-        )
-    )
-    assert path.counts.residuals == calls["residual"]
-    assert path.counts.jacobians == calls["jacobian"]
-    assert path.counts.factorizations <= calls["jacobian"]
-    assert path.counts.accepted == len(path) - 1
-
-
-def test_the_length_is_that_of_the_exact_curve():
-    # x1, x2 = t and lam are cubics in t, from t = -2 to t = 4.
-    dx1 = Polynomial([114.0 / 6.0, 8.0 / 6.0, -33.0 / 6.0])
-    dlam = Polynomial([-6.0 / 12.0, -4.0 / 12.0, 3.0 / 12.0])
-    limits = np.sort(np.concatenate(([-2.0, 4.0], dx1.roots(), dlam.roots())))
-    pieces = [quad(lambda t: float(np.hypot(np.hypot(dx1(t), 1.0), dlam(t))), a, b)[0] for a, b in pairwise(limits)]
-    assert arclength(FreudensteinRoth(), trace(FreudensteinRoth())) == pytest.approx(sum(pieces), rel=1e-9)
+    assert options.get("preset") is not DEFAULT or path.counts.factorizations <= 60

@@ -54,17 +54,6 @@ def test_the_work(series):
     assert series[10].counts.factorizations <= 80
 
 
-def test_the_turns_of_example_10_are_those_of_the_default_path(series, default):
-    turns, others = series[10].turning_points, default[10].turning_points
-    assert len(turns) == len(others) == 2
-    for one, other in zip(turns, others):
-        assert one.lam == pytest.approx(other.lam, abs=1e-9)
-        np.testing.assert_allclose(one.y, other.y, rtol=1e-6, atol=1e-6)
-    # Before the first turn lambda falls, between the two it rises.
-    assert turns[0].lam < turns[1].lam
-    assert turns[0].arclength < turns[1].arclength
-
-
 def test_the_square_root_end_of_example_7(series, default):
     for path in (series[7], default[7]):
         assert path.winding_number == 2

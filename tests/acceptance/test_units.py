@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from attrs import evolve
 
 from continuation import (
@@ -11,7 +10,6 @@ from continuation import (
     FAST,
     SERIES,
     Budget,
-    Kind,
     Status,
     TargetValue,
     Tracer,
@@ -113,27 +111,6 @@ def test_turning_points_in_celsius_and_in_kelvin(preset, offset, a):
 
 
 @every_preset
-@pytest.mark.parametrize(("y_unit", "lam_unit"), [(1e-8, 1.0), (1.0, 1e-8), (1e6, 1e-6), (1e-4, 1e8)])
-def test_a_reactor_in_other_units(preset, y_unit, lam_unit):
-    """A -> B in a stirred tank (Uppal, Ray and Poore 1974): on y_2 = 4.5 y_1 two folds, at roots of one equation."""
-
-    def residual(y, lam):
-        y, lam = y / y_unit, lam / lam_unit
-        rate = lam * (1.0 - y[0]) * np.exp(y[1])
-        return np.stack([rate - y[0], 18.0 * rate - 4.0 * y[1]])
-
-    path = trace(from_functions(residual, start=(np.zeros(2), 0.0), target=0.15 * lam_unit), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert {event.kind for event in path.events} == {Kind.TURNING_POINT}
-    # lam = y / ((1 - y) exp(4.5 y)) is extremal where 4.5 y (1 - y) = 1.
-    y = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(0.25 - 1.0 / 4.5)
-    np.testing.assert_allclose([e.y[0] / y_unit for e in path.turning_points], y, rtol=1e-8)
-    np.testing.assert_allclose(
-        path.turning_points[0].lam / lam_unit, y[0] / ((1 - y[0]) * np.exp(4.5 * y[0])), rtol=1e-12
-    )
-
-
-@every_preset
 @pytest.mark.parametrize("width", bends.WIDTHS)
 def test_s_bends_inside_a_step(preset, width):
     """Of widths down to a thousandth of the path; `bends.py` does this 100 times each. FAST may miss one in twelve."""
@@ -225,19 +202,6 @@ def test_derivatives_of_a_residual_alone_wherever_zero_is(preset, scale):
     path = trace(homotopy, preset=preset)
     assert path.status is Status.REACHED_TARGET
     assert path.endpoint.y[0] - 1e5 == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-9)
-
-
-@every_preset
-def test_a_sparse_matrix_times_the_unknowns(preset):
-    """SERIES evaluates the residual on jets, A @ u too."""
-    A = sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(50, 50), format="csc") * 51.0**2
-    homotopy = from_functions(
-        lambda u, lam: A @ u + lam * np.exp(u),
-        lambda u, lam: (A + sp.diags_array(lam * np.exp(u)), np.exp(u)),
-        start=(np.zeros(50), 0.0),
-        target=2.0,
-    )
-    assert trace(homotopy, preset=preset).status is Status.REACHED_TARGET
 
 
 # -- what is called -----------------------------------------------------------------------------------------------

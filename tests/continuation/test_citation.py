@@ -1,33 +1,22 @@
 """What to quote: the parts of a run, the homotopy's own sources, each once, in BibTeX that can be read."""
 
-import re
-
 import numpy as np
 import pytest
 
 from continuation import SERIES, Budget, cite, from_functions, trace
 from continuation.archive import open_archive
-from continuation.citation import bibliography, entries, key, short
+from continuation.citation import entries, key
 from continuation.correctors import MoorePenrose
 from continuation.predictors import Taylor
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Pitchfork
 from problems.paper import EXAMPLES
 
-ENTRIES = [value for name, value in vars(bibliography).items() if name.isupper()]
 FEW = {"budget": Budget(steps=3)}
 
 
 def keys(source):
     return [key(entry) for entry in entries(cite(source))]
-
-
-def test_entries_are_bibtex_with_keys_of_their_own():
-    for entry in ENTRIES:
-        assert re.fullmatch(r"@(article|book|incollection|software)\{\w+,\n(  \w+ = \{.*\},\n)+\}", entry)
-        assert entry.count("{") == entry.count("}")
-        assert all(f"  {field} = " in entry for field in ("author", "title", "year"))
-    assert len({key(entry) for entry in ENTRIES}) == len(ENTRIES)
 
 
 def kkt(number):
@@ -77,15 +66,3 @@ def test_a_path_of_an_archive_knows_its_parts(tmp_path):
     path = trace(Bratu1D(10), archive=tmp_path / "a.h5", **FEW)
     with open_archive(tmp_path / "a.h5") as archive:
         assert keys(archive.path(0)) == keys(path)
-
-
-@pytest.mark.parametrize(
-    ("entry", "line"),
-    [
-        ("@book{X,\n  author = {Allgower, Eugene L. and Georg, Kurt},\n  year = {2003},\n}", "Allgower and Georg 2003"),
-        ("@misc{X,\n  author = {Yu and others},\n  year = {2006},\n}", "Yu et al. 2006"),
-        ("@misc{OnlyAKey,\n}", "OnlyAKey"),
-    ],
-)
-def test_an_entry_in_one_line(entry, line):
-    assert short(entry) == line

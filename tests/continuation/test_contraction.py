@@ -31,10 +31,3 @@ def test_when_it_ends_and_what_it_has_come_to(ratios, rule, done, count, stalled
     assert (iteration.count, iteration.stalled) == (count, stalled)
     assert iteration.x == pytest.approx(np.full(2, x), abs=1e-6)
     assert iteration.worst == pytest.approx(worst)
-
-
-def test_what_it_has_come_to_survives_an_increment_that_raises():
-    iteration, sizes = Iteration(np.zeros(1), Contraction(5)), iter([1.0, 0.25])
-    with pytest.raises(StopIteration):
-        iteration.run(lambda: np.array([next(sizes)]), largest, lambda size: False)
-    assert (iteration.x.tolist(), iteration.count) == ([1.25], 2)

@@ -10,6 +10,8 @@ from continuation.cli import main
 from problems import lcp
 from problems.bifurcation import Cusp
 
+from ..util import interrupt
+
 
 class Pressed(Cusp):
     """Ctrl-C is pressed where the parameter exceeds 0.2."""
@@ -48,10 +50,6 @@ def test_the_shell_says_what_is_kept(tmp_path, monkeypatch, capsys):
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith("continuation: interrupted after ")
     assert err.endswith(f"; what was traced is in {tmp_path / 'run.h5'}\n")
-
-
-def interrupt():
-    raise KeyboardInterrupt
 
 
 def test_a_loop_that_is_left_has_words_of_its_own():

@@ -20,11 +20,16 @@ def imported(*command):
     return found.stdout, modules & {"numpy", "scipy", "h5py", "attr"}
 
 
+# What `pip` makes of the entry point.
+SCRIPT = "import sys; sys.argv[1:] = ['--version']; from problems.commands.script import main; main()"
+
+
 @pytest.mark.parametrize(
     ("command", "printed"),
     [
         (("-c", "import continuation"), ""),
         (("-m", "continuation", "--version"), f"continuation {continuation.__version__}\n"),
+        (("-c", SCRIPT), f"continuation {continuation.__version__}\n"),
     ],
 )
 def test_the_package_by_itself_and_its_version_import_nothing(command, printed):

@@ -18,7 +18,6 @@ from continuation import (
     trace_both,
 )
 from continuation.archive import open_archive
-from continuation.arguments import plugins
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
@@ -82,18 +81,6 @@ def test_parts_keep_arclength_and_events_and_join_to_the_whole(ahead):
     assert steps(whole) == steps(ahead) == steps(ahead[:])
 
 
-def test_a_saved_path_is_read_as_it_was(tmp_path, both):
-    both.save(tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        again = archive.path(0)
-    np.testing.assert_array_equal(again.u, both.u)
-    np.testing.assert_array_equal(again.tangents, both.tangents)
-    assert steps(again)[1:] == steps(both)[1:]
-    assert (again.status, again.counts) == (both.status, both.counts)
-    with pytest.raises(FileExistsError):
-        both.save(tmp_path / "run.h5")
-
-
 def test_tables(ahead):
     pytest.importorskip("xarray")
     pytest.importorskip("pandas")
@@ -128,18 +115,6 @@ def test_refined_until_it_is_as_accurate_as_asked():
             assert fine.steps[event.step - 1].arclength <= event.arclength <= fine.steps[event.step].arclength
     assert worst[0] > 10.0 * worst[1] > 100.0 * worst[2]
     assert len(fine) > len(path)
-
-
-@pytest.mark.parametrize("preset", [FAST, DEFAULT])
-def test_many_chord_steps_go_no_farther_than_the_bound(preset):
-    path = trace(Circle(), target=-0.9999, preset=preset)
-    for s in np.linspace(0.0, path.arclength[-1], 41):
-        u, bound = path(s), path.error_bound(Circle(), s)
-        step = path.steps[int(np.clip(np.searchsorted(path.arclength, s, "right"), 1, len(path) - 1))]
-        matrix, end = np.vstack([2.0 * u, step.weights * np.array([-u[1], u[0]])]), u
-        for _ in range(20):
-            end = end - np.linalg.solve(matrix, [end @ end - 1.0, 0.0])
-        assert (np.abs(end - u) <= bound + 1e-15).all()
 
 
 class Empty(Circle):
@@ -217,20 +192,3 @@ def test_a_budget_of_arclength():
     assert path.status is Status.BUDGET_EXHAUSTED
     assert 2.0 <= path.arclength[-1] < 2.25
     assert path.message.endswith("Reached: 2 of arclength.")
-
-
-def test_an_exception_of_the_homotopys_own_is_no_edge_of_its_domain():
-    def residual(y, lam):
-        if lam > 0.5:
-            raise ValueError("the table ends")
-        return y - lam
-
-    path = trace(from_functions(residual, start=([0.0], 0.0), target=1.0))
-    assert path.status is Status.RAISED
-    assert "ValueError: the table ends (test_path.py, line " in path.message
-    assert path.lam[-1] == pytest.approx(0.5, abs=1e-8)
-
-
-@pytest.mark.parametrize("name", ["bratu-1d", "bratu-2d", "aircraft", "cusp", "pitchfork", "circle"])
-def test_every_plug_in_of_ours_ends_well_when_nothing_is_said(name):
-    assert trace(plugins.make(name)).success

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import Budget, Path, Stability, TargetValue, from_functions, switch_branch, trace
+from continuation import Budget, Path, TargetValue, from_functions, switch_branch, trace
 from continuation.plot import plot_bifurcation, plot_components, plot_heat, plot_profiles, plot_steps
 from problems.bifurcation import Bratu1D, Circle, Pitchfork
 
@@ -99,21 +99,6 @@ def test_why_a_path_ended_before_its_end_is_said_where_it_ends(axes):
     assert said.xy == (path.endpoint.lam, path.endpoint.y[0])
 
 
-def test_stability_is_said(axes):
-    trace(Pitchfork(), observers=[Stability()]).plot(axes)
-    assert axes.get_title(loc="right") == "solid: stable, dashed: not"
-    assert {line.get_linestyle() for line in lines(axes)} == {"-", "--"}
-
-
-def test_against_arclength(path, axes):
-    plot_components(path, axes, against="arclength", components=[1])
-    s, y = lines(axes)[0].get_data()
-    assert (s[0], s[-1]) == (0, path.arclength[-1])
-    np.testing.assert_allclose(y, path(s)[:, 1], atol=2e-3)
-    assert marks(axes)[0].get_xdata()[0] == path.turning_points[0].arclength
-    assert axes.get_ylabel() == "$y_{1}$"
-
-
 @pytest.mark.parametrize(("asked", "drawn"), [({}, 7), ({"components": range(12)}, 12)])
 def test_colours_and_styles_both_tell_curves_apart_of_which_there_are_seven_unless_asked(axes, asked, drawn):
     plot_components(trace(straight(15)), axes, **asked)
@@ -124,15 +109,6 @@ def test_colours_and_styles_both_tell_curves_apart_of_which_there_are_seven_unle
     assert legend(axes)[:: drawn - 1] == ["$y_{0}$", "$y_{11}$" if asked else "$y_{14}$"]
     # An axis runs as the path runs.
     assert axes.xaxis_inverted()
-
-
-def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
-    plot_bifurcation(path, axes)
-    lam, height = lines(axes)[0].get_data()
-    np.testing.assert_allclose(height**2, 1 - lam, atol=5e-3)
-    plot_bifurcation(path, axes, component=1)
-    assert lines(axes)[1].get_ydata()[0] == -1
-    assert axes.get_ylabel() == "$y_{1}$"
 
 
 def test_a_stored_path_without_tangents_is_smooth_and_turns_where_the_turning_point_is(path, axes):
@@ -174,21 +150,6 @@ def test_components_that_are_nan_throughout_are_left_out(path, axes):
     assert len(lines(axes)) == 1
     plot_bifurcation(stored, axes)
     assert np.isfinite(lines(axes)[-1].get_ydata()).all()
-
-
-def test_dense_output_with_nan_of_an_archive_is_drawn(path, axes):
-    class Padded:
-        def __init__(self, segment):
-            self.segment = segment
-
-        def at(self, t):
-            return np.where([False, True, False], np.nan, self.segment.at(t))
-
-    steps = [evolve(step, segment=step.segment and Padded(step.segment)) for step in path.steps]
-    plot_components(Path(steps), axes, components=[0], against="arclength")
-    (line,) = lines(axes)
-    assert np.isfinite(line.get_xydata()).all()
-    assert len(line.get_xdata()) > 3 * len(path)
 
 
 def test_several_branches_with_their_stability_and_their_points(axes):

@@ -9,15 +9,10 @@ import continuation
 from continuation.step import progress
 from continuation.step.progress import Progress
 
+from ..util import Terminal
+
 LINE = continuation.from_functions(lambda y, lam: y - lam, start=([1.0], 1.0))
 FOLD = continuation.from_functions(lambda y, lam: y**2 + lam - 1.0, start=([-1.0], 0.0), target=-0.5)
-
-
-class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
-
-    def isatty(self):
-        return True
 
 
 def shown(monkeypatch, homotopy, stream, seconds=0.0):

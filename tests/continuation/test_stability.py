@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
-from attrs import frozen
 
 from continuation import Budget, HopfPoint, Kind, Stability, Status, TargetValue, from_functions, trace
 from continuation.archive import open_archive, resume
@@ -14,6 +12,7 @@ from continuation.linear import Symmetric, factor_bordered
 from continuation.metric import Euclidean
 
 from ..util import every_preset
+from .curves.util import Diffusing
 from .diagrams.util import Forks
 
 
@@ -42,32 +41,6 @@ def catalyst(u, q2):
     oxidised = 10.0 * u[0] * u[1]
     first, second = 5.0 * z * z - 2.0 * u[0] ** 2 - oxidised, q2 * z - 0.1 * u[1] - oxidised
     return np.stack([first, second, 0.0675 * (z - 0.4 * u[2])])
-
-
-@frozen
-class Diffusing:
-    """Two species on n points, (d - lam) z + turning, both ends held at 0: z = 0, and a Hopf point for each mode."""
-
-    n: int = 20
-    target: float = 2.5
-    side: int = 1
-
-    def rate(self, mode):
-        return 0.08 * (self.n + 1) ** 2 * np.sin(0.5 * mode * np.pi / (self.n + 1)) ** 2
-
-    def start(self):
-        return np.zeros(2 * self.n), 0.0
-
-    def matrix(self, lam):
-        laplacian = (self.n + 1) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.n, self.n))
-        grow, turn = 0.02 * laplacian + lam * sp.eye_array(self.n), 3.0 * sp.eye_array(self.n)
-        return self.side * sp.csc_array(sp.block_array([[grow, -turn], [turn, grow]]))
-
-    def residual(self, y, lam):
-        return self.matrix(lam) @ y - self.side * y**3
-
-    def jacobian(self, y, lam):
-        return sp.csc_array(self.matrix(lam) - self.side * sp.diags_array(3.0 * y * y)), self.side * y
 
 
 @every_preset
@@ -114,20 +87,6 @@ def test_what_stability_and_a_hopf_point_cost_on_a_large_sparse_branch(target, f
     assert 4 * found - 1 <= more <= 4 * found
     assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + found)
     assert all(step.observed["covered"] for step in watched.steps)
-
-
-def test_a_jacobian_that_is_one_array_all_the_time_does_no_harm():
-    whole, J, column = brusselator(1.0), np.empty((2, 2)), np.empty(2)
-
-    def filled(y, B):
-        made = 2.0 * y[0] * y[1]
-        J[:], column[:] = [[made - B - 1.0, y[0] ** 2], [B - made, -(y[0] ** 2)]], [-y[0], y[0]]
-        return J, column
-
-    one = from_functions(whole.residual, filled, start=([1.0, 0.5], 0.5), target=4.0)
-    found = [trace(homotopy, observers=[Stability()], max_step=0.1) for homotopy in (whole, one)]
-    stable, other = ([step.observed["rightmost"] for step in path.steps] for path in found)
-    np.testing.assert_allclose(other, stable, atol=1e-9)
 
 
 @every_preset

@@ -15,13 +15,6 @@ def test_a_status_is_true_exactly_where_the_path_came_to_an_end_that_was_asked_f
     assert all(bool(status) == status.success == Path(status=status).success for status in Status)
 
 
-def test_numbers_are_those_of_the_archives():
-    assert [int(status) for status in Status] == list(range(17))
-    assert [kind.flag for kind in map(Kind, range(9))] == [
-        "regular", "start", "target", "turning_point", "branch_point", "event", "kink", "singular_point", "hopf",
-    ]  # fmt: skip
-
-
 def test_a_kind_shows_its_name_and_is_made_of_a_stored_number():
     path = trace(Cusp())
     assert {repr(step.kind) for step in path.steps} == {"Kind.REGULAR", "Kind.START", "Kind.TARGET"}

@@ -11,7 +11,6 @@ from problems import lcp
 from problems.charts import engine, families, rivals, robustness, scaling, scenes, subjects
 from problems.charts import lcp as lcp_charts
 from problems.charts.chandrasekhar import Chandrasekhar
-from problems.lcp.classes.exact import principal_minors
 from problems.scenes import Rival
 
 MODULES = (engine, lcp_charts, scaling, robustness, scenes)
@@ -42,17 +41,6 @@ def test_a_planted_problem_has_a_solution_and_depends_on_the_seed_alone(family):
     np.testing.assert_array_equal(problem.q, again.q)
     assert (problem.q != other.q).any()
     assert lcp.solve_by_enumeration(problem)
-
-
-def test_the_families_are_what_they_are_called():
-    random = np.random.default_rng(0)
-    for _ in range(5):
-        symmetric = families.semidefinite(random, 5)
-        assert np.linalg.eigvalsh(symmetric + symmetric.T).min() > -1e-12
-        scaled = (1e6 * families.scaled_p(random, 4)).round().astype(int).tolist()
-        assert min(principal_minors(scaled)) > 0
-        negative = (1e6 * families.n_matrix(random, 4)).round().astype(int).tolist()
-        assert max(principal_minors(negative)[1:]) < 0
     with pytest.raises(ValueError, match="family: expected one of"):
         families.planted("none", 2, 0)
 
@@ -70,16 +58,6 @@ def test_the_plain_loop_arrives_and_is_counted():
     assert not row.failed
     assert row.errors["end_point"] < 1e-10
     assert row.counts.factorizations > 0
-
-
-def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
-    monkeypatch.setattr(rivals, "installed", lambda module: False)
-    for module in (lcp_charts, robustness, scaling):
-        study = module.studies("smoke", True)[-1]
-        assert "Lemke" in [method.name for method in study.methods]
-        missing = ("quantecon", "piqp", "clarabel")
-        assert study.notes == [f"outside solvers: {', '.join(f'{name} is not installed' for name in missing)}"]
-    assert module.studies("smoke", False)[-1].notes == []
 
 
 def test_a_direct_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
@@ -118,25 +96,6 @@ def test_the_adapters_of_installed_solvers_work(name):
     x, iterations = solve(problem)
     assert lcp.certify(problem, x).solves(1e-6)
     assert iterations > 0
-
-
-def test_methods_for_the_lcp_are_judged_by_the_certificate():
-    problem = lcp_charts.problem("semidefinite", 5, 0)
-    study = chart.Study(
-        name="judged",
-        problems=[problem],
-        methods=[lcp_charts.path("KKT", lcp.KKTHomotopy), *lcp_charts.direct_methods(False)],
-        ladder=chart.tolerances(1e-8),
-        errors=[lcp_charts.RESIDUAL],
-        repeats=0,
-    )
-    rows = {row.method: row for row in chart.run(study).rows}
-    assert {name: row.failure for name, row in rows.items()} == dict.fromkeys(
-        ("KKT", "Lemke", "modulus", "min-Newton"), ""
-    )
-    assert rows["KKT"].errors["natural_residual"] < 1e-12
-    path = continuation.trace(lcp.KKTHomotopy(problem.subject))
-    assert rows["KKT"].counts == path.counts
 
 
 def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():

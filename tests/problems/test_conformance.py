@@ -8,8 +8,8 @@ from continuation import from_functions
 from continuation.arguments.plugins import available, make
 from continuation.testing import check_homotopy
 from problems import lcp
-from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Cusp, ExponentialCosine, Pitchfork
-from problems.nonlinear import brown, fixed_point, newton
+from problems.bifurcation import Bratu1D, Bratu2D, Cusp, ExponentialCosine, Pitchfork
+from problems.nonlinear import brown, newton
 
 SMALL = {
     "aircraft": {}, "bratu-1d": {"n": 8}, "bratu-2d": {"m": 4}, "brown-fixed-point": {"n": 4}, "circle": {}, "cusp": {},
@@ -35,10 +35,7 @@ Q = np.array([-1.0, 2.0, -0.5, 1.0, -2.0, 0.3])
 
 OTHERS = {
     "pitchfork, imperfect": lambda: Pitchfork(0.1),
-    "pitchfork, imperfect to the other side": lambda: Pitchfork(-2.0),
     "cusp without folds": lambda: Cusp(-1.0),
-    "aircraft, elevator down": lambda: Aircraft(-0.05),
-    "fixed point without a derivative": lambda: fixed_point(brown(3), np.zeros(3)),
     "newton": lambda: newton(brown(3), np.full(3, 0.8), brown(3).jacobian),
     "newton without a derivative": lambda: newton(brown(3), np.full(3, 0.8)),
     "kkt, off the feasible set": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6).toarray(), Q), x0=np.full(6, 0.1)),

@@ -1,13 +1,10 @@
 """Homotopies for F(x) = 0: derivatives in every matrix structure, capabilities by presence, checks at the door."""
 
-import pickle
-
 import numpy as np
 import pytest
 from scipy.sparse import csc_array, csr_array, issparse
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from continuation.homotopy import SupportsJacobian, SupportsTarget
 from continuation.linear import Banded, Operator, Symmetric
 from problems.nonlinear import brown, fixed_point, newton
 
@@ -20,15 +17,6 @@ def complex_step(function, u):
 
 def whole(homotopy):
     return lambda u: homotopy.residual(u[:-1], u[-1])
-
-
-@pytest.mark.parametrize("n", [1, 2, 5, 12])
-def test_brown_has_the_root_of_ones(n):
-    F = brown(n)
-    np.testing.assert_array_equal(F(np.ones(n)), np.zeros(n))
-    x = np.random.default_rng(n).normal(size=n)
-    np.testing.assert_allclose(F(x)[1:], x[1:] + x.sum() - (n + 1), rtol=0, atol=1e-13)
-    assert F(x)[0] == pytest.approx(np.prod(x) - 1, abs=1e-14)
 
 
 @pytest.mark.parametrize("zeros", [0, 1, 2])
@@ -44,39 +32,6 @@ def test_brown_of_another_size_is_refused():
         brown(3)(np.zeros(2))
     with pytest.raises(ValueError, match="n: expected at least 1, found 0"):
         brown(0)
-
-
-@both
-def test_path_joins_the_start_to_a_root(make):
-    F, a = brown(4), np.array([0.1, -0.2, 0.3, 0.4])
-    homotopy = make(F, a)
-    y, lam = homotopy.start()
-    assert (*y, lam, homotopy.target) == (*a, 1.0, 0.0)
-    np.testing.assert_array_equal(homotopy.residual(y, lam), np.zeros(4))
-    for x in (np.array([0.5, 2.0, -1.0, 0.0]), np.ones(4)):
-        np.testing.assert_array_equal(homotopy.residual(x, 0.0), F(x))
-
-
-def test_fixed_point_homotopy_reads_as_published_with_lam_reversed():
-    F, a, x, published = brown(3), np.zeros(3), np.array([0.2, -0.4, 0.9]), 0.3
-    expected = published * F(x) + (1 - published) * (x - a)
-    np.testing.assert_allclose(fixed_point(F, a).residual(x, 1 - published), expected, rtol=1e-14)
-
-
-def test_newton_homotopy_reads_as_published():
-    F, a, x = brown(3), np.array([2.0, 1.0, 3.0]), np.array([0.2, -0.4, 0.9])
-    np.testing.assert_allclose(newton(F, a).residual(x, 0.3), F(x) - 0.3 * F(a), rtol=1e-15)
-
-
-@both
-def test_capabilities_are_those_that_were_given(make):
-    F = brown(3)
-    for jacobian in (None, F.jacobian):
-        homotopy = make(F, np.zeros(3), jacobian)
-        assert isinstance(homotopy, SupportsJacobian) is (jacobian is not None)
-        assert isinstance(homotopy, SupportsTarget)
-        assert all(entry.startswith("@") for entry in homotopy.references)
-        np.testing.assert_array_equal(pickle.loads(pickle.dumps(homotopy)).start()[0], homotopy.start()[0])
 
 
 TRIDIAGONAL = np.diag([2.0, 3.0, 4.0, 5.0]) + np.diag([1.0, 1.0, 1.0], 1) + np.diag([1.0, 1.0, 1.0], -1)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
 from continuation import Budget, Kind, Monitor, Status, TargetValue, trace
 from continuation.linear import Banded, SingularError
 from continuation.testing import check_homotopy
 from problems.nonlinear import NormalMap, bratu_under_obstacle
+
+from .test_conformance import chain
 
 PSI = 2.0
 FOLD = 8.0 * np.exp(-PSI) * np.arccosh(np.exp(PSI / 2.0)) ** 2
@@ -51,11 +52,6 @@ def test_kojima_and_shindos_two_solutions_on_one_path():
     assert np.abs(solutions[-1] - [np.sqrt(6.0) / 2.0, 0.0, 0.0, 0.5]).max() < 1e-13
     # At lam = 0.3 it goes on in the fold of another piece: the parameter stands still there and turns neither way.
     assert [event.name for event in path.events[:2]] == ["kink", "kink"]
-
-
-def chain(n):
-    """A tridiagonal M-matrix, sparse."""
-    return sp.diags_array([np.full(n - 1, -1.0), np.full(n, 2.5), np.full(n - 1, -1.0)], offsets=[-1, 0, 1])
 
 
 def banded(n):

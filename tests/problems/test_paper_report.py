@@ -1,11 +1,8 @@
 """The ten examples end to end: solutions, archive, table, figure, and who else solves them."""
 
-import h5py
 import matplotlib as mpl
-import numpy as np
 import pytest
 
-from continuation.archive import open_archive
 from problems.paper import EXAMPLES
 from problems.paper_figures import draw_examples
 from problems.paper_methods import METHODS, compare, matrix
@@ -41,29 +38,6 @@ def test_the_table_has_the_counts_and_marks_the_false_claim(report):
     assert "Example 1" in remark
     assert "(0.1666667, 0)" in remark
     assert "0.17" in remark
-
-
-def test_the_archive_holds_all_paths_filled_up_with_nan(report):
-    rows, file = report
-    with open_archive(file) as archive:
-        for row, stored in zip(rows, archive, strict=True):
-            n = 3 * row.example.q.size
-            np.testing.assert_array_equal(stored.y[:, :n], row.path.y)
-            np.testing.assert_array_equal(stored.lam, row.path.lam)
-            assert np.isnan(stored.y[:, n:]).all()
-            assert stored.status is row.path.status
-            assert [turn.lam for turn in stored.turning_points] == [turn.lam for turn in row.path.turning_points]
-
-
-def test_the_archive_alone_is_enough_to_certify_an_end(report):
-    with open_archive(report[1]) as archive:
-        ends = [path.endpoint.y for path in archive]
-    with h5py.File(report[1]) as data:
-        for example, end in zip(CHOSEN, ends):
-            group = data[f"examples/{example.number}"]
-            A, q = group["A"][()], group["q"][()]
-            assert np.abs(np.minimum(end[: q.size], A @ end[: q.size] + q)).max() < 1e-6
-            assert group.attrs["label"] == example.label
 
 
 def test_the_figure_has_a_panel_an_example_and_marks_the_turns(report):

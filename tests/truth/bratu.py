@@ -1,14 +1,9 @@
-"""Bratu's problem: the continuum in closed form, and folds of the difference equations.
+"""Bratu's problem: folds of the difference equations.
 
 The tables were computed by an independent Newton method on Moore and Spence's system, to the digits shown.
 """
 
 from __future__ import annotations
-
-import numpy as np
-from scipy.optimize import brentq
-
-from continuation.arrays import Array
 
 FOLD_1D = {
     100: (3.513651506259, 1.186668404831),
@@ -23,20 +18,3 @@ FOLD_2D = {10: 6.795336259705, 20: 6.804690882680, 30: 6.806555879189, 50: 6.807
 
 FOLD_MAX_2D = {50: 1.390069754724, 100: 1.391255352067}
 """m: max u at the fold of `problems.bifurcation.Bratu2D`."""
-
-
-def parameter_1d(theta: Array) -> Array:
-    """The lam of the continuum's solution `theta`, from th = sqrt(2 lam) cosh(th/4)."""
-    return 0.5 * (theta / np.cosh(0.25 * theta)) ** 2
-
-
-def solution_1d(x: Array, theta: float) -> Array:
-    """u(x) = -2 ln(cosh((x - 1/2) th/2) / cosh(th/4)), the continuum's solution `theta` >= 0."""
-    u: Array = -2.0 * np.log(np.cosh(0.5 * theta * (x - 0.5)) / np.cosh(0.25 * theta))
-    return u
-
-
-def continuum_fold_1d() -> tuple[float, float, float]:
-    """(theta, lam, max u) at the continuum's fold: z tanh z = 1, z = th/4, lam = 8 z^2/cosh(z)^2."""
-    z: float = brentq(lambda z: z * np.tanh(z) - 1.0, 1.0, 1.5, xtol=1e-15)
-    return 4.0 * z, float(8.0 * (z / np.cosh(z)) ** 2), float(2.0 * np.log(np.cosh(z)))

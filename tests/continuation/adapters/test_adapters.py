@@ -108,42 +108,55 @@ def test_what_jet_does_not_know_arrives_through_points_of_the_path():
     assert any("points of the path" in note for note in path.counts.notes)
 
 
-def test_single_precision_is_refused():
-    jax = pytest.importorskip("jax")
+def in_single_precision():
+    import jax
+
     jax.config.update("jax_enable_x64", False)
     try:
-        with pytest.raises(ValueError, match=r"jax: expected double precision.*jax_enable_x64"):
-            continuation.from_jax(layers, ([0.0], 0.0))
+        continuation.from_jax(layers, ([0.0], 0.0))
     finally:
         jax.config.update("jax_enable_x64", True)
-    with pytest.raises(ValueError, match=r"residual: expected a function.*float64"):
-        by_jax(lambda y, lam: (y - lam).astype("float32"), ([0.0], 0.0))
-    with pytest.raises(ValueError, match=r"residual: expected a function.*float64"):
-        by_jax(lambda y, lam: lam, ([0.0, 1.0], 0.0))
-    with pytest.raises(ValueError, match="jacobian: expected one of dense, sparse, operator, found 'full'"):
-        by_jax(layers, ([0.0], 0.0), jacobian="full")
-    with pytest.raises(TypeError, match="residual: expected a function"):
-        by_jax(None, ([0.0], 0.0))
 
 
-def test_casadi_functions_of_another_shape_are_refused():
-    ca = pytest.importorskip("casadi")
+def by_casadi(rows=2, function=None):
+    import casadi as ca
+
     y, lam = ca.SX.sym("y", 2), ca.SX.sym("lam")
-    with pytest.raises(TypeError, match=r"function: expected a casadi.Function"):
-        continuation.from_casadi(len, ([0.0, 0.0], 0.0))
-    with pytest.raises(ValueError, match=r"function: expected \(\(3, 1\), \(1, 1\)\) -> \(3, 1\), found"):
-        continuation.from_casadi(ca.Function("H", [y, lam], [y - lam]), (np.zeros(3), 0.0))
+    return continuation.from_casadi(function or ca.Function("H", [y, lam], [y - lam]), (np.zeros(rows), 0.0))
 
 
-def test_expressions_that_do_not_fit_are_refused():
-    sympy = pytest.importorskip("sympy")
-    x, lam, other = sympy.symbols("x lam other")
-    with pytest.raises(ValueError, match="expressions: expected as many as unknowns"):
-        continuation.from_sympy([x - lam], [x, other], lam, ([0.0], 0.0))
-    with pytest.raises(ValueError, match=r"expressions: expected no symbols but.*\['other'\]"):
-        continuation.from_sympy([x - lam + other], [x], lam, ([0.0], 0.0))
-    with pytest.raises(ValueError, match="start: expected a pair"):
-        continuation.from_sympy([x - lam], [x], lam, [0.0])
+def by_sympy(equation, *unknowns, start=([0.0], 0.0)):
+    import sympy
+
+    return continuation.from_sympy([sympy.sympify(equation)], sympy.symbols(unknowns), sympy.Symbol("lam"), start)
+
+
+ROUNDED = "residual: expected a function.*float64"
+REFUSED = {
+    "jax in single precision": (in_single_precision, r"jax: expected double precision.*jax_enable_x64"),
+    "jax, rounded": (lambda: by_jax(lambda y, lam: (y - lam).astype("float32"), ([0.0], 0.0)), ROUNDED),
+    "jax, one number": (lambda: by_jax(lambda y, lam: lam, ([0.0, 1.0], 0.0)), ROUNDED),
+    "jax, no kind": (
+        lambda: by_jax(layers, ([0.0], 0.0), jacobian="full"),
+        "jacobian: expected one of dense, sparse, operator, found 'full'",
+    ),
+    "jax, no function": (lambda: by_jax(None, ([0.0], 0.0)), "residual: expected a function"),
+    "casadi, no function": (lambda: by_casadi(function=len), r"function: expected a casadi.Function"),
+    "casadi, a shape": (lambda: by_casadi(3), r"function: expected \(\(3, 1\), \(1, 1\)\) -> \(3, 1\), found"),
+    "sympy, one row": (lambda: by_sympy("x - lam", "x", "other"), "expressions: expected as many as unknowns"),
+    "sympy, a symbol": (
+        lambda: by_sympy("x - lam + other", "x"), r"expressions: expected no symbols but.*\['other'\]"
+    ),
+    "sympy, no pair": (lambda: by_sympy("x - lam", "x", start=[0.0]), "start: expected a pair"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_does_not_fit_is_refused(case):
+    make, words = REFUSED[case]
+    pytest.importorskip(case.split(",")[0].split()[0])
+    with pytest.raises((TypeError, ValueError), match=words):
+        make()
 
 
 def test_sympy_is_banded_where_it_is_and_takes_constant_equations():

@@ -103,9 +103,12 @@ def test_a_jacobian_that_is_wrong():
     refused("jacobian", lambda: trace(homotopy, check_jacobian=True))
 
 
-@pytest.mark.parametrize("name", ["jacobian", "bordered", "differential", "start", "residual"])
-def test_a_method_that_is_none(name):
-    refused("homotopy", lambda: trace(with_methods(**{name: 5})))
+METHODS = "jacobian", "bordered", "differential", "start", "residual"
+
+
+@pytest.mark.parametrize("homotopy", [Line, *(with_methods(**{name: 5}) for name in METHODS)], ids=["class", *METHODS])
+def test_what_is_no_homotopy(homotopy):
+    refused("homotopy", lambda: trace(homotopy))
 
 
 @pytest.mark.parametrize("target", ["end", NAN, np.ones(2), 1j], ids=repr)

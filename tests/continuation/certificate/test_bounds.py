@@ -1,45 +1,18 @@
 """The bounds of Krawczyk's test for quadratic homotopies beside what they bound, evaluated at random places."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
 from continuation import certify, trace
-from continuation.certificate.cells import Cells, Slabs, evaluated, slabs_of
+from continuation.certificate.cells import evaluated, slabs_of
 from continuation.certificate.certifying import engine_of
 from continuation.numbers.ends import thin
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy, YuHomotopy
-from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.quadratic.polynomial import Polynomial
 
 SLACK = 1.0 + 1e-6
 """What is evaluated has round-off of its own, at most 1e-9 of the bounds, whose single precision is coarser."""
-
-
-@pytest.mark.parametrize("scale", [1.0, 1e-9, 1e-300, 1e-320])
-def test_the_coefficients_of_a_cubic_are_enclosed(scale):
-    rng = np.random.default_rng(1)
-    begin, first, last, off = rng.normal(size=(4, 40, 3)) * scale
-    begin[::4], first[:, 0], last[:, 0], off[:, 0] = begin[::4] / scale, 0.0, 0.0, 0.0
-    nothing, one = np.zeros((40, 3)), np.ones(40, dtype=np.intp)
-    cells = Cells(begin, begin + off, first, last, nothing, nothing, one, nothing[:, :2])
-    middle = np.where(np.arange(40) % 5, rng.uniform(-1e-3, 1.001, 40), np.arange(40) % 2)
-    slabs = Slabs(np.arange(40), middle, rng.uniform(0.0, 0.5, 40), cells)
-    q, rate = [slabs.cubic[:, k] for k in range(4)], slabs.over[1]
-    for k, j in np.ndindex(40, 3):
-        m = Fraction(float(middle[k]))
-        a, b, c, d = (Fraction(float(x[k, j])) for x in (cells.begin, cells.end, first, last))
-        a2, a3 = 3 * (b - a) - 2 * c - d, c + d - 2 * (b - a)
-        exact = [a + m * (c + m * (a2 + m * a3)), c + m * (2 * a2 + 3 * m * a3), a2 + 3 * m * a3, a3]
-        for one_of_them, value in zip(q, exact):
-            lo, hi = (float(x[k, j]) for x in (one_of_them.lo, one_of_them.hi))
-            assert Fraction(lo) <= value <= Fraction(hi)
-            assert hi - lo <= 1e-13 * float(max(map(abs, (a, b, c, d)))) + 1e-321
-        for x in (-slabs.half[k], 0.3 * slabs.half[k], slabs.half[k]):
-            x = Fraction(float(x))
-            assert Fraction(float(rate.lo[k, j])) <= exact[1] + x * (2 * exact[2] + 3 * x * a3) <= float(rate.hi[k, j])
 
 
 @pytest.mark.parametrize("Homotopy", [KKTHomotopy, YuHomotopy])
@@ -72,41 +45,6 @@ def test_what_is_bounded_is_smaller(Homotopy, n):
     assert (shares <= SLACK).all()
     # Bounds that are far too large would prove nothing.
     assert shares.max(axis=0)[0] > 0.1
-
-
-def test_the_parameter_moves_along_the_curve_as_is_bounded():
-    rng = np.random.default_rng(0)
-    problem = LCP(rng.normal(size=(20, 20)), rng.normal(size=20))
-    homotopy = KKTHomotopy(problem, np.full(20, natural_units(problem)[0]))
-    path = trace(homotopy)
-    proof = certify(path, homotopy)
-    slabs = slabs_of(proof.cells)
-    judged = engine_of(homotopy).judge(slabs, slabs.cells.radius)
-    first, second = judged.pace(slabs.cells.radius, slabs.cells.radius)
-    parts = first.lo.shape[1]
-    share = rng.uniform(-1.0, 1.0, len(slabs))
-    value, slope, bend = (u.middle() for u in evaluated(slabs.cubic, thin((slabs.half * share)[:, None])))
-    for k, chart in enumerate(slabs.cells.chart):
-
-        def matrix(u, chart=chart):
-            return np.vstack([np.column_stack(homotopy.jacobian(u[:-1], u[-1])), chart])
-
-        u = value[k].copy()
-        for _ in range(4):
-            u -= np.linalg.solve(matrix(u), np.append(homotopy.residual(u[:-1], u[-1]), chart @ (u - value[k])))
-        t = np.linalg.solve(matrix(u), np.append(np.zeros(len(u) - 1), chart @ slope[k]))
-        # H is quadratic: its second derivative along t is a difference of first ones.
-        curved = (matrix(u + t) - matrix(u))[:-1] @ t
-        tt = np.linalg.solve(matrix(u), np.append(-curved, 2.0 * chart @ bend[k]))
-        part = min(int((share[k] + 1.0) / 2.0 * parts), parts - 1)
-        for x, ends in ((t[-1], first), (tt[-1], second)):
-            room = 1e-6 * abs(x)
-            assert np.isnan(ends.lo[k, part]) or ends.lo[k, part] - room <= x <= ends.hi[k, part] + room
-    # Both turning points are told by bounds of the whole cells: none is halved for them.
-    assert len(proof.turning_points) == len(path.turning_points) == 2
-    assert proof.complete
-    assert proof.boxes == len(path)
-    assert (np.isfinite(second.lo).all(axis=1) | (first.lo > 0.0).all(axis=1) | (first.hi < 0.0).all(axis=1)).all()
 
 
 @pytest.mark.parametrize("A", [np.eye(2), [[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]])

@@ -1,6 +1,5 @@
 """Studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
 
-import json
 import math
 
 import matplotlib as mpl
@@ -11,10 +10,9 @@ import continuation
 from continuation import chart
 from continuation.chart.run import report
 from continuation.counts import Counts
-from continuation.predictors import Hermite
 from problems.bifurcation import Circle, ExponentialCosine
 from problems.charts.subjects import cosine
-from tests.truth import circle, exponential_cosine
+from tests.truth import exponential_cosine
 
 mpl.use("Agg")
 
@@ -35,28 +33,10 @@ def test_what_went_wrong_is_named_with_its_reason(results):
     assert "the path has 10" in row(results, "jumps").message
 
 
-def test_counts_are_those_of_a_single_trace(results):
-    path = continuation.trace(ExponentialCosine(5), predictor=Hermite(), tolerance=1e-4)
-    found = row(results, "Hermite", 1e-4)
-    assert found.counts == path.counts
-    assert found.turns == len(path.turning_points)
-
-
-def test_errors_are_those_of_the_path(results):
-    n = 5
-    path = continuation.trace(ExponentialCosine(n), predictor=Hermite(), tolerance=1e-8)
-    end = cosine(n).truth.end
-    found = row(results, "Hermite").errors
-    assert found["end_point"] == np.abs(path.endpoint.u - end).max() / (1.0 + np.abs(end).max())
-    # Between the points the dense output is a cubic, so it is far worse than the corrected end; but it stays near.
-    assert found["end_point"] < found["curve_distance"] < 1e-2
-    assert math.isnan(row(results, "lies").errors["curve_distance"])
-
-
 def test_the_distance_without_a_closed_form_is_that_to_the_nearest_point():
     # Two points on the unit circle joined by a straight line of dense output: the middle is 1 - cos(pi/8) inside.
     angle = np.array([0.0, math.pi / 4])
-    u = circle.curve(angle)
+    u = np.column_stack((np.cos(angle), np.sin(angle)))
     steps = [continuation.Step(k, point, np.zeros(2), float(angle[k])) for k, point in enumerate(u)]
     answer = chart.Answer(Counts(), continuation.Path(steps), u[-1])
     problem = chart.Problem("circle", Circle())
@@ -89,13 +69,6 @@ def test_results_come_back_from_their_file_to_the_last_bit(results, tmp_path):
         (tmp_path / "other.json").write_text(other)
         with pytest.raises(ValueError, match="file: expected results that `write` wrote"):
             chart.read(tmp_path / "other.json")
-
-
-def test_the_file_is_one_for_pandas(results, tmp_path):
-    pandas = pytest.importorskip("pandas")
-    data = pandas.json_normalize(json.loads(chart.write(results, tmp_path / "x.json").read_text())["rows"])
-    assert data["counts.factorizations"].tolist() == [row.counts.factorizations for row in results.rows]
-    np.testing.assert_array_equal(data["errors.end_point"], [row.errors["end_point"] for row in results.rows])
 
 
 def test_lines_are_named_in_the_order_of_their_ends(results):
@@ -141,15 +114,6 @@ def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio
     labels = [label.get_text() for label in every.get_yticklabels()]
     assert labels == ["won:  ours", "slow", "quick", "", "even:  ours", "quick", "slow"]
     assert "wrong end" in [text.get_text() for text in every.texts]
-
-
-def test_ours_are_in_colours_and_others_in_grey():
-    rows = [made("p", f"{k}", 1e-6, 10 * k + 1, outside=k > 2) for k in range(6)]
-    results = chart.Results("s", "t", "tolerance", {"e": "error"}, ["factorizations"], rows)
-    (panel,) = chart.Lines("e", "factorizations").draw(results).axes
-    colours = [mpl.colors.to_rgb(line.get_color()) for line in panel.get_lines()]
-    assert [len(set(colour)) == 1 for colour in colours] == [False] * 3 + [True] * 3
-    assert len(set(colours)) == 6
 
 
 @pytest.mark.parametrize(

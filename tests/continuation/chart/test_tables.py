@@ -65,8 +65,3 @@ def test_tables_as_text_and_markdown():
     table = chart.Table(("name", "n"), [("a|b", 1), ("c", math.nan)])
     assert table.text() == "name    n\n----  ---\na/b     1\nc"
     assert table.markdown() == "| name |   n |\n| ---- | --: |\n| a/b  |   1 |\n| c    |     |"
-
-
-def test_errors_that_agree_to_three_digits_are_equal():
-    results = made(("cheap", 1.0004e-3, 10, ""), ("dear", 1.0e-3, 20, ""), ("better", 0.9e-3, 30, ""))
-    assert chart.excess(results, "e", "factorizations").tolist() == [1.0, 2.0, 1.0]

@@ -203,10 +203,5 @@ def test_one_line_that_names_the_argument(run, place, line, argument):
     assert len(err) < 500
 
 
-@pytest.mark.parametrize("words", [("solve", ""), ("trace", "cusp", "--archive", ""), ("trace", "cusp", "--plot", "")])
-def test_an_argument_of_no_letters(run, place, words):
-    assert run(*words)[0] == BAD_INPUT
-
-
 def test_nothing_of_it_has_written_a_file(place):
     assert not {path.name for path in place.iterdir()} & {"a.h5", "a.nc", "a.csv", "m.h5", "a.png", "a", "s.h5"}

@@ -1,8 +1,6 @@
 """The command line: exit statuses, what is printed, and one line for whatever cannot be used."""
 
 import json
-import subprocess
-import sys
 from importlib.metadata import EntryPoint
 
 import numpy as np
@@ -63,16 +61,6 @@ def test_solve_prints_the_solution(run, second):
     np.testing.assert_allclose([float(row[1]) for row in rows], [0.5, 0], atol=1e-10)
 
 
-def test_solve_as_json(run, second):
-    status, out, _ = run("solve", second, "--json", "--homotopy", "kkt")
-    answer = json.loads(out)
-    assert (status, answer["outcome"], answer["homotopy"]) == (SUCCESS, "SOLVED", "kkt")
-    np.testing.assert_allclose(answer["x"], [0.5, 0], atol=1e-10)
-    np.testing.assert_allclose(answer["w"], [0, 1.5], atol=1e-10)
-    assert answer["residual"] < 1e-10
-    assert answer["counts"]["factorizations"] >= 0
-
-
 def test_solve_without_a_solution_exits_with_one(run, tmp_path):
     status, out, _ = run("solve", save(tmp_path, COUNTEREXAMPLES[0].problem), "--json")
     assert status == FAILURE
@@ -107,18 +95,6 @@ def test_solve_traces_no_path_for_an_archive_and_one_for_a_picture(run, second, 
             assert (len(stored.path(0)) > 1) is many
 
 
-def test_a_matrix_market_file_and_q(run, tmp_path):
-    import scipy.io
-    import scipy.sparse as sp
-
-    example = EXAMPLES[1]
-    scipy.io.mmwrite(tmp_path / "a.mtx", sp.coo_array(example.A))
-    np.savetxt(tmp_path / "q.txt", example.q)
-    status, out, _ = run("solve", tmp_path / "a.mtx", "--q", tmp_path / "q.txt", "--json")
-    assert status == SUCCESS
-    np.testing.assert_allclose(json.loads(out)["x"], [0.5, 0], atol=1e-10)
-
-
 # -- classify and paper ---------------------------------------------------------------------------------------
 
 
@@ -133,14 +109,6 @@ def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
 
 
 # -- archives -------------------------------------------------------------------------------------------------
-
-
-def test_inspect_is_a_page(run, archive):
-    status, out, _ = run("inspect", archive)
-    assert status == SUCCESS
-    assert "fold.h5" in out
-    assert "STOPPED_AT_EVENT" in out
-    assert "turning point" in out
 
 
 @pytest.mark.parametrize(
@@ -205,29 +173,3 @@ def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatc
     status, _, err = run("broken", "--anything", "file")
     assert status == BAD_INPUT
     assert "broken: no.such.module:register (no.such.module:register) cannot be loaded: ModuleNotFoundError" in err
-
-
-def test_two_packages_with_one_command_are_both_named(run, monkeypatch):
-    monkeypatch.setattr(plugins, "entry_points", points(("solve", "here.solve:register"), ("solve", "there:register")))
-    status, _, err = run("solve", "file.npz")
-    assert status == BAD_INPUT
-    assert "found here.solve:register (here.solve:register) and there:register (there:register)" in err
-
-
-def test_the_program_as_a_process(second, tmp_path):
-    def program(*arguments):
-        return subprocess.run(
-            [sys.executable, "-m", "continuation", *map(str, arguments)], capture_output=True, text=True, timeout=120
-        )
-
-    solved = program("solve", second, "--json")
-    assert solved.returncode == SUCCESS
-    assert json.loads(solved.stdout)["outcome"] == "SOLVED"
-    assert solved.stderr == ""
-    missing = program("solve", tmp_path / "gone.npz")
-    assert missing.returncode == BAD_INPUT
-    assert missing.stdout == ""
-    assert missing.stderr.count("\n") == 1
-    version = program("--version")
-    assert version.stdout.startswith("continuation ")
-    assert version.returncode == 0

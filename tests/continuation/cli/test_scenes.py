@@ -6,17 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from continuation.cli import FAILURE, SUCCESS
-
-
-def test_a_scene_by_its_name(run, tmp_path):
-    picture = tmp_path / "block.png"
-    status, out, err = run("solve", "scene", "block", "speed=0.03", "--plot", picture)
-    assert (status, err) == (SUCCESS, "")
-    assert "scene      block speed=0.03" in out
-    assert "friction impulse  -0.03 N s" in out
-    assert "2 tangential impulses: friction" in out
-    assert picture.read_bytes().startswith(b"\x89PNG")
+from continuation.cli import SUCCESS
 
 
 def test_as_json(run):
@@ -25,15 +15,6 @@ def test_as_json(run):
     answer = json.loads(out)
     assert answer["unknowns"] == 2
     assert answer["answer"]["price"] == pytest.approx(130.0 / 3.0)
-
-
-def test_a_path_that_ends_in_a_collapse_is_an_answer(run):
-    status, out, _ = run("solve", "scene", "truss")
-    assert status == SUCCESS
-    assert "collapse load        2.1 force" in out
-    status, out, err = run("solve", "scene", "truss", "load=3")
-    assert status == FAILURE
-    assert "the bars bear 2.1 at most, found 3" in err
 
 
 def test_scenes_are_listed_beside_homotopies(run):

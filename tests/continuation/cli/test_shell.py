@@ -2,13 +2,10 @@
 
 import io
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
-import continuation
 from continuation import Budget, trace
 from continuation.archive import open_archive, trace_many
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
@@ -16,10 +13,7 @@ from continuation.cli.parser import paint
 from continuation.step.progress import SweepProgress
 from problems.bifurcation import Cusp
 
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
+from ...util import Terminal
 
 
 def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
@@ -95,21 +89,19 @@ def test_a_problem_comes_on_stdin(run, monkeypatch, form):
     assert json.loads(out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
 
 
-def test_colours_are_for_terminals(monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
+@pytest.mark.parametrize(
+    ("text", "good", "stream", "plain", "painted"),
+    [
+        ("SOLVED", True, Terminal(), "", "\x1b[32mSOLVED\x1b[0m"),
+        ("DIVERGED", False, Terminal(), "", "\x1b[31mDIVERGED\x1b[0m"),
+        ("SOLVED", True, io.StringIO(), "", "SOLVED"),
+        ("SOLVED", True, Terminal(), "1", "SOLVED"),
+    ],
+)
+def test_colours_are_for_terminals(monkeypatch, text, good, stream, plain, painted):
+    monkeypatch.setenv("NO_COLOR", plain)
     monkeypatch.setenv("TERM", "xterm")
-    assert paint("SOLVED", True, Terminal()) == "\x1b[32mSOLVED\x1b[0m"
-    assert paint("DIVERGED", False, Terminal()) == "\x1b[31mDIVERGED\x1b[0m"
-    assert paint("SOLVED", True, io.StringIO()) == "SOLVED"
-    monkeypatch.setenv("NO_COLOR", "1")
-    assert paint("SOLVED", True, Terminal()) == "SOLVED"
-
-
-def test_the_version_is_said_without_importing_the_library():
-    code = "import sys; sys.argv = ['continuation', '--version']; from problems.commands.script import main; main(); "
-    code += "print([name for name in sys.modules if name.startswith(('numpy', 'continuation'))])"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout == f"continuation {continuation.__version__}\n[]\n"
+    assert paint(text, good, stream) == painted
 
 
 def test_a_sweep_shows_its_progress():

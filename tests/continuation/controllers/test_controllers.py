@@ -51,13 +51,6 @@ def test_a_good_step_is_accepted_a_sharp_turn_is_not_and_the_ceiling_holds(contr
     assert decision.h <= 0.1
 
 
-def test_an_easy_step_is_lengthened_but_not_after_a_rejection():
-    controller = AllgowerGeorg()
-    easy = evolve(EASY, angle=1e-3, distance=1e-9, contraction=1e-3)
-    assert controller.update(controller.init(), easy).h > easy.h
-    assert controller.update(controller.init(), evolve(easy, rejections=1)).h <= easy.h
-
-
 def test_the_papers_backtracking():
     controller = Fixed(Bounds(minimum=1e-6, initial=1.0), max_angle=inf, ratio=0.6)
     steps = [1.0]
@@ -101,10 +94,3 @@ def test_allgower_georg_divides_by_the_worst_factor(change, factor):
     decision = PAPER.update((), evolve(GOOD, **{"angle": 1e-6, "distance": 0.0, "contraction": 0.0, **change}))
     assert decision.accept
     assert decision.h == pytest.approx(GOOD.h / factor)
-
-
-@pytest.mark.parametrize("change", [{"angle": 0.46}, {"distance": 0.0151}, {"contraction": 0.46}])
-def test_allgower_georg_rejects_beyond_the_deceleration(change):
-    decision = PAPER.update((), evolve(GOOD, **change))
-    assert not decision.accept
-    assert decision.h < GOOD.h

@@ -66,19 +66,6 @@ def test_moore_penrose_lands_at_the_foot_of_the_perpendicular():
     np.testing.assert_allclose(found, np.array([1.0, 3.0]) / np.sqrt(10.0), rtol=0, atol=1e-9)
 
 
-def test_factorisations_and_iterations_are_as_many_as_the_kind_needs():
-    """Newton's method is quadratic and the chord's linear; a reused factorisation is kept."""
-    kinds, found, spent = {"fresh": FRESH, "chord": CHORD, "reused": BorderedNewton(reuse=0.5)}, {}, {}
-    for name, corrector in kinds.items():
-        setting = Setting()
-        found[name] = setting.correct(corrector, Tolerance(1e-13))
-        spent[name] = setting.factorizations
-    assert found["fresh"].iterations < found["chord"].iterations
-    assert spent["fresh"] == found["fresh"].iterations > spent["reused"]
-    # It may serve the tangent.
-    assert (found["reused"].anchor is None, found["fresh"].anchor is None) == (False, True)
-
-
 def test_the_contraction_is_the_largest_ratio_of_increments():
     # The derivative at hand is half of the true one, so each increment is minus the one before.
     homotopy = from_functions(

@@ -1,11 +1,9 @@
 """Curves of branch points, kinks, values and monitors; what a curve is asked for; files, proofs, and the suite."""
 
-import pickle
 import re
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
@@ -13,16 +11,11 @@ from continuation.archive import open_archive, resume
 from continuation.counts import Counts
 from continuation.evaluation.errors import RaisedError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.evaluation.products import difference_along
-from continuation.events.singularity import full_derivative
-from continuation.linear.nullspace import null_vectors
-from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
 
 from .util import (
     Bent,
-    Diffusing,
     Lorenz,
     coupled,
     cusp_form,
@@ -30,6 +23,7 @@ from .util import (
     imperfect,
     named,
     ring,
+    steep,
     wing,
 )
 
@@ -42,26 +36,20 @@ def unit_circle(u, v):
     return u[0] ** 2 + u[1] ** 2 - 1.0
 
 
-def steep(u, v):
-    return v[0] + 0.4 * v[1]
-
-
-def not_homogeneous(u, v):
-    return v[0] ** 2 - 0.3 * u[0] ** 2 * v[1]
-
-
-def test_the_pitchfork_of_the_lorenz_equations_stays():
-    path = continuation.trace(
-        Curve(Family(Lorenz(), "b"), Kind.BRANCH_POINT, (np.full(3, 1e-3), 0.95)), box={"lam": (None, 8.0)}
-    )
-    assert np.abs(path.y - [0.0, 0.0, 0.0, 1.0]).max() <= 1e-10
-    assert path.lam[-1] == 8.0
+def uneven(u, v):
+    """It has no power of the tangent's length as a factor."""
+    return v[0] ** 4 - 0.09 * u[0] ** 4 * v[1] ** 2
 
 
 def test_branch_points_that_part_are_refused():
     curve = Curve(imperfect, Kind.BRANCH_POINT, (np.zeros(1), 0.0), mu=0.0)
     with pytest.raises(ValueError, match="family: expected branch points for every mu, as in symmetric problems"):
         continuation.trace(curve)
+
+
+def test_a_condition_that_nothing_near_meets_has_no_curve():
+    curve = Curve(imperfect, Monitor(lambda u, v: 1.0 + u[0] ** 2), (np.array([-1.2]), 1.4), mu=0.1)
+    assert continuation.trace(curve).status is continuation.Status.START_NOT_ON_PATH
 
 
 def test_kinks_until_another_switch_vanishes():
@@ -127,56 +115,6 @@ def test_what_looks_at_the_tangent():
     assert np.abs(1.2 * y**2 - 0.4 * lam + y).max() <= 1e-10
 
 
-def test_elimination_is_the_bordered_matrix():
-    generator = np.random.default_rng(5)
-    trunk = continuation.trace(coupled(), direction=-1, box={"lam": (2.5, None)})
-    (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
-    for curve in (
-        folds(),
-        Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
-        Curve(coupled, point, mu=1.0),
-        Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
-        Curve(imperfect, Monitor(not_homogeneous), (np.array([-1.2]), 1.4), mu=0.1),
-    ):
-        y, mu = curve.start()
-        for aside in (0.0, 0.03):
-            y = y * (1.0 + aside * generator.standard_normal(y.size))
-            border = generator.standard_normal(y.size + 1)
-            H_y, H_mu = curve.jacobian(y, mu)
-            whole = np.vstack([np.column_stack([H_y, H_mu]), border])
-            system = curve.bordered(y, mu, border)
-            r = generator.standard_normal(y.size + 1)
-            np.testing.assert_allclose(whole @ system.solve(r[:-1], r[-1]), r, atol=1e-11 * np.abs(whole).max())
-            assert system.sign == np.sign(np.linalg.det(whole))
-            np.testing.assert_allclose(curve.differential(y, mu, r), whole[:-1] @ r, atol=1e-12)
-        u = np.append(y, mu)
-        difference = difference_along(curve.residual, u, 1e-2 * r)[0]
-        np.testing.assert_allclose(whole[:-1] @ (1e-2 * r), difference, atol=1e-8)
-
-
-@pytest.mark.parametrize("make", [np.array, sp.csc_array])
-def test_a_border_nearly_orthogonal_is_replaced(make):
-    matrix = np.random.default_rng(8).standard_normal((7, 7))
-    left, sizes, right = np.linalg.svd(matrix)
-    matrix = matrix - (sizes[-1] - 1e-3) * np.outer(left[:, -1], right[-1])
-    for b, c in ((left[:, 0] + 1e-4 * left[:, -1], right[-1]), (left[:, -1], right[2] + 1e-4 * right[-1])):
-        near = null_vectors(make(matrix), b, c)
-        assert max(np.linalg.norm(near.right), np.linalg.norm(near.left)) <= 10.0
-        assert near.factors.sign * np.sign(near.s) == np.sign(np.linalg.det(matrix))
-        np.testing.assert_allclose(abs(right[-1] @ near.right), np.linalg.norm(near.right), rtol=1e-5)
-
-
-def test_the_border_does_not_fill_sparse_factors():
-    homotopy = Diffusing(n=300)
-    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
-    (y, mu), condition = curve.start(), curve._condition
-    matrix = condition.matrix(full_derivative(Evaluator(curve.family(mu), Counts()), y[:-1]), y[-1])
-    near = null_vectors(matrix, condition.b, condition.c)
-    assert near.factors.lu.nnz <= 30 * 600
-    np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)
-    np.testing.assert_allclose(matrix.conj().T @ near.left, -np.conj(near.s) * condition.c, atol=1e-9)
-
-
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
     curve, box = folds(), {"lam": (-1.0, 0.4)}
     continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=3), box=box, direction=-1)
@@ -189,18 +127,25 @@ def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
         assert stored.path(0).labels.parameter_name == "mu"
 
 
-def test_a_curve_is_pickled_drawn_and_named():
-    curve = folds()
-    again = pickle.loads(pickle.dumps(curve))
-    y, mu = curve.start()
-    assert np.array_equal(again.residual(y, mu), curve.residual(y, mu))
-    path = continuation.trace(curve, budget=Budget(steps=3))
-    axes = plot_bifurcation(path, value=1)
-    assert axes.get_xlabel() == "mu"
+def pitchforks():
+    """From the first of the coupled trunk."""
+    trunk = continuation.trace(coupled(), direction=-1, box={"lam": (2.5, None)})
+    return Curve(coupled, next(event for event in trunk.events if event.kind == Kind.BRANCH_POINT), mu=1.0)
 
 
-def test_the_suite_passes():
-    check_homotopy(folds(), steps=5)
+KINDS = {
+    "folds": folds,
+    "Hopf points": lambda: Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
+    "branch points": pitchforks,
+    "a slope": lambda: Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
+    "no homogeneous condition": lambda: Curve(imperfect, Monitor(uneven), (np.array([-0.95]), 1.008), mu=0.1),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_suite_of_homotopies_passes(kind):
+    """Its eliminations are the bordered matrix, with the sign of the determinant, and its derivatives right."""
+    check_homotopy(KINDS[kind](), steps=5)
 
 
 class Plain:

@@ -1,26 +1,12 @@
-"""Curves of folds by differences, in banded and sparse families, and of the aircraft; others are in `test_units.py`."""
+"""Curves of folds in families of every structure; those in closed form are in `test_units.py`."""
 
 import numpy as np
 import pytest
 
 import continuation
-from continuation import Budget, Curve, Family, TargetValue
-from problems.bifurcation import Aircraft, Cusp
+from continuation import Curve, Family, TargetValue
 
 from .util import GelfandBanded, first_fold, named
-
-
-def test_the_whole_curve_by_differences_since_a_validator_wants_floats():
-    path = continuation.trace_both(
-        Curve(Family(Cusp(1.0), "splitting"), first_fold(Cusp(1.0))),
-        box={"lam": (-4.0, 4.0), "y": (-16.0, 16.0)},
-        tolerance=1e-12,
-    )
-    _, a, b = path.u.T
-    assert np.abs(27.0 * a**2 - 4.0 * b**3).max() <= 1e-10
-    (cusp,) = named(path, "cusp")
-    assert np.abs(cusp.u).max() <= 1e-10
-    assert {np.sign(u) for u in a} >= {-1.0, 1.0}
 
 
 @pytest.mark.parametrize("kind", ["banded", "sparse", "symmetric"])
@@ -43,15 +29,3 @@ def test_operators_have_curves_of_values_alone():
     assert max(np.abs(GelfandBanded(u[-1]).residual(u[:-2], u[-2])).max() for u in path.u) <= 1e-10
     with pytest.raises(ArithmeticError, match="a matrix is needed here, and the Jacobian is an operator"):
         continuation.trace(Curve(Family(member, "eps"), first_fold(member)))
-
-
-def test_the_aircraft_has_a_cusp_in_the_elevator():
-    homotopy = Aircraft(-0.05)
-    curve = Curve(Family(homotopy, "elevator"), continuation.trace(homotopy).turning_points[0])
-    path = continuation.trace(curve, box={"lam": (-0.06, 0.05)}, budget=Budget(steps=40))
-    turn = path.turning_points[0]
-    (cusp,) = named(path, "cusp")
-    assert np.abs(cusp.u - turn.u).max() <= 1e-9
-    # Beyond the cusp the two folds of a member are gone: its fold is on the other side of it.
-    folds = continuation.trace(Aircraft(turn.lam + 1e-3)).turning_points
-    assert all(abs(fold.lam - turn.u[-2]) > 0.03 for fold in folds)

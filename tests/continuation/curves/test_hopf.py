@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Curve, Family, Kind, LocatedEvent, Status
+from continuation import Curve, Family, Kind, Status
 
 from .util import Diffusing, brusselator, cusp_form, named, takens_bogdanov, zero_hopf
 
@@ -32,21 +32,12 @@ def test_it_passes_where_the_equilibrium_turns():
 
 @pytest.mark.parametrize(("n", "accuracy"), [(10, 1e-10), (300, 1e-9)])
 def test_sparse(n, accuracy):
-    homotopy = Diffusing(n=n)
-    B, frequency = homotopy.hopf
-    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(B + 0.01))
-    path = continuation.trace(curve, box={"lam": (None, 1.2)})
-    exact = np.array([Diffusing(A, n).hopf for A in path.lam])
-    assert np.abs(path.u[:, -3:-1] - exact).max() <= accuracy
-    assert abs(path.y[0, -1] - frequency) <= accuracy
-
-
-def test_a_located_point_will_do():
-    u = np.array([1.0, 2.0, 2.0])
-    event = LocatedEvent("Hopf point", Kind.HOPF, 0.0, u, np.array([0.0, 1.0, 1.0]), 0.0, 0.0, 1, 1)
-    y, A = Curve(brusselator, event, mu=1.0).start()
-    np.testing.assert_allclose(y, [1.0, 2.0, 2.0, 1.0], atol=1e-13)
-    assert A == 1.0
+    homotopy = Diffusing(n)
+    curve = Curve(Family(homotopy, "turn"), Kind.HOPF, (np.zeros(2 * n), homotopy.rate(1) + 0.01))
+    path = continuation.trace(curve, box={"lam": (None, 4.0)})
+    assert path.success
+    np.testing.assert_allclose(path.y[:, -2], homotopy.rate(1), rtol=accuracy)
+    np.testing.assert_allclose(path.y[:, -1], path.lam, rtol=accuracy)
 
 
 def test_no_pair_near_the_axis_is_said():

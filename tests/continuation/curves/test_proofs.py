@@ -24,6 +24,7 @@ from .util import (
     imperfect,
     named,
     ring,
+    steep,
     takens_bogdanov,
     van_der_pol,
     wing,
@@ -32,11 +33,6 @@ from .util import (
 
 def folds(family, mu, **options):
     return Curve(family, first_fold(family(mu), **options), mu=mu)
-
-
-def steep(u, v):
-    """Where the slope is -0.4."""
-    return v[0] + 0.4 * v[1]
 
 
 small = partial(gelfand, n=4)

@@ -7,13 +7,10 @@ import pytest
 import scipy.sparse as sp
 
 import continuation
-from continuation import Curve, Family, Kind
+from continuation import Curve, Kind
 from continuation.linear import Banded
 
 from .util import (
-    GelfandBanded,
-    Lorenz,
-    brusselator,
     coupled,
     cusp_form,
     first_fold,
@@ -22,7 +19,6 @@ from .util import (
     named,
     takens_bogdanov,
     van_der_pol,
-    wing,
 )
 
 TIGHT = {"tolerance": 1e-12}
@@ -109,44 +105,6 @@ def test_the_cusp_and_the_end_of_the_perturbed_gelfand_problem():
         assert abs(height - 4.89654789987477872) <= 1e-9
     end = continuation.trace(curve, target=0.0, **TIGHT).endpoint
     assert abs(end.u[-2] * units.a - 0.8784576797812903) <= 1e-11
-
-
-def test_units_that_are_powers_of_two_change_no_step():
-    units, box = Units(partial(gelfand, n=8), 0.2, 3, shifted=False), {"lam": (0.15, None)}
-    units.d, units.a, units.m = 2.0 ** np.random.default_rng(3).integers(-30, 30, 8), 2.0**20, 1.0
-    ours, theirs = (
-        continuation.trace(Curve(family, first_fold(family(0.2)), mu=0.2), box=box) for family in (units.family, units)
-    )
-    assert len(ours) == len(theirs)
-    assert ours.counts.rejected == theirs.counts.rejected
-    np.testing.assert_allclose(units.back(theirs.u), ours.u, rtol=1e-3)
-    for event, other in zip(ours.turning_points, theirs.turning_points, strict=True):
-        np.testing.assert_allclose(units.back(other.u)[0], event.u, rtol=1e-9)
-
-
-def test_a_sparse_family_has_the_same_cusp():
-    plain = Family(GelfandBanded(n=8, kind="sparse"), "eps")
-    units = Units(plain, 0.2, 5, shifted=False)
-    ours, theirs = (
-        named(continuation.trace(Curve(family, first_fold(family(family.value))), box=box, **TIGHT), "cusp")[0].u
-        for family, box in ((plain, {"lam": (0.15, None)}), (units, units.box(0.15, None)))
-    )
-    np.testing.assert_allclose(units.back(theirs)[0], ours, rtol=1e-10)
-
-
-def test_hopf_curves():
-    units = Units(Family(Lorenz(), "b"), 8.0 / 3.0, 0)
-    curve = Curve(units, Kind.HOPF, units.told(*wing(25.0)))
-    r, frequency, b = units.back(continuation.trace(curve, box=units.box(None, 8.0), **TIGHT).u)[:, 3:].T
-    np.testing.assert_allclose(r, 10.0 * (13.0 + b) / (9.0 - b), rtol=1e-11)
-    np.testing.assert_allclose(frequency, np.sqrt(b * (r + 10.0)), rtol=1e-11)
-    assert (abs(r[0] - 470.0 / 19.0), abs(b[-1] - 8.0)) <= (1e-10, 1e-12)
-    units = Units(brusselator, 1.0, 0)
-    curve = Curve(units, Kind.HOPF, units.told(np.array([1.0, 2.0]), 2.1))
-    B, frequency, A = units.back(continuation.trace_both(curve, box=units.box(0.25, 4.0), **TIGHT).u)[:, 2:].T
-    assert np.abs(B - 1.0 - A**2).max() <= 1e-10
-    assert np.abs(frequency - A).max() <= 1e-10
-    assert A.max() - A.min() == pytest.approx(3.75)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 10, 12, 17, 25, 53, 54, 144])

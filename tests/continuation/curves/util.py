@@ -99,6 +99,11 @@ def ring(a=1.0):
     )
 
 
+def steep(u, v):
+    """Where the slope is -0.4."""
+    return v[0] + 0.4 * v[1]
+
+
 @frozen
 class Bent:
     """y = 2 lam inside a circle of radius mu^(1/2), another curve outside: kinks at 5 lam^2 = mu."""
@@ -181,51 +186,32 @@ class GelfandBanded:
 
 @frozen
 class Diffusing:
-    """The Brusselator with diffusion (d, 2 d) between fixed ends, sparse, continued in B.
+    """Two species on n points, (d - lam) z + turning, both ends held at 0: z = 0, and a Hopf point for each mode.
 
-    Its first Hopf point is at B = 1 + A^2 + 3 d k, with k the least eigenvalue of minus the second difference.
+    At the mode's rate, with the frequency `turn`.
     """
 
-    A: float = 1.0
     n: int = 20
-    d: float = 0.01
-    target = None
+    target: float = 2.5
+    side: int = 1
+    turn: float = 3.0
 
-    @property
-    def hopf(self):
-        """(B, frequency)."""
-        k = self.d * (2.0 * (self.n + 1) * np.sin(0.5 * np.pi / (self.n + 1))) ** 2
-        B = 1.0 + self.A**2 + 3.0 * k
-        return B, np.sqrt((B - 1.0 - k) * (-(self.A**2) - 2.0 * k) + self.A**2 * B)
+    def rate(self, mode):
+        return 0.08 * (self.n + 1) ** 2 * np.sin(0.5 * mode * np.pi / (self.n + 1)) ** 2
 
     def start(self):
-        return np.tile([self.A, 1.0 / self.A], self.n), 1.0
+        return np.zeros(2 * self.n), 0.0
 
-    def at(self, B):
-        """The equilibrium without a pattern."""
-        return np.tile([self.A, B / self.A], self.n), B
+    def matrix(self, lam):
+        laplacian = (self.n + 1) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.n, self.n))
+        grow, turn = 0.02 * laplacian + lam * sp.eye_array(self.n), self.turn * sp.eye_array(self.n)
+        return self.side * sp.csc_array(sp.block_array([[grow, -turn], [turn, grow]]))
 
     def residual(self, y, lam):
-        x, z, k = y[0::2], y[1::2], self.d * (self.n + 1) ** 2
-
-        def curved(w, end):
-            w = np.concatenate((np.full(1, end), w, np.full(1, end)))
-            return w[:-2] - 2.0 * w[1:-1] + w[2:]
-
-        f = self.A - (lam + 1.0) * x + x * x * z + k * curved(x, self.A)
-        g = lam * x - x * x * z + 2.0 * k * curved(z, lam / self.A)
-        return np.stack([f, g], axis=1).ravel()
+        return self.matrix(lam) @ y - self.side * y**3
 
     def jacobian(self, y, lam):
-        x, z, k = y[0::2], y[1::2], self.d * (self.n + 1) ** 2
-        middle = np.stack([-(lam + 1.0) + 2.0 * x * z - 2.0 * k, -x * x - 4.0 * k], axis=1).ravel()
-        above, below = np.zeros((2, 2 * self.n - 1))
-        above[0::2], below[0::2] = x * x, lam - 2.0 * x * z
-        aside = np.tile([k, 2.0 * k], self.n - 1)
-        matrix = sp.diags_array([aside, below, middle, above, aside], offsets=[-2, -1, 0, 1, 2], format="csc")
-        slope = np.stack([-x, x], axis=1)
-        slope[[0, -1], 1] += 2.0 * k / self.A
-        return matrix, slope.ravel()
+        return sp.csc_array(self.matrix(lam) - self.side * sp.diags_array(3.0 * y * y)), self.side * y
 
 
 def first_fold(homotopy, **options):

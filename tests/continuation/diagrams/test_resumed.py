@@ -14,6 +14,7 @@ from continuation import Budget, Interrupted, Stability, diagram
 from continuation.archive import ArchiveError, open_archive
 from problems.bifurcation import Pitchfork
 
+from ...util import interrupt
 from .util import CROSSED, Forks
 
 BOX = {"lam": (0.0, 5.0)}
@@ -38,10 +39,6 @@ class Stopping:
 
     def jacobian(self, y, lam):
         return Forks((1.0, 2.0, 3.0)).jacobian(y, lam)
-
-
-def interrupt():
-    raise KeyboardInterrupt
 
 
 def outline(found):

@@ -30,13 +30,6 @@ def test_a_wrong_jacobian_gives_no_wrong_point(slope):
     assert not check_jacobian(homotopy).correct
 
 
-@pytest.mark.parametrize("slope", [None, lambda y, lam: (1.0, 0.0)])
-def test_a_homotopy_that_does_not_depend_on_the_parameter(slope):
-    path = trace(scalar(lambda y, lam: y - 1.0, slope, start=(1.0, 0.0)))
-    assert (path.status, path.events) == (Status.REACHED_TARGET, [])
-    np.testing.assert_allclose(path.endpoint.u, (1.0, 1.0), rtol=0, atol=1e-12)
-
-
 def filled(y, lam):
     """A residual that fills an array of floats, on which complex numbers and jets fail."""
     r = np.empty(2)

@@ -9,7 +9,6 @@ from continuation import (
     DEFAULT,
     FAST,
     SERIES,
-    BranchPoint,
     Budget,
     Kind,
     Status,
@@ -23,7 +22,7 @@ from continuation.archive import open_archive
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 
-from ...util import by_preset, every_preset
+from ...util import every_preset
 from ..util import scalar
 from .util import branch_points, pitchfork, two_graphs
 
@@ -88,12 +87,6 @@ def test_no_step_ends_beside_a_branch_point(beside):
     assert np.abs(path.arclength - event.arclength).min() > 0.05
 
 
-def test_it_may_end_the_trace():
-    path = trace(pitchfork(), events=[BranchPoint()])
-    assert (path.status, path.endpoint.kind) == (Status.STOPPED_AT_EVENT, Kind.BRANCH_POINT)
-    np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-10)
-
-
 LEVELS = [TargetValue(1.0), TargetValue(-1.0)]
 
 
@@ -135,46 +128,75 @@ def test_an_event_of_a_file_is_switched_at_with_its_own_homotopy_alone(tmp_path)
             switch_branch(from_functions(function, start=(at.u[:-1], 0.0)), at, 0.1)
 
 
-@pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3])
-def test_a_hairpin_is_no_branch_point(width):
-    # A parabola so narrow that a step over its vertex flips the determinant.
-    homotopy = scalar(
-        lambda y, lam: y * y - width**2 * (1.0 - lam), lambda y, lam: (2.0 * y, width**2), start=(width, 0.0)
+def hairpin(width):
+    """A parabola so narrow that a step over its vertex flips the determinant."""
+    return scalar(
+        lambda y, lam: y * y - width**2 * (1.0 - lam),
+        lambda y, lam: (2.0 * y, width**2),
+        start=(width, 0.0),
+        target=None,
     )
-    path = trace(homotopy, target=None, direction=1, events=[TargetValue(0.0)], metric=Euclidean())
-    assert path.status is Status.STOPPED_AT_EVENT
-    assert branch_points(path) == []
-    (fold,) = path.turning_points
-    np.testing.assert_allclose(fold.u, (0.0, 1.0), rtol=0, atol=1e-10)
-    np.testing.assert_allclose(path.endpoint.u, (-width, 0.0), rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize("imperfection", [1e-1, 1e-3, 1e-6, -1e-6, 1e-8])
-@every_preset
-def test_an_avoided_branch_point_is_not_crossed(imperfection, preset):
-    path = trace(scalar(lambda y, lam: lam * y - y**3 + imperfection, start=(0.0, -1.0)), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert branch_points(path) == []
-    assert path.endpoint.y[0] * np.sign(imperfection) > 0.9
+def imperfect(e):
+    return scalar(lambda y, lam: lam * y - y**3 + e, start=(0.0, -1.0))
 
 
-@pytest.mark.parametrize(("first", "second", "bent"), [(0.2, -2.2, 0.0), (0.2, -2.2, 0.3), (-1.8, -2.5, 0.1)])
-@by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
-def test_two_curves_a_millionth_apart_do_not_cross(first, second, bent, preset):
-    # (y - f)(y - g) = 1e-12: all that H is made of, but for the constant, vanishes where f and g cross.
+def apart(first, second, bent, distance=1e-6):
+    """(y - f)(y - g) = distance^2, from the upper branch: all of H but the constant vanishes where f and g cross."""
+
     def f(lam):
         return first * lam + bent * np.sin(2.0 * lam)
 
     def g(lam):
         return second * lam - bent * lam**2
 
-    def upper(lam):
-        return 0.5 * (f(lam) + g(lam)) + np.hypot(0.5 * (f(lam) - g(lam)), 1e-6)
+    upper = [0.5 * (f(lam) + g(lam)) + np.hypot(0.5 * (f(lam) - g(lam)), distance) for lam in (-2.0, 2.0)]
+    homotopy = two_graphs(f, g, -2.0, apart=distance**2)
+    return homotopy, {"start": ([upper[0]], -2.0)}, 0, upper[1]
 
-    path = trace(two_graphs(f, g, -2.0, apart=1e-12), preset=preset, start=([upper(-2.0)], -2.0))
-    assert path.status is Status.REACHED_TARGET
-    assert not path.events
-    np.testing.assert_allclose(path.endpoint.y, [upper(2.0)], rtol=1e-9)
+
+def ring(a):
+    """sin((r - 1) / a) = 0 holds on all circles r = 1 + k pi a."""
+    return scalar(lambda y, lam: np.sin((np.sqrt(y**2 + lam**2) - 1.0) / a), start=(1.0, 0.0), target=None)
+
+
+BACK = {"direction": 1, "events": [TargetValue(0.0)], "metric": Euclidean()}
+# The homotopy, options, how many turning points there are, and the end.
+NEAR = {
+    **{f"a hairpin of {w}": (hairpin(w), BACK, 1, -w) for w in (1e-1, 1e-2, 1e-3)},
+    **{
+        f"a pitchfork less {e}": (imperfect(e), {}, 0, np.sign(e) * np.roots([-1.0, 0.0, 1.0, abs(e)]).real.max())
+        for e in (1e-1, 1e-3, 1e-6, -1e-6, 1e-8)
+    },
+    **{f"a millionth apart, {c}": apart(*c) for c in ((0.2, -2.2, 0.0), (0.2, -2.2, 0.3), (-1.8, -2.5, 0.1))},
+    **{f"circles of {a}": (ring(a), {"budget": Budget(steps=400)}, 2, 1.0) for a in (0.1, 0.02, 0.005)},
+    **{
+        f"nearly touching by {gap}": (
+            two_graphs(lambda t: 0.0 * t, lambda t, gap=gap: t**2 + gap, -1.0, 1.0),
+            {},
+            0,
+            0.0,
+        )
+        for gap in (1e-2, 1e-4, 1e-6)
+    },
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "preset"),
+    [
+        *((name, preset) for name in NEAR for preset in (FAST, DEFAULT, CONSERVATIVE)),
+        *((name, SERIES) for name in NEAR if "millionth" in name),
+    ],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_curves_that_come_near_each_other_do_not_cross(name, preset):
+    homotopy, options, turns, end = NEAR[name]
+    path = trace(homotopy, preset=preset, **options)
+    assert path.success
+    assert [event.kind for event in path.events if event.kind != Kind.EVENT] == turns * [Kind.TURNING_POINT]
+    np.testing.assert_allclose(path.endpoint.y, [end], rtol=1e-9, atol=1e-10)
 
 
 @every_preset

@@ -9,7 +9,6 @@ from continuation import (
     FAST,
     SERIES,
     Budget,
-    Kind,
     Status,
     TargetValue,
     from_functions,
@@ -93,20 +92,6 @@ def test_cells_that_are_all_alike(preset, scale, origin, n):
     expected = np.sort(roots[(abs(roots.imag) < 1e-9) & (roots.real > 0.0)].real)
     found = [float(event.y[0] - origin) / scale for event in branch_points(path)]
     np.testing.assert_allclose(found, expected, rtol=1e-7 if origin else 1e-10)
-
-
-@every_preset
-@pytest.mark.parametrize("a", [0.1, 0.02, 0.005])
-def test_neighbouring_circles_do_not_cross(preset, a):
-    """sin((r - 1) / a) = 0 holds on all circles r = 1 + k pi a."""
-
-    def residual(y, lam):
-        return np.sin((np.sqrt(y**2 + lam**2) - 1.0) / a)
-
-    path = trace(from_functions(residual, start=([1.0], 0.0), target=None), preset=preset, budget=Budget(steps=400))
-    assert path.status is Status.CLOSED
-    assert [event.kind for event in path.events] == 2 * [Kind.TURNING_POINT]
-    np.testing.assert_allclose(np.hypot(path.y[:, 0], path.lam), 1.0, rtol=0, atol=1e-9)
 
 
 @by_preset(DEFAULT, CONSERVATIVE)

@@ -6,7 +6,6 @@ import pytest
 from continuation import DEFAULT, Kind, Status, branch_directions, from_functions, trace
 
 from ...util import every_preset
-from .util import two_graphs
 
 # Of y, the residual; the branch that is followed; the directions of the others at 0.
 CASES = {
@@ -46,12 +45,3 @@ def test_the_directions_of_all_lines_are_found(name):
     _, *others = branch_directions(homotopy, path.events[0])
     found = sorted(float(v[0] / v[1]) for v in others)
     assert found == pytest.approx(sorted(CASES[name][2]), abs=1e-3)
-
-
-@every_preset
-@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
-def test_branches_that_nearly_touch_have_no_branch_point(preset, gap):
-    path = trace(two_graphs(lambda t: 0.0 * t, lambda t: t**2 + gap, -1.0, 1.0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert list(path.events) == []
-    assert path.endpoint.y == pytest.approx(0.0, abs=1e-12)

@@ -9,7 +9,7 @@ from numpy.polynomial import Polynomial
 from continuation import EvaluationError, Kind, KinkPoint, Monitor, Status, TargetValue, TurningPoint, trace
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
-from problems.bifurcation import Circle, Cusp, ExponentialCosine, FreudensteinRoth
+from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
 from ..util import scalar
 
@@ -103,13 +103,6 @@ def test_terminal_after_the_kth(terminal):
         assert "lam = 0.5" in path.message
 
 
-@pytest.mark.parametrize(("direction", "expected"), [(1, [1.0]), (-1, [-1.0]), (0, [1.0, -1.0])])
-def test_directions(direction, expected):
-    # sin(2 angle) rises through zero at angle 0 and pi, and falls at pi/2 and 3 pi/2; x = cos(angle) rises at 3 pi/2.
-    path = trace(Circle(), events=values(0.0, component=0, direction=-direction))
-    assert [event.lam for event in named(path, "component 0 = 0")] == pytest.approx(expected, abs=1e-12)
-
-
 def test_the_start_is_no_event():
     path = trace(Circle(), events=values(0.0))
     np.testing.assert_allclose(named(path, "lam = 0")[0].u, (-1.0, 0.0), rtol=0, atol=1e-12)
@@ -121,14 +114,6 @@ def test_any_component_is_landed_on_exactly(component, value):
     assert path.status is Status.STOPPED_AT_EVENT
     assert path.endpoint.u[component] == value
     assert np.abs(FreudensteinRoth().residual(path.endpoint.y, path.endpoint.lam)).max() <= 1e-11
-
-
-def test_values_between_knots_of_long_steps():
-    path = trace(Circle(), events=values(0.9, 0.1, -0.99, component=0), **GIANT)
-    assert (path.status, len(path) < 20) == (Status.CLOSED, True)
-    for x in (0.9, 0.1, -0.99):
-        found, y = [event.u for event in named(path, f"component 0 = {x:g}")], np.sqrt(1.0 - x * x)
-        np.testing.assert_allclose(found, [(x, y), (x, -y)], rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -155,32 +140,12 @@ def test_a_monitor_that_is_zero_at_the_start_sees_a_unit_tangent_behind_it(radiu
     assert trace(circle, events=upright, metric=Euclidean(), direction=1).events == []
 
 
-@pytest.mark.parametrize("n", [3, 5])
-def test_long_steps_lose_no_turning_point(n):
-    few = trace(ExponentialCosine(n)).turning_points
-    many = trace(ExponentialCosine(n), controller=Fixed(Bounds(initial=0.03))).turning_points
-    assert [event.step for event in few] != [event.step for event in many]
-    np.testing.assert_allclose([event.u for event in few], [event.u for event in many], rtol=0, atol=1e-10)
-
-
-@pytest.mark.parametrize("events", [[], [TurningPoint()]])
-def test_turning_points_are_watched_for_unasked_and_named_once(events):
-    assert [event.name for event in trace(Cusp(), events=events).events] == 2 * ["turning point"]
-
-
 def test_the_events_of_the_homotopy_come_too():
     class Own(Cusp):
         events = (TargetValue(0.0, component=0, terminal=0),)
 
     path = trace(Own(), events=values(1.0, component=0))
     assert [event.name for event in path.events if event.kind == Kind.EVENT] == ["component 0 = 0", "component 0 = 1"]
-
-
-def test_a_turning_point_as_the_end():
-    path = trace(Cusp(), events=[TurningPoint(terminal=1)])
-    assert (path.status, path.endpoint.kind) == (Status.STOPPED_AT_EVENT, Kind.TURNING_POINT)
-    assert path.endpoint.lam == pytest.approx(2.0 / (3.0 * np.sqrt(3.0)), abs=1e-13)
-    assert abs(path.endpoint.tangent[-1]) <= 1e-12
 
 
 @pytest.mark.parametrize(

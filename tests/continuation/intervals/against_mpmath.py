@@ -5,7 +5,7 @@ from collections.abc import Callable
 import mpmath
 import numpy as np
 
-from continuation.intervals import Interval, jacobian
+from continuation.intervals import Interval
 
 DIGITS = 200
 
@@ -63,23 +63,10 @@ def violations(name: str, count: int, seed: int = 0) -> tuple[int, float]:
         box, points, exact = _drawn(name, np.random.default_rng(seed), count)
         image = getattr(np, name)(*box)
         # The range over the box holds the value at a number inside.
-        outside = _outside(image.lo, image.hi, [exact(*map(mpmath.mpf, point)) for point in points])
+        true = [exact(*map(mpmath.mpf, point)) for point in points]
+        ends = zip(image.lo.tolist(), image.hi.tolist(), true, strict=True)
+        outside = sum(a == a and b == b and not mpmath.mpf(a) <= value <= mpmath.mpf(b) for a, b, value in ends)
     return outside, np.isfinite(image.hi).mean()
-
-
-def _outside(lo: np.ndarray, hi: np.ndarray, true: list) -> int:
-    ends = zip(lo.tolist(), hi.tolist(), true, strict=True)
-    return sum(a == a and b == b and not mpmath.mpf(a) <= value <= mpmath.mpf(b) for a, b, value in ends)
-
-
-def slopes_outside(name: str, count: int, seed: int = 0) -> int:
-    """The same for the derivative, against mpmath's own differentiation in 200 digits."""
-    x, exact = arguments(name, np.random.default_rng(seed), count), ONE[name]
-    f = getattr(mpmath, exact) if isinstance(exact, str) else exact
-    found = jacobian(getattr(np, name), x)
-    with mpmath.workdps(DIGITS):
-        true = [mpmath.diff(f, mpmath.mpf(v), h=mpmath.mpf(10) ** -60) for v in x.tolist()]
-        return _outside(np.diagonal(found.lo), np.diagonal(found.hi), true)
 
 
 def _drawn(name: str, generator: np.random.Generator, size: int) -> tuple[list[Interval], list, Callable]:

@@ -39,7 +39,7 @@ def box_around(x, width, part):
 
 
 @pytest.mark.parametrize("name", [f.__name__ for f in ELEMENTARY])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(place=PARTS, width=WIDTHS, part=PARTS, v=st.floats(-2.0, 2.0), w=st.floats(-2.0, 2.0))
 def test_the_series_of_a_function_along_a_curve_is_enclosed(name, place, width, part, v, w):
     low, high = DOMAIN.get(name, (-3.0, 3.0))
@@ -81,7 +81,7 @@ def with_entries(f, x):
 
 
 @pytest.mark.parametrize("name", EXPRESSIONS)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(x=st.lists(st.floats(0.25, 2.5), min_size=4, max_size=4), width=WIDTHS, part=PARTS, v=st.floats(-1.0, 1.0))
 def test_the_slopes_of_an_expression_are_enclosed(name, x, width, part, v):
     f, directions = EXPRESSIONS[name], np.array([v, 1.0, -0.5, 0.25])

@@ -56,18 +56,6 @@ def test_the_slope_is_that_of_jets_and_intervals_hold_it(name):
         assert (interval.hi - interval.lo <= 1e-12 * (1.0 + np.abs(exact))).all()
 
 
-def test_jets_within_dual_numbers_are_second_derivatives():
-    def function(y):
-        return np.stack([np.exp(y[0]) * y[1], y[1] ** 3 + np.sin(y[0] * y[1])])
-
-    x, v = X[:2], V[:2]
-
-    def along(y):
-        return derivative_along(function, y, y * 0.0 + v)[1]
-
-    np.testing.assert_allclose(jets.jacobian(along, x), jets.second_derivatives(function, x, v), rtol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("function", "name"),
     [

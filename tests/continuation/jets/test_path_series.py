@@ -1,13 +1,11 @@
 """The series of a path, in plain numpy of any style, against closed forms."""
 
-from math import factorial
-
 import mpmath as mp
 import numpy as np
 import pytest
 from scipy.linalg import lu_factor, lu_solve
 
-from continuation.jets import Jet, evaluate, jacobian, path_series
+from continuation.jets import jacobian, path_series
 
 ORDER = 20
 
@@ -40,52 +38,3 @@ def test_path_series_of_the_circle(residual):
         root = mp.taylor(lambda s: mp.sqrt(1 - s * s), 0, ORDER)
     assert np.array_equal(found[:, 0], np.eye(ORDER + 1)[1])
     np.testing.assert_allclose(found[:, 1], np.array(root, dtype=float), rtol=1e-13, atol=1e-16)
-
-
-def test_path_series_of_a_system_with_floats_among_its_components():
-    # y0 = exp(lam), y1 = lam, in lam: the border is e_3
-    def residual(y, lam):
-        return np.array([y[0] - np.exp(y[1]), y[1] - lam, y[2] - 1.0])
-
-    u0, tangent, border = np.array([1.0, 0, 1, 0]), np.array([1.0, 1, 0, 1]), np.eye(4)[3]
-    found = path_series(residual, u0, tangent, solver(residual, u0, border), 12)
-    np.testing.assert_allclose(found[:, 0], [1 / factorial(k) for k in range(13)], rtol=1e-14)
-    assert np.array_equal(found[2:, 1:], np.zeros((11, 3)))
-
-
-def test_path_series_of_bratu_in_plain_numpy():
-    n, h = 20, 1 / 21
-    second = (np.eye(n, k=1) - 2 * np.eye(n) + np.eye(n, k=-1)) / h**2
-
-    def by_slices(y, lam):
-        r = -2 * y
-        r[1:] += y[:-1]
-        r[:-1] += y[1:]
-        r /= h**2
-        return r + lam * np.exp(y)
-
-    def by_loop(y, lam):
-        r = np.empty_like(y)
-        for i in range(len(y)):
-            left, right = y[i - 1] if i else 0.0, y[i + 1] if i + 1 < len(y) else 0.0
-            r[i] = (left - 2 * y[i] + right) / h**2 + lam * np.exp(y[i])
-        return r
-
-    styles = (
-        lambda y, lam: second @ y + lam * np.exp(y),
-        lambda y, lam: np.diff(np.concatenate([[0.0], y, [0.0]]), 2) / h**2 + lam * np.exp(y),
-        by_slices,
-        by_loop,
-    )
-    y, lam = np.zeros(n), 1.0
-    for _ in range(20):
-        y = y - np.linalg.solve(second + lam * np.diag(np.exp(y)), styles[0](y, lam))
-    tangent = np.append(np.linalg.solve(second + lam * np.diag(np.exp(y)), -np.exp(y)), 1.0)
-    u0, tangent = np.append(y, lam), tangent / np.linalg.norm(tangent)
-    for residual in styles:
-        c = path_series(residual, u0, tangent, solver(residual, u0, tangent), 12)
-        assert np.array_equal(c[:2], [u0, tangent])
-        assert np.all(np.abs(c[2:] @ tangent) < 1e-13 * np.abs(c[2:]).max())
-        for s in (0.05, 0.1):  # the residual along the series falls like s^13
-            u = evaluate(Jet(c), s)
-            assert np.abs(residual(u[:-1], u[-1])).max() < 1e4 * np.abs(c[-1]).max() * s**13 + 1e-10

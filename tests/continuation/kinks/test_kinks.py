@@ -12,7 +12,6 @@ from continuation.archive import resume
 from continuation.evaluation.pieces import Pieces
 from continuation.testing import check_homotopy
 
-from ...util import every_preset
 from ..archive.test_archive_resume import OPTIONS, name
 from .util import Joined
 
@@ -119,16 +118,6 @@ def test_where_no_branch_leaves_it_is_said(homotopy, direction, status, words):
     path = trace(homotopy, direction=direction)
     assert path.status is status
     assert words in path.message
-
-
-@every_preset
-def test_a_cubic_with_a_kink(preset):
-    path = trace(CUBIC, preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert [event.name for event in path.events] == ["turning point", "turning kink"]
-    assert np.abs(path.events[0].u - [1.0, 0.0]).max() < 1e-7
-    assert np.abs(path.kinks[0].u - [0.0, 2.0]).max() < 1e-14
-    assert np.abs(path.endpoint.u - [0.0, -3.0]).max() < 1e-14
 
 
 @pytest.mark.parametrize("options", OPTIONS, ids=name)

@@ -8,6 +8,8 @@ import numpy as np
 
 from continuation import from_functions
 
+from ...exact import determinant
+
 
 @attrs.frozen(eq=False)
 class Joined:
@@ -116,14 +118,3 @@ class Folded:
                     size = sum(abs(x) for x in w)
                     found.setdefault(tuple(Fraction(x, size) for x in w), signs)
         return found
-
-
-def determinant(rows):
-    """By the first row; matrices here have three rows at most."""
-    if not rows:
-        return 1
-    return sum(
-        (-1) ** k * entry * determinant([row[:k] + row[k + 1 :] for row in rows[1:]])
-        for k, entry in enumerate(rows[0])
-        if entry
-    )

@@ -7,7 +7,6 @@ from scipy.sparse import csc_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import aslinearoperator
 
 from continuation.linear import Banded, SingularError, Symmetric, factor_bordered
-from continuation.linear.elimination import BlockElimination
 
 
 def at_fold(dimensions, n):
@@ -63,11 +62,6 @@ def test_bordered_systems_are_solved_at_and_near_a_fold(dimensions, n, structure
         z = factored.solve(rhs[:-1], rhs[-1])
         assert np.abs(z - truth).max() <= digits * np.abs(truth).max()
         assert factored.sign in ({0} if structure is aslinearoperator else {np.linalg.slogdet(whole)[0]})
-
-
-def test_regular_points_are_solved_in_the_band():
-    matrix, column, row, *_ = bordered_at(1, 1000, -1.0)
-    assert isinstance(factor_bordered(tridiagonal(matrix), column, row), BlockElimination)
 
 
 def test_an_operator_without_a_preconditioner_that_does_not_converge_is_said():

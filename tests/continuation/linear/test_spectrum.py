@@ -6,7 +6,7 @@ import scipy.linalg as la
 import scipy.sparse as sp
 
 from continuation.linear import Banded, Symmetric
-from continuation.linear.spectrum import bounds, spectrum
+from continuation.linear.spectrum import spectrum
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -62,15 +62,6 @@ def test_the_rightmost_of_a_large_matrix_are_found_whatever_its_structure(matrix
     assert found[0].covered or matrix is not TWENTY
     if matrix is ALIKE:
         np.testing.assert_allclose(sorted(found[0].pairs.imag), [1.0, 3.0], rtol=1e-6)
-
-
-def test_the_bounds_hold_all_eigenvalues():
-    generator = np.random.default_rng(3)
-    for _ in range(20):
-        A = generator.standard_normal((8, 8)) * 10.0 ** generator.uniform(-2, 2, (8, 1))
-        (real, imaginary), values = bounds(A), np.linalg.eigvals(A)
-        assert values.real.max() <= real
-        assert np.abs(values.imag).max() <= imaginary
 
 
 @pytest.mark.parametrize(("k", "known", "unstable"), [(None, False, 0), (202, True, 2)])

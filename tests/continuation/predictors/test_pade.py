@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from continuation.predictors.pade import approximant, best, first_pole
-from continuation.predictors.taylor import series_reach
 
 
 def rational_curve(pole: float, order: int) -> np.ndarray:
@@ -26,25 +25,6 @@ def test_exact_on_a_rational_curve_far_beyond_its_radius_up_to_the_pole(pole, wh
     np.testing.assert_allclose(shape(s), [1.0 / left, s / left, 1.0 + s], rtol=1e-8, atol=1e-8)
     slope = (shape(0.01 + h) - shape(0.01 - h)) / (2.0 * h)
     np.testing.assert_allclose(shape.derivative(0.01), slope, rtol=1e-5, atol=1e-7)
-
-
-def test_reaches_beyond_the_circle_of_convergence():
-    # 1/(1 + s^2) and arctan: no real pole, radius 1.
-    k = np.arange(25)
-    signs = (-1.0) ** (k // 2)
-    c = np.stack([signs * (k % 2 == 0), signs * (k % 2) / np.maximum(k, 1)], axis=1)
-    reach = series_reach(c, 1e-6, np.ones(2))
-    rational = best(c, np.ones(2), 1e-6, reach, 0.95)
-    assert reach < 0.7
-    assert rational.reach > 1.05
-    s = 0.95 * rational.reach
-    np.testing.assert_allclose(rational(s), [1.0 / (1.0 + s * s), np.arctan(s)], atol=1e-5)
-
-
-def test_the_pole_ends_the_range():
-    c = rational_curve(0.7, 10)
-    rational = best(c, np.ones(3), 1e-3, series_reach(c, 1e-3, np.ones(3)), 1.0)
-    assert rational is None or rational.reach < 0.7
 
 
 def test_terms_whose_squares_overflow_are_no_reason_to_raise():

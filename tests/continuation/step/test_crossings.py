@@ -1,10 +1,9 @@
 """Where the parameter of a path has a value."""
 
 import numpy as np
-import pytest
 
 import continuation
-from problems.bifurcation import Cusp, FreudensteinRoth
+from problems.bifurcation import FreudensteinRoth
 
 
 def test_all_crossings_of_a_path_with_folds():
@@ -15,14 +14,3 @@ def test_all_crossings_of_a_path_with_folds():
     # Between accepted points the path is interpolated.
     assert max(np.abs(homotopy.residual(u[:-1], u[-1])).max() for u in found) <= 1e-2
     assert np.array_equal(path(t=inside), found[0])
-
-
-def test_an_accepted_point_is_found_once():
-    path = continuation.trace(Cusp())
-    np.testing.assert_array_equal(path.crossings(path.steps[2].lam), [path.steps[2].u])
-
-
-@pytest.mark.parametrize("given", [{}, {"s": 0.0, "t": 0.0}])
-def test_both_or_neither_is_refused(given):
-    with pytest.raises(ValueError, match="s: expected an arclength, or t in its place"):
-        continuation.trace(Cusp())(**given)

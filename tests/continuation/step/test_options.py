@@ -1,26 +1,18 @@
-"""The one list of options: documented, typed, checked, and the same for everything that takes options."""
+"""The one list of options: checked, and the same for everything that takes options."""
 
-import inspect
-import re
-from pathlib import Path as File
-
-import attrs
 import numpy as np
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Path, Tracer, TurningPoint, trace
-from continuation.archive import checkpoint, resume, trace_many
+from continuation.archive import trace_many
 from continuation.chart import traced
 from continuation.metric import Weighted
 from continuation.predictors import Hermite
-from continuation.step.options import DEFAULTS, OPTIONS, PART_OPTIONS
-from continuation.step.settings import Settings
 from problems import lcp
-from problems.bifurcation import Bratu1D, Circle
+from problems.bifurcation import Circle
 
 from ...util import by_preset
 
-ROOT = File(__file__).parents[3]
 LCP = lcp.LCP(np.eye(2), -np.ones(2))
 TAKERS = {
     "trace": lambda **options: trace(Circle(), **options),
@@ -29,46 +21,15 @@ TAKERS = {
     "traced": lambda **options: traced("a method", **options),
     "solve": lambda **options: lcp.solve(LCP, **options),
 }
-
-
-def test_settings_are_options_completed_and_what_an_archive_keeps():
-    # A ceiling of the step is the controller's, and the faces of a box are events.
-    others = {"preset", "start", "finish", "check_jacobian", "max_step", "box"}
-    assert set(attrs.fields_dict(Settings)) == set(OPTIONS) - others
-    assert tuple(attrs.fields_dict(Settings)) == checkpoint.OPTIONS
-
-
-@pytest.mark.parametrize("taker", [trace, Tracer, resume])
-def test_help_shows_every_option_with_the_default_that_holds(taker):
-    text = inspect.getdoc(taker)
-    stated = dict(re.findall(r"^(\w+) : .*default (.*)$", text, re.MULTILINE))
-    for name in OPTIONS:
-        value = DEFAULTS[name]
-        assert stated[name] == ("DEFAULT" if name == "preset" else f"{value!r}") or eval(stated[name]) == value
-    assert "{" not in text
-
-
-def test_help_of_the_solver_shows_the_parts_alone():
-    text = inspect.getdoc(lcp.solve)
-    assert all(f"\n{name} : " in text for name in PART_OPTIONS)
-    assert "\ntarget : " not in text
-
-
-@pytest.mark.parametrize("taker", TAKERS)
-def test_an_unknown_option_is_refused_with_the_nearest_one(taker):
-    with pytest.raises(TypeError, match=r"^predicter: expected one of the options .*; did you mean predictor\?$"):
-        TAKERS[taker](predicter=Hermite())
-
-
-@pytest.mark.parametrize("name", ["target", "direction", "start", "state", "observers"])
-def test_an_option_that_the_solver_owns_is_refused(name):
-    with pytest.raises(TypeError, match=f"^{name}: expected no such option here, solve says"):
-        lcp.solve(LCP, **{name: 0.5})
+UNKNOWN = r"^predicter: expected one of the options .*; did you mean predictor\?$"
+OWNED = "target", "direction", "start", "state", "observers"
 
 
 @pytest.mark.parametrize(
     ("taker", "options", "error", "words"),
     [
+        *((taker, {"predicter": Hermite()}, TypeError, UNKNOWN) for taker in TAKERS),
+        *(("solve", {name: 0.5}, TypeError, f"^{name}: expected no such option here, solve says") for name in OWNED),
         ("trace_many", {"start": (np.zeros(2), np.ones(2))}, TypeError, "start: expected no such option here, where"),
         # Active sets alone solve this problem: no path is traced that could complain.
         ("solve", {"preset": "fast"}, TypeError, "preset: expected FAST, .*, found 'fast'"),
@@ -130,27 +91,9 @@ def test_a_bad_option_is_named_with_what_was_found(taker, options, error, words)
         TAKERS[taker](**options)
 
 
-def test_a_class_is_not_taken_for_a_homotopy():
-    with pytest.raises(TypeError, match=r"homotopy: expected an object, found the class Bratu1D; make one"):
-        trace(Bratu1D)
-
-
 def test_numbers_of_numpy_are_numbers():
     options = {"tolerance": np.float32(1e-6), "direction": np.int64(1), "examine": np.bool_(False)}
     assert isinstance(trace(Circle(), budget=Budget(steps=np.int64(3)), **options), Path)
-
-
-def test_a_misspelt_option_fails_in_mypy(tmp_path):
-    api = pytest.importorskip("mypy.api")
-    program = "import continuation\ncontinuation.trace(None, budgett=3)\ncontinuation.trace(None, tolerance=1e-6)\n"
-    # The configuration of `make types`, so that what it has left is used: numpy's types alone take seconds.
-    settings, left = tmp_path / "pyproject.toml", ROOT / ".mypy_cache"
-    settings.write_text((ROOT / "pyproject.toml").read_text().replace('packages = ["continuation", "problems"]', ""))
-    cache = left if left.exists() else tmp_path
-    said, _, status = api.run(["-c", program, f"--cache-dir={cache}", f"--config-file={settings}"])
-    assert status == 1
-    assert 'error: Unexpected keyword argument "budgett"' in said
-    assert "Found 1 error" in said
 
 
 @by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)

@@ -5,7 +5,6 @@ from math import pi
 
 import numpy as np
 import pytest
-from scipy.sparse import diags_array
 
 from continuation import (
     CONSERVATIVE,
@@ -15,7 +14,6 @@ from continuation import (
     Budget,
     Kind,
     Status,
-    TargetValue,
     Tracer,
     from_functions,
     trace,
@@ -23,7 +21,7 @@ from continuation import (
 from continuation.correctors import NaturalParameter
 from continuation.metric import Euclidean
 from continuation.rejection import Rejection
-from problems.bifurcation import Circle, Cusp, FreudensteinRoth, Pitchfork
+from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
 from ...util import by_preset, every_preset
 from .util import CONTROLLERS, CORRECTORS, METRICS, PREDICTORS, Watcher
@@ -168,33 +166,6 @@ def test_accepted_and_rejected_are_counted():
         assert all(attempt.contraction > 0.0 for attempt in step.rejected)
 
 
-def test_five_thousand_sparse_unknowns():
-    n = 5000
-    laplacian = diags_array([np.ones(n - 1), np.full(n, -2.0), np.ones(n - 1)], offsets=[-1, 0, 1], format="csc")
-
-    def residual(y, lam):
-        return laplacian @ y + lam * np.exp(y) / (n + 1.0) ** 2
-
-    def jacobian(y, lam):
-        slope = np.exp(y) / (n + 1.0) ** 2
-        return laplacian + diags_array([lam * slope], offsets=[0], format="csc"), slope
-
-    homotopy = from_functions(residual, jacobian, start=(np.zeros(n), 0.0), target=None)
-    path = trace(homotopy, events=[TargetValue(2.0, direction=-1)])
-    assert path.status is Status.STOPPED_AT_EVENT
-    (fold,) = path.turning_points
-    # lam* - lam*_n = 1.8281 h^2 + O(h^4).
-    assert fold.lam == pytest.approx(3.513830719125161 - 1.8281 / (n + 1) ** 2, abs=2e-11)
-
-
-@pytest.mark.parametrize("target", [3.0, -3.0, None])
-def test_the_homotopys_target_can_be_overridden(target):
-    homotopy = from_functions(lambda y, lam: y - lam, start=([0.0], 0.0), target=1.0)
-    path = trace(homotopy, target=target, budget=Budget(steps=40))
-    assert path.status is (Status.BUDGET_EXHAUSTED if target is None else Status.REACHED_TARGET)
-    assert target in (None, path.endpoint.lam)
-
-
 def test_an_unexamined_trace_follows_the_same_path_for_less():
     """Steps are those of a full trace up to the end; no turning point is located, and that is what is saved."""
     full, light = (trace(FreudensteinRoth(), examine=examine) for examine in (True, False))
@@ -203,11 +174,6 @@ def test_an_unexamined_trace_follows_the_same_path_for_less():
     np.testing.assert_allclose(light.endpoint.u, full.endpoint.u, rtol=0, atol=1e-10)
     assert light.counts.solves < full.counts.solves
     assert light.counts.residuals < full.counts.residuals
-
-
-def test_an_unexamined_trace_does_not_cross_a_branch_point():
-    path = trace(Pitchfork(), examine=False)
-    assert (path.status, path.events) == (Status.STEP_TOO_SMALL, [])
 
 
 def bent(seed, w=0.02):

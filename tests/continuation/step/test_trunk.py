@@ -1,5 +1,7 @@
 """A trunk with branch points of known places and multiplicities, in any units, is followed past each of them."""
 
+from itertools import cycle
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -8,6 +10,12 @@ from scipy.optimize import brentq
 import continuation
 
 from ...util import every_preset
+
+PRESETS = continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE
+
+
+def named(value):
+    return getattr(value, "name", str(value))
 
 
 class Trunk:
@@ -62,8 +70,9 @@ def passed(trunk, preset, **options):
     return path
 
 
-@every_preset
-@pytest.mark.parametrize("seed", [*range(6), 93])
+@pytest.mark.parametrize(
+    ("seed", "preset"), [*zip(range(6), cycle(PRESETS)), *((93, preset) for preset in PRESETS)], ids=named
+)
 def test_every_branch_point_is_found_with_its_multiplicity(seed, preset):
     trunk = Trunk(seed)
     path = passed(trunk, preset)
@@ -71,8 +80,11 @@ def test_every_branch_point_is_found_with_its_multiplicity(seed, preset):
     assert path.counts.factorizations <= 15 * (1 + len(trunk.expected))
 
 
-@every_preset
-@pytest.mark.parametrize(("seed", "beside"), [(0, 1e-16), (1, 1e-13), (2, 1e-10), (3, 1e-8), (4, 1e-6), (5, 1e-4)])
+@pytest.mark.parametrize(
+    ("seed", "beside", "preset"),
+    list(zip(range(6), (1e-16, 1e-13, 1e-10, 1e-8, 1e-6, 1e-4), cycle(PRESETS))),
+    ids=named,
+)
 def test_a_start_beside_a_symmetric_trunk_is_put_on_it(seed, beside, preset):
     # What Newton's method leaves of an unknown, 1e-40, is no size: 28 of 100 paths ended at their start.
     trunk = Trunk(seed, spread=3.0)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from continuation import Kind, Status, trace
+from continuation import Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve
 from problems.lcp.strategies import badly_scaled_lcps, near_singular_lcps, planted_lcps
 from problems.paper import COUNTEREXAMPLES
@@ -50,19 +50,6 @@ def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(pres
     assert {step.orientation for step in path.steps[1:]} == {-1}
     assert path.status is Status.REACHED_TARGET
     np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
-
-
-@for_interior_paths
-def test_a_double_fold_is_a_branch_point_and_is_named(preset):
-    """Two equal blocks: the kernel has two dimensions, four arms meet, and passing it is not passed over."""
-    A = np.kron(np.eye(2), [[0, -4.5], [1, 0]])
-    path = trace(KKTHomotopy(LCP(A, [5, 2, 5, 2]), [2.0, 1.0, 2.0, 1.0]), preset=preset)
-    fold, _ = trace(folding(4.5)).turning_points
-    branch = next(event for event in path.events if event.kind == Kind.BRANCH_POINT)
-    assert branch.lam == pytest.approx(fold.lam, abs=1e-9)
-    np.testing.assert_allclose(branch.y.reshape(3, 2, 2)[:, 0], branch.y.reshape(3, 2, 2)[:, 1], atol=1e-9)
-    assert path.status in (Status.REACHED_TARGET, Status.STEP_TOO_SMALL)
-    assert path.status is Status.STEP_TOO_SMALL or np.abs(path.endpoint.y[:4]).max() < 1e-8
 
 
 @share(60)
@@ -111,19 +98,6 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
     reference = trace(KKTHomotopy(problem, x0))
     apart = np.abs(path.endpoint.y - reference.endpoint.y).max()
     assert apart <= path.end_error + reference.end_error
-
-
-@for_interior_paths
-@pytest.mark.parametrize("n", [1, 2, 8])
-@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
-def test_all_pairs_zero_is_an_end_of_half_powers(make, n, preset):
-    """LCP(0, I): x = w = 0, where x and w go like the square root of lambda; the endgame's limit has all digits."""
-    path = trace(make(LCP(np.eye(n), np.zeros(n)), np.arange(1.0, n + 1.0)), preset=preset)
-    assert path.status is Status.REACHED_TARGET
-    assert path.winding_number == 2
-    assert "lam - target|^(1/2)" in path.message
-    assert path.endpoint.y.max() < 1e-12
-    assert path.end_error < 1e-7
 
 
 @share(25)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from problems import lcp
-from problems.lcp.data.scaling import balanced, units
+from problems.lcp.data.scaling import balanced
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 
@@ -23,24 +23,6 @@ campaign = benchmark("claims.py")
 @pytest.mark.parametrize(("mode", "number"), [("units", 60), ("factor", 20), ("truth", 60), ("bounds", 60)])
 def test_the_benchmark_of_units_finds_nothing_wrong(capsys, mode, number):
     assert campaign.CAMPAIGN.run(number, 3, [mode]) == 0, capsys.readouterr().out
-
-
-@given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans())
-@settings(deadline=None)
-def test_units_that_are_powers_of_two_come_out_again_exactly(seed, sparse, stored_sparse):
-    rng = np.random.default_rng(seed)
-    n = int(rng.integers(1, 12))
-    A, q = rng.standard_normal((n, n)), rng.standard_normal(n)
-    A = A * (rng.random((n, n)) < 0.4) if sparse else A
-    D, E = powers(rng, n, 40), powers(rng, n, 40)
-    kind = sp.csr_array if stored_sparse else np.asarray
-    given = [(A, q), (D[:, None] * A * E, D * q)]
-    # Only a part whose q is zero, and so x = 0, has no unit of its own.
-    scaled = []
-    for entries, right in given:
-        rows, columns = units(lcp.LCP(kind(entries), right))
-        scaled.append(np.column_stack([np.ldexp(entries, rows[:, None] + columns), np.ldexp(right, rows)]))
-    np.testing.assert_array_equal(*scaled)
 
 
 @pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
@@ -58,20 +40,6 @@ def test_scaling_brings_rows_and_columns_to_about_one_keeps_symmetry_and_is_undo
     np.testing.assert_array_equal(scaled.u(scaled.x(u)), u)
     np.testing.assert_array_equal(np.ldexp(problem.w(scaled.x(u)), scaled.rows), scaled.problem.w(u))
     assert scaled.exact
-
-
-def test_tiny_entries_of_a_kernel_say_nothing_about_units():
-    x = np.linspace(-20.0, 20.0, 60)
-    kernel = np.exp(-((x[:, None] - x) ** 2))
-    assert kernel[kernel > 0].min() < 1e-290
-    rows, columns = units(lcp.LCP(kernel, np.where(x > 0, 1.0, -1.0)))
-    assert np.unique(rows).size == np.unique(columns).size == 1
-
-
-def test_a_game_of_unconnected_parts_and_a_diagonal_matrix_take_their_units_from_q():
-    scaled = balanced(lcp.LCP(np.diag([1e5, 1e-5]), [-1e-9, 1e9])).problem
-    for values in (scaled.A.diagonal(), np.abs(scaled.q)):
-        assert 0.4 < values.min() <= values.max() < 2.5
 
 
 @pytest.mark.parametrize(("bounds", "rows", "columns"), [(False, 300, 300), (True, 900, 100)])

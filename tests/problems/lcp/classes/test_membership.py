@@ -37,12 +37,3 @@ def test_beyond_the_limits_the_answer_is_not_decided_with_the_reason():
 def test_a_membership_has_no_truth_value():
     with pytest.raises(TypeError, match=r"read \.holds"):
         bool(classes.is_p(np.eye(2)))
-
-
-def test_the_table_has_one_line_a_class():
-    result = classify([[0, 1], [0, 0]])
-    lines = classes.table(result).splitlines()
-    assert len(lines) == len(result)
-    assert lines[0].split()[:2] == ["PSD", "no"]
-    assert any(line.startswith("row sufficient") and " no " in line for line in lines)
-    assert all(len(line) < 110 + 60 for line in lines)

@@ -1,6 +1,5 @@
 """What comes through the door of `LCP`: sound, or refused in one line that names the argument."""
 
-import os
 from copy import deepcopy
 from decimal import Decimal
 from fractions import Fraction
@@ -83,12 +82,6 @@ def test_sound_matrices_and_numbers_in_any_form(case):
     if sp.issparse(given):
         assert (found.format, found.has_sorted_indices) == ("csr", True)
         assert np.array_equal(given.toarray(), before.toarray()), "the caller's matrix is left alone"
-
-
-def test_a_pipe_is_no_file(tmp_path):
-    os.mkfifo(tmp_path / "p.h5")
-    with pytest.raises(InputError, match="path: expected a file, found a directory or a device"):
-        read_problem(tmp_path / "p.h5")
 
 
 @pytest.mark.parametrize("kind", ["soft", "external", "virtual", "elsewhere"])

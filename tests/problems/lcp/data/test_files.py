@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 import scipy.sparse as sp
 
-from problems.lcp.data.files import InputError, read_matrix, read_problem, read_vector
+from problems.lcp.data.files import InputError, read_problem, read_vector
 
 A = np.array([[2.0, -1.0, 0.0], [0.5, 0.0, 3.0], [0.0, 1e-300, -7.25]])
 Q = np.array([-1.0, 2.5, 1 / 3])
@@ -48,15 +48,6 @@ def test_every_container_gives_the_same_numbers(tmp_path, name):
     np.testing.assert_array_equal(problem.q, Q)
 
 
-MATRICES = {
-    "a.mtx": lambda path: scipy.io.mmwrite(path, sp.coo_array(A), precision=17),
-    "dense.mtx": lambda path: scipy.io.mmwrite(path, A, precision=17),
-    "a.npy": lambda path: np.save(path, A),
-    "a.txt": lambda path: np.savetxt(path, A, fmt="%.17g", header="three rows"),
-    "a.csv": lambda path: np.savetxt(path, A, fmt="%.17g", delimiter=","),
-    "a.npz": lambda path: sp.save_npz(path, sp.csc_array(A)),
-    "a.json": lambda path: path.write_text(json.dumps(A.tolist())),
-}
 VECTORS = {
     "q.npy": lambda path: np.save(path, Q),
     "q.txt": lambda path: np.savetxt(path, Q, fmt="%.17g"),
@@ -66,17 +57,6 @@ VECTORS = {
     "sparse.mtx": lambda path: scipy.io.mmwrite(path, sp.coo_array(Q[:, None]), precision=17),
     "q.npz": lambda path: np.savez(path, q=Q, other=A),
 }
-
-
-@pytest.mark.parametrize("matrix", MATRICES)
-def test_a_matrix_alone_and_q_in_its_own_file(tmp_path, matrix):
-    MATRICES[matrix](tmp_path / matrix)
-    VECTORS["q.npy"](tmp_path / "q.npy")
-    problem = read_problem(tmp_path / matrix, q=tmp_path / "q.npy")
-    np.testing.assert_array_equal(problem.A.toarray() if problem.sparse else problem.A, A)
-    np.testing.assert_array_equal(problem.q, Q)
-    alone = read_matrix(tmp_path / matrix)
-    np.testing.assert_array_equal(alone.toarray() if sp.issparse(alone) else alone, A)
 
 
 @pytest.mark.parametrize("vector", VECTORS)
@@ -159,13 +139,3 @@ def test_vectors_are_checked_under_their_name(tmp_path, name, size, write, messa
     with pytest.raises(InputError, match=message) as caught:
         read_vector("x0", tmp_path / name, size)
     assert caught.value.argument == "x0"
-
-
-def test_a_bad_q_file_is_the_argument_at_fault(tmp_path):
-    np.save(tmp_path / "a.npy", A)
-    with pytest.raises(InputError, match=r"^q: expected a file, found nothing"):
-        read_problem(tmp_path / "a.npy", tmp_path / "q.npy")
-    np.save(tmp_path / "q.npy", Q[:2])
-    with pytest.raises(InputError, match=r"q: expected 3 numbers, one a row of A, found 2, in .*q.npy") as caught:
-        read_problem(tmp_path / "a.npy", tmp_path / "q.npy")
-    assert caught.value.argument == "q"

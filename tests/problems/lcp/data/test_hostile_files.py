@@ -243,7 +243,7 @@ def test_damaged_files(tmp_path, form):
         # What a damaged size asks for is not to be had from the machine, nor to be taken.
         resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        for _ in range(80):
+        for _ in range(40):
             damaged = bytearray(raw)
             for _ in range(generator.choice((1, 1, 3))):
                 damaged[generator.randrange(len(raw))] = generator.randrange(256)

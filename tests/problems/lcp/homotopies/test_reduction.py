@@ -6,13 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
-from continuation.linear.symmetric import Cholesky
 from problems import lcp
-from problems.lcp.homotopies.registry import HOMOTOPIES
-from problems.lcp.strategies import matrices
 
 from .util import bordered_at, every, interior, made, random_lcp
 
@@ -57,47 +52,10 @@ def test_components_that_are_zero_and_a_point_that_moves_on(make):
     assert system.sign == np.linalg.slogdet(M)[0]
 
 
-@pytest.mark.parametrize("name", ["kkt", "yu"])
-def test_without_refinement_the_quick_core_answers_alone(name):
-    rng = np.random.default_rng(1)
-    problem = random_lcp(rng, 5, "symmetric psd")
-    refined, alone = (
-        HOMOTOPIES[name].at(problem, lcp.default_start(problem), lcp.Structure(problem), refine)
-        for refine in (True, False)
-    )
-    y, lam = interior(rng, refined, 0.5)
-    border, rhs = rng.standard_normal((2, y.size + 1))
-    system = refined.bordered(y, lam, border)
-    z = alone.bordered(y, lam, border).solve(rhs[:-1], rhs[-1])
-    np.testing.assert_array_equal(z, system.quick.solve(rhs[:-1], rhs[-1]))
-    np.testing.assert_allclose(z, system.solve(rhs[:-1], rhs[-1]), rtol=1e-8)
-
-
 def test_singular_matrix_is_said_to_be_singular():
     homotopy = lcp.WangHomotopy(lcp.LCP([[1.0]], [1.0]))
     with pytest.raises(ArithmeticError, match=r"singular|not finite"):
         homotopy.bordered(np.zeros(2), 0.0, np.array([1.0, 0.0, 0.0])).solve(np.ones(2), 1.0)
-
-
-@given(A=matrices("PSD", n=st.integers(1, 4)), seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=50, deadline=None)
-def test_psd_matrix_gives_cholesky(A, seed):
-    """G is positive definite wherever x, z1, z2, w > 0, whatever the rank of A."""
-    rng = np.random.default_rng(seed)
-    homotopy = made(lcp.KKTHomotopy, lcp.LCP(A, np.ones(len(A))), rng)
-    y, lam = homotopy.start()[0], 0.9
-    y[len(A) :] *= rng.uniform(0.2, 5.0, 2 * len(A))
-    assume((homotopy.problem.w(y[: len(A)]) + lam * homotopy.rho > 0.05).all())
-    assert isinstance(homotopy.bordered(y, lam, np.ones(y.size + 1)).quick.core.factor, Cholesky)
-
-
-@pytest.mark.parametrize("make", [lcp.YuHomotopy, lcp.WangHomotopy, lcp.KojimaMegiddoMizunoHomotopy, lcp.XuHomotopy])
-@pytest.mark.parametrize("kind", ["symmetric psd", "psd"])
-def test_a_symmetric_psd_matrix_alone_gives_cholesky(make, kind):
-    rng = np.random.default_rng(0)
-    homotopy = made(make, random_lcp(rng, 6, kind), rng)
-    quick = homotopy.bordered(*interior(rng, homotopy, 0.5), np.ones(13)).quick
-    assert isinstance(quick.core.factor, Cholesky) if kind == "symmetric psd" else quick is None
 
 
 @pytest.mark.parametrize(
@@ -112,37 +70,6 @@ def test_a_symmetric_psd_matrix_alone_gives_cholesky(make, kind):
 def test_what_is_taken_for_semidefinite_in_any_unit(A, expected, power):
     A = 2.0**power * (A if sp.issparse(A) else np.array(A))
     assert lcp.Structure(lcp.LCP(A, [0, 0])).semidefinite is expected
-
-
-def sparse_examples(rng):
-    n = 40
-    band = sp.diags_array([rng.standard_normal(n - abs(k)) for k in (-2, 0, 1)], offsets=[-2, 0, 1])
-    scattered = sp.random_array((n, n), density=0.08, rng=rng) + sp.diags_array(rng.standard_normal(n))
-    arrow = sp.lil_array((n, n))
-    arrow.setdiag(rng.standard_normal(n))
-    arrow[0, :] = rng.standard_normal(n)
-    return {"banded": sp.csr_array(band), "scattered": sp.csr_array(scattered), "full row": sp.csr_array(arrow)}
-
-
-@every
-@pytest.mark.parametrize("kind", ["banded", "scattered", "full row"])
-def test_sparse_and_banded_agree_with_dense(make, kind):
-    rng = np.random.default_rng(7)
-    A, q = sparse_examples(rng)[kind], rng.standard_normal(40)
-    sparse, dense = lcp.LCP(A, q), lcp.LCP(A.toarray(), q)
-    one, other = made(make, sparse, np.random.default_rng(1)), made(make, dense, np.random.default_rng(1))
-    y, lam = interior(rng, one, 0.7)
-    (system, M, rhs), (reference, expected_M, _) = (
-        bordered_at(h, y, lam, np.random.default_rng(2)) for h in (one, other)
-    )
-    assert np.allclose(one.residual(y, lam), other.residual(y, lam), rtol=1e-12, atol=1e-12)
-    assert sp.issparse(one.jacobian(y, lam)[0])
-    assert np.allclose(M, expected_M, rtol=1e-14)
-    expected = reference.solve(rhs[:-1], rhs[-1])
-    for found, digits in ((system, 1e-10), (system.robust, 1e-9)):
-        z = found.solve(rhs[:-1], rhs[-1])
-        assert np.allclose(z, expected, rtol=1e-9, atol=digits * np.abs(expected).max())
-        assert found.sign == reference.sign
 
 
 @pytest.mark.parametrize("make", [lcp.KKTHomotopy, lcp.WangHomotopy])

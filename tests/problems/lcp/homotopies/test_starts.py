@@ -36,15 +36,6 @@ def test_the_papers_start_is_kept():
         assert np.array_equal(homotopy.start()[0], np.concatenate([example.x0, example.z1, example.z2]))
 
 
-def test_relaxed_start():
-    problem = lcp.LCP(np.eye(2), [-3.0, 2.0])
-    homotopy = lcp.KKTHomotopy(problem, [1.0, 1.0])
-    assert homotopy.origin.w0.tolist() == [3.0, 6.0]
-    assert homotopy.rho.tolist() == [5.0, 3.0]
-    assert np.ptp(homotopy.c) < 1e-15 * homotopy.c[0]
-    assert lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0]).origin.w0.tolist() == [1.0, 2.0]
-
-
 def test_default_start_has_the_units_of_the_problem():
     A, q = np.array([[2.0, 1.0], [0.0, 3.0]]), np.array([-4.0, 1.0])
     start, scaled = lcp.default_start(lcp.LCP(A, q)), lcp.default_start(lcp.LCP(1e6 * A, 1e2 * q))

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse as sp
-from hypothesis import find, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from continuation.cli import main
 from problems import lcp
-from problems.lcp.data.files import InputError, read_problem, read_program
-from problems.lcp.mixed_strategies import planted_mixed_lcps
+from problems.lcp.data.files import read_problem, read_program
 
 A, Q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-5.0, -6.0])
 
@@ -33,14 +32,6 @@ REFUSED = {
 def test_bounds_that_are_none_are_refused(bounds, message):
     with pytest.raises(ValueError, match=message):
         lcp.MixedLCP(A, Q, *bounds)
-
-
-def test_integers_one_number_and_none_are_bounds():
-    problem = lcp.MixedLCP(A, Q, np.array([0, 1], dtype=np.int8), 3)
-    assert problem.lower.dtype == float
-    assert problem.upper.tolist() == [3.0, 3.0]
-    assert np.isinf(lcp.MixedLCP(A, Q).lower).all()
-    assert lcp.MixedLCP(A, Q, 0).standard
 
 
 def test_a_fixed_unknown_is_eliminated_and_named():
@@ -97,12 +88,6 @@ def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
     np.testing.assert_array_equal(lcp.solve(read).x, lcp.solve(lcp.from_qp(**program)).x)
 
 
-def test_bad_bounds_in_a_file_are_one_line(tmp_path):
-    np.savez(tmp_path / "p.npz", A=A, q=Q, lower=[0.0, 2.0], upper=[1.0, 1.0])
-    with pytest.raises(InputError, match=r"path: lower: expected at most upper, found lower\[1\]"):
-        read_problem(tmp_path / "p.npz")
-
-
 def test_models_are_read_by_highs_where_it_is_installed(tmp_path):
     pytest.importorskip("highspy")
     model = (
@@ -124,18 +109,6 @@ def test_hypothesis_finds_problems_and_programs(problem, program):
     assert type(problem) is lcp.MixedLCP
     assert problem.n == problem.lower.size
     assert program.convex
-
-
-@given(planted_mixed_lcps())
-def test_planted_solutions_solve(planted):
-    problem, x = planted
-    assert problem.natural_residual(x) == 0.0
-    assert lcp.certify_exactly(problem, x).solves or problem.n == 0
-
-
-def test_problems_of_every_kind_of_bound_are_drawn():
-    found = find(st.from_type(lcp.MixedLCP), lambda p: p.fixed.any() and np.isinf(p.lower).any() and p.n == 2)
-    assert found.n == 2
 
 
 def test_the_shell_solves_bounds_and_programs(tmp_path, capsys):

@@ -9,8 +9,6 @@ from continuation.testing import check_homotopy
 from problems import lcp
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
-from .util import orders
-
 BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
 INF = np.inf
 NARROW = lcp.MixedLCP(
@@ -32,21 +30,6 @@ def random_program(rng, n, m, sparse=False, rank=None, width=0.5):
     if sparse:
         P, G = sp.csr_array(P), sp.csr_array(G)
     return lcp.from_qp(P, rng.standard_normal(n), G, high, rows_lower=low, lower=lower, upper=upper)
-
-
-@KINDS
-@pytest.mark.parametrize("name", [name for name in BOUNDED if name != "kkt"])
-def test_active_sets_factor_what_is_of_order_n_and_the_rows(monkeypatch, name, sparse):
-    rng, n, m = np.random.default_rng(3), 30, 20
-    program = random_program(rng, n, m, sparse, rank=15)
-    assert program.row.size == m + 13
-    found = orders(monkeypatch)
-    quick = lcp.solve(program)
-    assert quick.success
-    assert max(found) <= n + m
-    path = lcp.solve(program, name, finish=False)
-    assert path.success
-    assert path.objective == pytest.approx(quick.objective, rel=1e-8)
 
 
 @KINDS

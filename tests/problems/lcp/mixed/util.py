@@ -2,25 +2,7 @@
 
 import numpy as np
 
-from continuation.linear.factoring import Factoring
 from problems.lcp import MixedLCP
-from problems.lcp.active_set import face
-from problems.lcp.homotopies import elimination
-
-
-def orders(monkeypatch):
-    """Where the orders of all matrices that are factored go from here on."""
-    found = []
-    factors = [(face, name) for name in ("factor_lu", "factor_cholesky", "factor_band")]
-    for module, name in (*factors, (Factoring, "factor"), (elimination, "factor_bordered")):
-        real = getattr(module, name)
-
-        def counted(*arguments, real=real, **given):
-            found.append(next(one for one in arguments if hasattr(one, "shape")).shape[0])
-            return real(*arguments, **given)
-
-        monkeypatch.setattr(module, name, counted)
-    return found
 
 
 def drawn(rng, n):

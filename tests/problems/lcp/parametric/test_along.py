@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from continuation.archive import open_archive
-from continuation.budget import Budget
 from continuation.status import Kind, Status
 from problems.lcp import LCP, MixedLCP, along, solve
 from problems.lcp.parametric.natural import NaturalMap
@@ -132,12 +131,6 @@ def test_a_path_that_comes_back_to_a_branching_kink_ends_there():
     assert path.status is Status.UNRESOLVED_KINK
     assert "goes round from here" in path.message
     assert len(path) < 20
-
-
-def test_a_budget_ends_it():
-    path = along(murty(5), np.ones(5), (np.inf, 0.0), budget=Budget(steps=10))
-    assert path.status is Status.BUDGET_EXHAUSTED
-    assert len(path) == 10
 
 
 @pytest.mark.parametrize(

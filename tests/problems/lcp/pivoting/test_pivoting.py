@@ -1,11 +1,9 @@
 """Pivoting: paths from basis to basis against an independent Lemke, against closed forms, and through ties."""
 
 import numpy as np
-import pytest
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
@@ -45,36 +43,6 @@ def test_pivots_end_at_a_solution_or_on_a_ray():
     assert solved > 200
 
 
-@pytest.mark.parametrize("n", range(2, 9))
-def test_murty_s_path_has_all_its_kinks(n):
-    A = np.eye(n) + np.tril(np.full((n, n), 2.0), -1)
-    q = -np.cumsum(2.0 ** np.arange(n - 1, -1, -1))
-    path = covering(LCP(A, q), np.ones(n))
-    assert path.run(5000) is Ended.REACHED
-    # A pivot at each of the 2^n - 1 kinks, and one where t leaves.
-    assert path.pivots == 2**n
-
-
-def test_pivots_that_wait_are_the_same_ones(monkeypatch):
-    """Put into the table together or one by one, with ties, which look at all of it, and without."""
-    draws = map(np.random.default_rng, range(10))
-    large = [LCP(np.abs(r.standard_normal((60, 60))), -r.random(60)) for r in draws]
-    most = 0
-    for problem in (*map(random_problem, range(50)), *large):
-        ends = []
-        for largest in (10**9, 0):
-            monkeypatch.setattr(dictionary, "LARGE", largest)
-            path = covering(problem, np.ones(problem.n))
-            ends.append((path.run(1000), path.pivots, tuple(path.active)))
-            (one,) = path.dictionaries
-            pivoted, basic = one.table.copy(), one.basic.copy()
-            assert one.rebuilt() > -1e-7
-            np.testing.assert_allclose(one.table[np.argsort(one.basic), -1], pivoted[np.argsort(basic), -1], atol=1e-7)
-        assert ends[0] == ends[1]
-        most = max(most, path.pivots)
-    assert most > dictionary.DELAYED
-
-
 def test_a_singular_basis_is_noticed():
     one = Dictionary(np.array([[1.0, 1.0, 1.0], [1.0, 1.0, 2.0]]), np.arange(2), np.arange(2, 4))
     one.basic, one.nonbasic = np.array([2, 3]), np.array([0, 1])
@@ -103,13 +71,6 @@ def test_lemke_and_howson_from_every_label():
     paths = [game.path(label) for label in range(4)]
     assert {path.run(50) for path in paths} == {Ended.REACHED}
     assert {tuple(path.active) for path in paths} == {(True, False, True, False), (False, True, False, True)}
-
-
-def test_what_is_no_game():
-    assert Game.of(LCP(np.eye(2), -np.ones(2))) is None
-    assert Game.of(LCP([[0.0, 1.0], [1.0, 0.0]], [-1.0, 1.0])) is None
-    assert Game.of(LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])) is None
-    assert Game.of(LCP(np.zeros((2, 2)), [-1.0, -1.0])) is None
 
 
 def test_a_bounded_program_has_no_other_ray():

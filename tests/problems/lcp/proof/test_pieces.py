@@ -10,10 +10,6 @@ from problems.lcp.mixed_strategies import mixed_lcps
 from problems.lcp.proof.pieces import doubtful, in_doubt
 from problems.lcp.reference.enumeration import exhaust
 
-from ....util import benchmark
-
-random_problem = benchmark("claims.py").random_problem
-
 
 @settings(max_examples=50, deadline=None)
 @given(mixed_lcps())

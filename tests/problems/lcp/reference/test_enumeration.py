@@ -6,14 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import LARGEST_FACES, exhaust, solve_by_enumeration
-from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps, planted_lcps
+from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps
 from problems.paper import EXAMPLES
 
 from ....exact import exact_w, solves
@@ -23,15 +22,6 @@ ORDERS = st.integers(1, 4)
 
 def assert_exact(problem, found):
     assert all(solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w for s in found.solutions)
-
-
-def test_two_by_two_in_closed_form():
-    """[[2, 1], [1, 2]], q = (-5, -6): x = (4/3, 7/3)."""
-    found = solve_by_enumeration(LCP([[2, 1], [1, 2]], [-5, -6]))
-    (solution,) = found.solutions
-    assert solution.x == (Fraction(4, 3), Fraction(7, 3))
-    assert (solution.faces, solution.strictly_complementary) == (((0, 1),), True)
-    np.testing.assert_array_equal(found.points, [[4 / 3, 7 / 3]])
 
 
 def test_the_edge_of_solvability_is_decided_exactly():
@@ -103,31 +93,10 @@ def test_for_q0_matrices_solvable_means_feasible(problem):
     assert solve_by_enumeration(problem).solvable == feasible
 
 
-@given(lcps("PSD", ORDERS))
-def test_the_solutions_of_a_monotone_problem_are_one_or_a_continuum(problem):
-    """The solution set is convex (CPS, theorem 3.1.7): two isolated solutions cannot be."""
-    found = solve_by_enumeration(problem)
-    if found.complete:
-        assert len(found.solutions) <= 1
-
-
-@given(planted_lcps("degenerate", "any", ORDERS))
-def test_a_planted_solution_is_found(pair):
-    problem, x = pair
-    found = solve_by_enumeration(problem)
-    assert tuple(map(Fraction, x)) in {s.x for s in found.solutions} or not found.complete
-
-
 @given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
 def test_hard_numbers_are_exact_too(pair):
     problem, _ = pair
     assert_exact(problem, solve_by_enumeration(problem))
-
-
-def test_sparse_and_dense_agree():
-    A = np.diag([2.0, 3.0, 4.0]) - np.eye(3, k=1)
-    q = [-1.0, 1.0, -3.0]
-    assert solve_by_enumeration(LCP(A, q)) == solve_by_enumeration(LCP(sp.csr_array(A), q))
 
 
 @pytest.mark.parametrize("method", [solve_by_enumeration, exhaust])
