@@ -113,7 +113,7 @@ def up_to(
     found: list[tuple[int, Linearization]],
     branch_point: Linearization | None,
 ) -> list[tuple[int, Linearization]]:
-    """Events up to the last of `found`, at which the arc was cut: its own end may show more than the whole arc's did."""
+    """Events up to the last of `found`, where the arc was cut: this end may show more than the whole arc's did."""
     last, again = found[-1][0], scan_events(solver, events, before, arc, branch_point)[0]
     kept = []
     for i in {i for i, _ in (*found, *again)}:
