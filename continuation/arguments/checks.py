@@ -40,7 +40,8 @@ def of_kind(expected: str, holds: Callable[[Any], bool], error: type[Exception] 
     """An attrs validator: an error unless `holds(value)`."""
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-        expect(holds(value), attribute.alias or attribute.name, expected, value, error)
+        if not holds(value):
+            raise complain(error, attribute.alias or attribute.name, expected, value)
 
     return check
 

@@ -123,10 +123,8 @@ def _eigenvalues(
         if k == 0 and not whole:
             Q[1] = x / left_over
             continue
-        # What leads out of the space comes back multiplied by at most the size of C.
-        closed = left_over * max(1.0, float(np.abs(H[: k + 1, : k + 1]).max()) / right) <= OUTSIDE_SPACE * right
         if k == 1 and _nothing_told(H, right, left):
-            if whole or closed:
+            if whole or _closed(H[:2, :2], left_over, right):
                 return np.empty(0), np.empty((a.u.size, 0)), scale
             converged = True
         else:
@@ -136,7 +134,7 @@ def _eigenvalues(
             # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
             last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
             same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
-            if whole or (converged and (same if told else before or closed)):
+            if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
                 break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
@@ -149,6 +147,11 @@ def _eigenvalues(
         and abs(z) > rounding
     ]
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
+
+
+def _closed(H: Array, left_over: float, right: float) -> bool:
+    """Whether no eigenvalue hides outside the space: what leads out comes back multiplied by at most the size of C."""
+    return left_over * max(right, float(np.abs(H).max())) <= OUTSIDE_SPACE * right * right
 
 
 def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:

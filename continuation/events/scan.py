@@ -114,9 +114,13 @@ def up_to(
     branch_point: Linearization | None,
 ) -> list[tuple[int, Linearization]]:
     """Events up to the last of `found`, where the arc was cut: this end may show more than the whole arc's did."""
-    last, again = found[-1][0], scan_events(solver, events, before, arc, branch_point)[0]
-    kept = []
-    for i in {i for i, _ in (*found, *again)}:
-        first, second = ([pair for pair in some if pair[0] == i] for some in (found, again))
-        kept += second if i != last and len(second) > len(first) else first
-    return sorted(kept, key=lambda pair: (position(arc, pair[1].u), pair[0] == last))
+    kept = found
+    for i, event in enumerate(events):
+        known = [pair for pair in found if pair[0] == i]
+        if i == found[-1][0] or hasattr(event, "found_on") or isinstance(event, SOUGHT_ELSEWHERE):
+            continue
+        if (before[i] * event.monitor(arc.b.u, arc.b.tangent) < 0.0) != len(known) % 2:
+            again = [(i, point) for _, point in scan_events(solver, (event,), (before[i],), arc, branch_point)[0]]
+            if len(again) > len(known):
+                kept = [*again, *(pair for pair in kept if pair[0] != i)]
+    return kept if kept is found else sorted(kept, key=lambda pair: (position(arc, pair[1].u), pair is found[-1]))

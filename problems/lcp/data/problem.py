@@ -300,12 +300,8 @@ class LCP(MixedLCP):
     upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.n), takes_self=True))
 
     def __attrs_post_init__(self) -> None:
-        """Nothing to check."""
-
-    @property
-    def standard(self) -> bool:
-        """Always."""
-        return True
+        """`standard` is known, and asked for at every residual."""
+        vars(self)["standard"] = True
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q, with what is known of A.
