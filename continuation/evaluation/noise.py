@@ -47,7 +47,7 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
     Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` of shape (N + 1,).
     `here`, shape (N,): residual(u). `enough`, shape (N,): smaller noise need not be steady.
     """
-    least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
+    least, noise, steady = np.full(here.size, np.inf), np.zeros(here.size), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
     for k in range(NOISE_TRIES):
         h = max(NOISE_REACH * NOISE_FINER**k, LOOK * near)
@@ -56,12 +56,13 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         # Equal samples are no evidence.
         found[(samples == here).all(axis=0)] = np.inf
         now = (least <= NOISE_STEADY * found) & (least < np.inf) | (found <= enough)
-        least = np.where(steady, least, np.minimum(least, found))
-        steady |= now
+        # Where the differences no longer shrink, those that are nearer have less of the function: they may be larger.
+        noise = np.where(now & ~steady, np.where(found < np.inf, found, least), noise)
+        least, steady = np.minimum(least, found), steady | now
         if steady.all():
             break
     # Still shrinking: no noise.
-    return np.where(steady & (least < np.inf), least, 0.0)
+    return noise
 
 
 def allowed_along(
