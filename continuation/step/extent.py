@@ -109,7 +109,11 @@ def initial_extent(
         blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
-    unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
+    seen = np.maximum(_largest([_across(v, z) for z in samples]), blur)
+    if np.count_nonzero(moving) > 1:
+        # The component that is held shows no noise: it has as much of its motion as the next.
+        seen = np.maximum(seen, size * np.partition(seen[moving] / size[moving], 1)[1])
+    unseen = UNCERTAIN * seen
     h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
     apart = np.abs(point.approximate(residual))
