@@ -254,7 +254,10 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
     here, ulp = evaluator.residual(at.u), np.spacing(at.u) * np.sign(generic_vector(at.u.size))
     for ulps in ULPS:
         there = at.u + ulps * ulp
-        left = evaluator.residual(there) - here - apply(there - at.u)
+        try:
+            left = evaluator.residual(there) - here - apply(there - at.u)
+        except EvaluationError:
+            continue  # A target may lie on the edge of the domain.
         # The largest of many samples is larger.
         seen = np.maximum(seen, 2.0 * np.abs(at.solve(left, 0.0, unit)))
     return seen

@@ -11,7 +11,7 @@ from scipy.linalg import eig
 from scipy.optimize import brentq
 
 from continuation.arguments.checks import complain
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.contraction import HALVING
 from continuation.evaluation.products import sizes
 from continuation.step.extent import REPLACED
@@ -119,11 +119,15 @@ def _newton(matrix: Array, field: Field, x: Array, p: float) -> Array:
 
 
 def explained(field: Field, t: Array, x: Array, p: float) -> Array:
-    """The simulation x with a constant for components whose changes are round-off: f does not explain half of them."""
-    slopes, change, mean = field(x.T, p).T, np.diff(x, axis=0), x.mean(axis=0)
+    """The simulation x with a constant for components whose changes are round-off.
+
+    They are far smaller than others, and f does not explain half of them; nor may it where a spike has few samples.
+    """
+    slopes, change, mean, size = field(x.T, p).T, np.diff(x, axis=0), x.mean(axis=0), x.std(axis=0)
     left = change - 0.5 * np.diff(t)[:, None] * (slopes[1:] + slopes[:-1])
     noise = np.linalg.norm(left, axis=0) > HALVING * np.linalg.norm(change, axis=0)
-    return np.where(noise, np.where(np.abs(mean) > x.std(axis=0), mean, 0.0), x)
+    noise &= size < ROOT_OF_ROUND_OFF * size.max()
+    return np.where(noise, np.where(np.abs(mean) > size, mean, 0.0), x)
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
