@@ -70,9 +70,14 @@ def refused(argument, call):
 
 def in_child(work):
     """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
+    return os.waitpid(child(work), 0)[1]
+
+
+def child(work):
+    """A process that does it, with the exit status of `in_child`. Threads that fork at once wait for each other's locks."""
     process = os.fork()
     if process:
-        return os.waitpid(process, 0)[1]
+        return process
     status = 0
     try:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)

@@ -13,7 +13,6 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -27,7 +26,7 @@ from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
 
-from ..util import benchmark, in_child
+from ..util import benchmark, child, in_child
 
 HOMOTOPY = ExponentialCosine(3)
 OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
@@ -169,8 +168,8 @@ def resumes(folder: Path, size: int) -> Found:
     for k in range(size):
         file = folder / f"two{k}.h5"
         shutil.copy(killed, file)
-        with ThreadPoolExecutor(2) as executor:
-            statuses = sorted(status >> 8 for status in executor.map(in_child, [lambda file=file: resume(file)] * 2))
+        both = [child(lambda file=file: resume(file)) for _ in range(2)]
+        statuses = sorted(os.waitpid(one, 0)[1] >> 8 for one in both)
         # Whoever comes when the other is done finds a path that has ended.
         seen["one resumed, one was refused" if statuses == [0, 7] else f"WRONG: {statuses}"] += 1
         if not _prefix(file, whole, len(whole)):
