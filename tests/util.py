@@ -74,7 +74,7 @@ def in_child(work):
 
 
 def child(work):
-    """A process that does it, with the exit status of `in_child`. Threads that fork at once wait for each other's locks."""
+    """A process that does it; two threads that fork at once wait for each other's locks."""
     process = os.fork()
     if process:
         return process
