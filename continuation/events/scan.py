@@ -117,7 +117,7 @@ def up_to(
     kept = found
     for i, event in enumerate(events):
         known = [pair for pair in found if pair[0] == i]
-        if i == found[-1][0] or hasattr(event, "found_on") or isinstance(event, SOUGHT_ELSEWHERE):
+        if i == found[-1][0] or before[i] == 0.0:
             continue
         if (before[i] * event.monitor(arc.b.u, arc.b.tangent) < 0.0) != len(known) % 2:
             again = [(i, point) for _, point in scan_events(solver, (event,), (before[i],), arc, branch_point)[0]]

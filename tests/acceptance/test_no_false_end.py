@@ -11,7 +11,20 @@ from mpmath import mp, mpf
 from numpy.polynomial import Polynomial
 
 import continuation
-from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Status, from_functions, trace
+from continuation import (
+    CONSERVATIVE,
+    DEFAULT,
+    FAST,
+    SERIES,
+    Budget,
+    Monitor,
+    Status,
+    TargetValue,
+    from_functions,
+    trace,
+)
+from continuation.controllers import Bounds, Fixed
+from continuation.evaluation.noise import noise_along
 from continuation.metric import Euclidean
 from continuation.step.tracer import Tracer
 
@@ -276,3 +289,21 @@ def test_a_residual_in_single_precision(preset, tolerance):
     np.testing.assert_allclose([fold.lam for fold in path.turning_points], [2.0, -2.0], atol=1e-4)
     assert path.endpoint.y[0] == pytest.approx(2.5, abs=1e-4)
     assert ("noisy" in path.message) == (tolerance < 1e-5)
+
+
+@every_preset
+def test_an_event_before_the_end_of_an_arc_that_goes_on_is_found(preset):
+    """Beyond the terminal event the function takes its old sign again, at once: the whole arc shows nothing."""
+    hidden = Monitor(lambda u, v: min(30.0 - u[-1], 1.0) if u[-1] <= 36.0 else 1.0, "hidden")
+    homotopy = from_functions(lambda y, lam: y - 1e-3 * lam, start=([0.0], 0.0), target=None)
+    options = {"metric": Euclidean(), "controller": Fixed(Bounds(initial=50.0))}
+    path = trace(homotopy, preset=preset, direction=1, events=[hidden, TargetValue(33.0)], **options)
+    assert [event.lam for event in path.events] == pytest.approx([30.0, 33.0], rel=1e-12)
+
+
+def test_equal_samples_are_no_evidence_of_an_exact_function():
+    """At the first distance all samples are rounded alike, nearer by one of eight is not."""
+    values = iter([0.1] * 8 + [0.1, 0.1, 0.1 + 1e-10, 0.1, 0.1, 0.1, 0.1, 0.1] * 2)
+    u, w = np.array([1.0, 0.0]), np.array([1.0, 1.0])
+    noise = noise_along(lambda _: np.array([next(values)]), u, w, np.array([0.1]), np.array([1e-14]))
+    assert 1e-12 < noise[0] < 1e-8
