@@ -101,18 +101,16 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Across the path: hold the component with least relative noise.
-    best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
-    blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
+    blur = np.maximum(_largest([_across(v, given, z) for z in samples]), np.spacing(np.abs(u)))
     if near:
         # Round-off of the tangent is round-off of the way.
         blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
-    seen = np.maximum(_largest([_across(v, z) for z in samples]), blur)
+    seen = blur
     if np.count_nonzero(moving) > 1:
-        # The component that is held shows no noise: it has as much of its motion as the next.
-        seen = np.maximum(seen, size * np.partition(seen[moving] / size[moving], 1)[1])
+        # The component in the median shows no noise: it has as much of its motion as the next.
+        seen = np.maximum(blur, size * np.partition(blur[moving] / size[moving], 1)[1])
     unseen = UNCERTAIN * seen
     h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
@@ -120,7 +118,9 @@ def initial_extent(
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
         try:
-            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen * max(1.0, h / (ahead or h)), apart)
+            d, turned = _nonlinearity(
+                evaluator, point, v, given, h, residual, unseen * max(1.0, h / (ahead or h)), apart
+            )
         except Exception:
             # H is probed beyond its domain.
             d, turned = off, np.inf
@@ -209,9 +209,10 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
     return np.where(small & replaced, 0.0, v)
 
 
-def _across(v: Array, z: Array) -> Array:
+def _across(v: Array, given: Array, z: Array) -> Array:
+    """A correction without its part along the path; `v` tells how far, but has zeros that `given` has not."""
     moving = v != 0.0
-    across: Array = z - median(z[moving] / v[moving]) * v
+    across: Array = z - median(z[moving] / v[moving]) * given
     return across
 
 
@@ -221,18 +222,28 @@ def _largest(samples: list[Array]) -> Array:
 
 
 def _nonlinearity(
-    evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array, apart: Array
+    evaluator: Evaluator,
+    point: Linearization,
+    v: Array,
+    given: Array,
+    h: float,
+    residual: Array,
+    unseen: Array,
+    apart: Array,
 ) -> tuple[Array, float]:
     """The correction at u + h v across v, and the nonlinearity; `apart`: distance of u from the path."""
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
-    def corrected(at: Array) -> Array:
-        z = _across(v, point.approximate(residual - evaluator.residual(at)))
+    def correction(at: Array) -> Array:
+        return _across(v, given, point.approximate(residual - evaluator.residual(at)))
+
+    def seen(z: Array) -> Array:
         return np.where(np.abs(z) > unseen, z, 0.0)
 
-    d = corrected(there)
-    e = corrected(there + d)
+    # Noise moves a point by noise only, but what is left of a correction without its small components is no noise.
+    whole = correction(there)
+    d, e = seen(whole), seen(correction(there + whole))
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
@@ -245,7 +256,7 @@ def _nonlinearity(
     bent = ~moving & (np.abs(d) > apart)
     if bent.any():
         # A component that begins to move here, as the parameter at a fold, follows a parabola, which has no scale.
-        half = corrected(point.u + 0.5 * h * v)
+        half = seen(correction(point.u + 0.5 * h * v))
         bent &= half != 0.0
         if bent.any():
             turned = max(turned, median(np.abs(d - 4.0 * half)[bent] / np.abs(d[bent])))

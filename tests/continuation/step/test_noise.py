@@ -73,3 +73,24 @@ def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tm
     again = resume(tmp_path / "part.h5", homotopy, budget=Budget())
     np.testing.assert_array_equal(again.u, whole.u)
     assert again.message == whole.message
+
+
+@pytest.mark.parametrize(("unit", "origin"), [(1e6, 3e9), (1e8, 1e12)])
+def test_a_slow_unknown_in_a_unit_that_makes_it_the_largest_does_not_blur_the_others(unit, origin):
+    """The third unknown moves by a millionth and is known to eleven digits: held still, all others would have five.
+
+    Scales of the others were twelve and thirty times too large.
+    """
+
+    def path(unit, origin):
+        def residual(y, lam):
+            x, z, slow = y[0], y[1], (y[2] - origin) / unit
+            return np.stack([x - 12 * lam - z * z, z - 0.002 * x * x - 0.01 * x, slow - 1e-6 * x - 1e-3 * z])
+
+        return trace(from_functions(residual, start=([0.0, 0.0, origin], 0.0), target=1.0))
+
+    own, other = path(1.0, 0.0), path(unit, origin)
+    assert own.status is other.status is Status.REACHED_TARGET
+    assert other.counts.rejected <= own.counts.rejected + 1
+    ratio = np.sqrt(own.steps[1].weights / other.steps[1].weights)[[0, 1, 3]]
+    assert 0.5 < ratio.min() and ratio.max() < 2.0
