@@ -93,4 +93,5 @@ def test_a_slow_unknown_in_a_unit_that_makes_it_the_largest_does_not_blur_the_ot
     assert own.status is other.status is Status.REACHED_TARGET
     assert other.counts.rejected <= own.counts.rejected + 1
     ratio = np.sqrt(own.steps[1].weights / other.steps[1].weights)[[0, 1, 3]]
-    assert 0.5 < ratio.min() and ratio.max() < 2.0
+    assert ratio.min() > 0.5
+    assert ratio.max() < 2.0
