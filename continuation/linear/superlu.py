@@ -63,6 +63,15 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
     return SparseFactor("SuperLU", lu.solve, int(lu.nnz), partial(superlu_sign, lu))
 
 
+def definite(matrix: Matrix) -> bool:
+    """Whether a symmetric csc matrix is positive definite: elimination without exchanges meets positive pivots only."""
+    try:
+        lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:
+        return False
+    return bool((lu.U.diagonal() > 0.0).all() and (lu.perm_r == lu.perm_c).all())
+
+
 @frozen
 class SuperLUMethod:
     """SuperLU, for any matrix.

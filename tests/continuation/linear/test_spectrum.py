@@ -75,3 +75,18 @@ def test_eigenvalues_that_may_have_been_overlooked_are_said(k, known, unstable):
 def test_an_operator_has_no_eigenvalues_that_are_known():
     with pytest.raises(TypeError, match="stability: expected H_y as a matrix, found MatrixLinearOperator"):
         spectrum(sp.linalg.aslinearoperator(np.eye(3)))
+
+
+@pytest.mark.parametrize("make", [sp.csc_array, lambda matrix: matrix.toarray()], ids=["sparse", "dense"])
+@pytest.mark.parametrize("growth", [-0.3, 0.05])
+def test_all_unstable_eigenvalues_of_fourth_differences_are_counted(make, growth):
+    """Swift and Hohenberg's operator: Gershgorin's discs end at 12,655, beyond the rightmost eigenvalue of 0.05."""
+    n = 300
+    second = (n / 40.0) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n))
+    once = sp.eye_array(n) + second
+    matrix = growth * sp.eye_array(n) - once @ once
+    found, exact = spectrum(make(matrix)), la.eigvalsh(matrix.toarray())
+    assert found.covered
+    assert found.unstable == np.count_nonzero(exact > 0.0)
+    assert found.rightmost == pytest.approx(exact[-1], rel=1e-6)
+    assert found.solves < 150  # the disc's shift took 300 and more, and left eigenvalues that may have been overlooked
