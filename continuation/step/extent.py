@@ -210,9 +210,14 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
 
 
 def _across(v: Array, given: Array, z: Array) -> Array:
-    """A correction without its part along the path; `v` tells how far, but has zeros that `given` has not."""
+    """A correction without its part along the path, `given`; the middle component that moves in `v` tells how much.
+
+    Of two in the middle it is that with the smaller part.
+    """
     moving = v != 0.0
-    across: Array = z - median(z[moving] / v[moving]) * given
+    parts = np.sort(z[moving] / v[moving])
+    low, high = parts[(parts.size - 1) // 2], parts[parts.size // 2]
+    across: Array = z - (low if abs(low) <= abs(high) else high) * given
     return across
 
 
