@@ -101,7 +101,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    blur = np.maximum(_largest([_across(v, given, z) for z in samples]), np.spacing(np.abs(u)))
+    blur = np.maximum(_largest([_held(v, given, z) for z in samples]), np.spacing(np.abs(u)))
     if near:
         # Round-off of the tangent is round-off of the way.
         blur = np.maximum(blur, ahead * np.abs(given - v))
@@ -210,15 +210,21 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
 
 
 def _across(v: Array, given: Array, z: Array) -> Array:
-    """A correction without its part along the path, `given`; the middle component that moves in `v` tells how much.
+    """A correction without its part along the path, `given`: the median's of those that move in `v`."""
+    moving = v != 0.0
+    across: Array = z - median(z[moving] / v[moving]) * given
+    return across
 
-    Of two in the middle it is that with the smaller part.
+
+def _held(v: Array, given: Array, z: Array) -> Array:
+    """Noise beside one component, the median of those that move; of two, the one that `z` holds better.
+
+    Half of each would blur the one that moves by what the other hardly does.
     """
     moving = v != 0.0
     parts = np.sort(z[moving] / v[moving])
-    low, high = parts[(parts.size - 1) // 2], parts[parts.size // 2]
-    across: Array = z - (low if abs(low) <= abs(high) else high) * given
-    return across
+    beside: Array = z - min(parts[(parts.size - 1) // 2], parts[parts.size // 2], key=abs) * given
+    return beside
 
 
 def _largest(samples: list[Array]) -> Array:
