@@ -30,7 +30,6 @@ from continuation.homotopy import (
     offers,
 )
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
-from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Round-off of a point, in ulps."""
@@ -159,11 +158,9 @@ class Evaluator:
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
+    @np.errstate(all="ignore")
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError if not finite."""
-        if not silent():
-            with Silence():
-                return self.residual(u)
         self.counts.residuals += 1
         try:
             # Plug-ins may reuse their arrays.
@@ -261,10 +258,8 @@ class Evaluator:
             return whole.dot
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
+    @np.errstate(all="ignore")
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        if not silent():
-            with Silence():
-                return self._evaluated(u)
         try:
             answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
@@ -295,7 +290,7 @@ class Evaluator:
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
-                with Silence():
+                with np.errstate(all="ignore"):
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:

@@ -27,12 +27,9 @@ class Symmetric:
     ----------
     matrix : Array
         Shape (N, N); an unsymmetric one is solved correctly, but slowly.
-    definite : bool, optional
-        True: Cholesky first. None: if the diagonal is positive. False: LDL'. A wrong guess only costs time.
     """
 
     matrix: Array = field(converter=_dense)
-    definite: bool | None = None
 
     def __attrs_post_init__(self) -> None:
         if self.matrix.ndim != 2 or self.matrix.shape[0] != self.matrix.shape[1]:
@@ -59,7 +56,7 @@ class Cholesky:
     """``factor * A = L L'``: a factor 1 or 2 keeps all digits if A is scaled by a power of two."""
 
     lower: Array
-    factor: float = 1.0
+    factor: float
 
     @property
     def least_pivot(self) -> float:
@@ -73,8 +70,7 @@ class Cholesky:
 
     def solve(self, rhs: Array) -> Array:
         """The solution, shape (N,)."""
-        x: Array = dpotrs(self.lower, rhs, lower=1)[0].ravel()
-        return x if self.factor == 1.0 else self.factor * x
+        return np.asarray(self.factor * dpotrs(self.lower, rhs, lower=1)[0].ravel())
 
 
 @frozen(eq=False)
@@ -103,8 +99,7 @@ class LDL:
 def factor_symmetric(symmetric: Symmetric) -> Factored | None:
     """Factor a symmetric matrix; None if a pivot is zero."""
     matrix = symmetric.matrix
-    positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
-    if positive and (factor := factor_cholesky(matrix.T)) is not None:
+    if (matrix.diagonal() > 0).all() and (factor := factor_cholesky(matrix.T)) is not None:
         return factor
     factors, whole = factor_ldl(matrix)
     return factors if whole else None
@@ -120,5 +115,5 @@ def factor_ldl(matrix: Array) -> tuple[LDL, bool]:
 def factor_cholesky(matrix: Array) -> Cholesky | None:
     """The Cholesky factor, from the lower triangle; None if a pivot is not positive."""
     factor = 2.0 - math.frexp(matrix[0, 0])[1] % 2
-    lower, info = dpotrf(matrix if factor == 1.0 else factor * matrix, lower=1, clean=0)
+    lower, info = dpotrf(factor * matrix, lower=1, clean=0)
     return Cholesky(lower, factor) if info == 0 else None

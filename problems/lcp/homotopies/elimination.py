@@ -42,7 +42,7 @@ class Core:
         with np.errstate(all="ignore"):
             column, known = way.forward(way.system.column)
             row = np.append(way.row(border[:-1]), border[-1] - float(border[:-1].dot(known)))
-            matrix = Symmetric(way.matrix(), definite=True) if definite else way.matrix()
+            matrix = Symmetric(way.matrix()) if definite else way.matrix()
             return cls(way, border, factor_bordered(matrix, column, row))
 
     @property

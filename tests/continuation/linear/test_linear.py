@@ -32,11 +32,7 @@ def full_band(matrix):
 
 
 GENERAL = {"dense": np.array, "banded": full_band, "sparse": csc_array}
-SYMMETRIC = {
-    "unknown": Symmetric,
-    "indefinite": lambda matrix: Symmetric(matrix, definite=False),
-    "definite": lambda matrix: Symmetric(matrix, definite=True),
-}
+SYMMETRIC = {"symmetric": Symmetric}
 EVERY = GENERAL | SYMMETRIC | {"operator": aslinearoperator}
 
 
