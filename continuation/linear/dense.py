@@ -15,7 +15,7 @@ from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 from continuation.arrays import EPS, SIX_DIGITS, Array
 from continuation.contraction import HALVING
 from continuation.linear.refine import BACKWARD_ERROR
-from continuation.linear.system import SingularError, Solver
+from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
 """Ratio of smallest to largest row (column) above which LAPACK does not scale."""
@@ -125,9 +125,24 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     return Dense(lu, pivots, None if scale is None else scale[None], None if columns is None else columns[None], kept)
 
 
-def factor_lu(matrix: Array) -> Solver | None:
+@frozen(eq=False)
+class LU:
+    """LU factors of a dense matrix."""
+
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return lu_sign(self.pivots, self.lu.diagonal())
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution, shape (N,)."""
+        return np.asarray(dgetrs(self.lu, self.pivots, rhs)[0])
+
+
+def factor_lu(matrix: Array) -> LU | None:
     """LU factors of a square matrix; None if a pivot is zero."""
     lu, pivots, info = dgetrf(matrix)
-    if info:
-        return None
-    return Solver(lambda rhs: np.asarray(dgetrs(lu, pivots, rhs)[0]), lambda: lu_sign(pivots, lu.diagonal()))
+    return LU(lu, pivots) if info == 0 else None
