@@ -77,7 +77,6 @@ class HopfPoint:
         ----------
         evaluator : Evaluator
         """
-        evaluator.keeping = True
         return BoundHopf(evaluator, *astuple(self))
 
 
