@@ -128,7 +128,7 @@ class BoundHopf:
 
     def at(self, u: Array) -> Spectrum:
         """The eigenvalues at a point."""
-        key = (id(self.evaluator.homotopy), u.tobytes())
+        key = self.evaluator.bindings, u.tobytes()
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
                 del self._known[next(iter(self._known))]

@@ -88,6 +88,7 @@ class Evaluator:
         self.counts = counts
         self.methods: set[str] = set()
         self.noise: Array | None = None
+        self.bindings = 0
         self.bind(homotopy)
         if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -101,6 +102,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
+        self.bindings += 1
         self.followed = True  # by jets
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
