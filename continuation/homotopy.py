@@ -261,6 +261,54 @@ class SupportsEvents(Protocol):
 
 
 @runtime_checkable
+class SupportsBound(Protocol):
+    """An event that needs the path's evaluator."""
+
+    def bound(self, evaluator: Any) -> Watcher:
+        """Return the event for one path.
+
+        Parameters
+        ----------
+        evaluator : Evaluator
+        """
+        ...
+
+
+@runtime_checkable
+class Watcher(Event, Protocol):
+    """An event that finds its own points on an arc."""
+
+    def found_on(self, solver: Any, arc: Any) -> list[Any]:
+        """Return its points on an arc, in order.
+
+        Parameters
+        ----------
+        solver : PathSolver
+        arc : Arc
+        """
+        ...
+
+    def accounts_for(self, arc: Any, found: Sequence[tuple[Any, Any]]) -> bool:
+        """Return whether the events found, as pairs of kind and point, explain the arc.
+
+        Parameters
+        ----------
+        arc : Arc
+        found : sequence of (Kind, Linearization)
+        """
+        ...
+
+    def observe(self, u: Array) -> Mapping[str, float]:
+        """Return scalars stored with a point.
+
+        Parameters
+        ----------
+        u : ndarray, shape (N + 1,)
+        """
+        ...
+
+
+@runtime_checkable
 class SupportsPieces(Protocol):
     """A continuous map, smooth where no switch changes sign.
 

@@ -29,7 +29,6 @@ class Rejection(Enum):
     UNACCOUNTED = "more eigenvalues change sides on the arc than is found there"
     GUARD = "a guard refuses the arc"
     MIDPOINT = "the inside of the arc is not on the path"
-    RAISED = "the homotopy raised an exception of its own at a point that was tried"
     ARC = "the inside of the arc could not be evaluated"
 
     @property

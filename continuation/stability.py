@@ -77,7 +77,6 @@ class HopfPoint:
         ----------
         evaluator : Evaluator
         """
-        evaluator.keeping = True
         return BoundHopf(evaluator, *astuple(self))
 
 
@@ -87,7 +86,7 @@ class Stability:
 
     ``observed["unstable"]`` is the number of unstable eigenvalues; ``"rightmost"``, the largest real part;
     ``"frequency"``, the imaginary part of the pair nearest to the axis, or nan; ``"covered"``, 1 if no unstable
-    eigenvalue can be missing. A `Symmetric` H_y gives ``"unstable"`` only.
+    eigenvalue can be missing.
 
     Parameters
     ----------
@@ -129,7 +128,7 @@ class BoundHopf:
 
     def at(self, u: Array) -> Spectrum:
         """The eigenvalues at a point."""
-        key = (id(self.evaluator.homotopy), u.tobytes())
+        key = self.evaluator.bindings, u.tobytes()
         if key not in self._known:
             while len(self._known) >= SPECTRA_KEPT:
                 del self._known[next(iter(self._known))]
@@ -155,8 +154,6 @@ class BoundHopf:
     def observe(self, u: Array) -> dict[str, float]:
         """A point's stored scalars."""
         found = self.at(u)
-        if not found.values.size:
-            return {"unstable": float(found.unstable)}
         pairs = found.pairs
         frequency = float(pairs.imag[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
         known = (float(found.unstable), found.rightmost, frequency, float(found.covered))

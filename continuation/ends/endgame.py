@@ -29,9 +29,6 @@ RATIO = 0.2
 RELATIVE_FLOOR = 1e-13
 """Change by the last sample that stops the sampling, relative."""
 
-RESIDUAL_RATIO = 1e-3
-"""Largest residual at the limit, relative to the first sample moved to the target."""
-
 ULPS = 8.0, -1021.0
 """Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
@@ -39,9 +36,6 @@ WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
 SAMPLES_WITHOUT_GAIN = 3
 """Samples without gain that stop the sampling."""
-
-ROUND_OFF_SPREAD = 10.0
-"""Allowed growth of round-off in H from the last sample to the limit."""
 
 SAMPLE_TOLERANCE = 1e-3
 """Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
@@ -117,7 +111,7 @@ class Endgame:
                 break
         if best is None or not self._within(best):
             return None
-        return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None
+        return best if self._keeps_orientation(best, here) else None
 
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
         """Whether two samples lie on one branch, as far as known.
@@ -141,13 +135,6 @@ class Endgame:
 
     def _within(self, end: SingularLimit) -> bool:
         return end.length <= self.solver.tolerance.relative
-
-    def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
-        """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
-        residual_norm = self.solver.evaluator.residual_norm
-        residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
-        moved = residual_norm(np.append(taken[0].u[:-1], self.target))
-        return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, and its noise.

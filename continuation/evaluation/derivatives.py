@@ -10,9 +10,8 @@ from attrs import define, field
 
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix, generic_vector
-from continuation.evaluation.pattern import Pattern, Places, found, generic, pattern_of
+from continuation.evaluation.pattern import Pattern, found, generic, pattern_of
 from continuation.evaluation.products import (
-    AGREEMENT,
     DIFFERENCE_STEPS,
     ByDifferences,
     Products,
@@ -24,9 +23,6 @@ from continuation.evaluation.products import (
 
 SPARSE_FROM = 64
 """Number of unknowns from which sparse factorisations win."""
-
-LOOKS_AT_ONCE = 64
-"""Directions at once; more cost only memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
@@ -55,39 +51,24 @@ class Derivative:
     products: Products
     pattern: Pattern | None = None
     notes: set[str] = field(factory=set)
-    plain: Products = field(init=False)
-    """The products without noise."""
-    agreement: float = field(init=False)
-    """Tolerance of the check, AGREEMENT if the residual has round-off inside."""
-
-    @plain.default
-    def _without_noise(self) -> Products:
-        return self.products
-
-    @agreement.default
-    def _first(self) -> float:
-        return self.products.agreement
 
     def know(self, noise: Array) -> None:
         """Adapt difference steps to noise, shape (N,)."""
-        if isinstance(self.plain, ByDifferences):
-            self.products = self.plain.over(noise)
+        if isinstance(self.products, ByDifferences):
+            self.products = self.products.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """The pair (H_y, H_lam), dense or sparse."""
         u = np.append(y, lam)
         if self.pattern is not None:
             answer = self._by_groups(u, self.pattern)
+            if answer is None:
+                self.notes.add("a sparsity pattern that changed, looked for again")
+                more = _looked_for(self.residual, u)
+                self.pattern = None if more is None else _worth(self.pattern.joined(more))
+                answer = None if self.pattern is None else self._by_groups(u, self.pattern)
             if answer is not None:
                 return answer
-            self.pattern = self._grown(u, self.pattern)
-            self.notes.add("a sparsity pattern that changed, looked for again")
-            for agreement in (self.agreement, AGREEMENT):
-                self.agreement = agreement
-                answer = None if self.pattern is None else self._by_groups(u, self.pattern)
-                if answer is not None:
-                    return answer
-            # Without products that add up, groups are useless.
             self.pattern = None
             self.notes.add("a sparsity pattern that could not be found")
         full = self.products.whole(self.residual, u)
@@ -105,26 +86,12 @@ class Derivative:
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
         # Outside the domain the pattern is not at fault.
-        allowed = self.agreement * size
-        if (gap > allowed).any() and (gap > np.maximum(allowed, self.agreement * float(allowed.max()))).any():
+        allowed = self.products.agreement * size
+        if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
             return None
         if scale is not None:
             entries, column = entries / scale[pattern.columns], column / scale[-1]
         return pattern.matrix(entries), np.ascontiguousarray(column)
-
-    def _grown(self, u: Array, known: Pattern) -> Pattern | None:
-
-        def touched(labels: Places, count: int) -> Any:
-            rows = []
-            for first in range(0, count, LOOKS_AT_ONCE):
-                some = np.flatnonzero((labels >= first) & (labels < first + LOOKS_AT_ONCE))
-                directions = np.zeros((min(LOOKS_AT_ONCE, count - first), u.size))
-                directions[labels[some] - first, some] = generic(u.size)[some]
-                rows.append(self.products(self.residual, u, directions) != 0.0)
-            return np.concatenate(rows, axis=1)
-
-        more = found(touched, known.n)
-        return None if more is None else _worth(known.joined(more))
 
 
 def _worth(pattern: Pattern | None) -> Pattern | None:
@@ -150,7 +117,7 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
         else:
             return None
 
-    def touched(labels: Places, count: int) -> Any:
+    def touched(labels: Any, count: int) -> Any:
         seen = np.empty((before.size, count), bool)
         for k in range(count):
             own = np.flatnonzero(labels == k)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from traceback import walk_tb
 from typing import ClassVar
 
 from continuation.rejection import Rejection
@@ -16,15 +14,9 @@ class EvaluationError(ArithmeticError):
 
 
 class NotFiniteError(EvaluationError):
-    """The edge of the domain, or an overflow."""
+    """The edge of the domain, an overflow, or a ValueError of the homotopy's own."""
 
     rejection = Rejection.NO_VALUE
-
-
-class RaisedError(EvaluationError):
-    """The homotopy raises ValueError: outside its domain, or by mistake."""
-
-    rejection = Rejection.RAISED
 
 
 class SingularPointError(EvaluationError):
@@ -33,17 +25,7 @@ class SingularPointError(EvaluationError):
     rejection = Rejection.SINGULAR
 
 
-MATHS_OWN = ("math domain error", "expected a")
-"""Beginnings of `math`'s domain errors, to Python 3.13 and from 3.14."""
-
-
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """A domain error for exceptions of `math`, numpy and scipy, else the author's."""
-    if isinstance(error, EvaluationError):
-        # A homotopy inside this one raised it.
-        return error
-    *_, (frame, line) = walk_tb(error.__traceback__)
-    module = str(frame.f_globals.get("__name__", "")).partition(".")[0]
-    if type(error) is not ValueError or module in ("numpy", "scipy") or str(error).startswith(MATHS_OWN):
-        return NotFiniteError(f"the {what} could not be evaluated: {error}")
-    return RaisedError(f"ValueError: {error} ({os.path.basename(frame.f_code.co_filename)}, line {line})")
+    """The error of a homotopy that raised another one."""
+    # A homotopy inside this one may have raised it.
+    return error if isinstance(error, EvaluationError) else NotFiniteError(f"the {what} raised: {error}")

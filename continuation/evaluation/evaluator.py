@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property, partial
+from functools import cached_property
 from math import isfinite
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 from scipy.linalg.blas import dasum, dscal
 
 from continuation.arguments.checks import instance_with, real_vector
@@ -30,7 +30,6 @@ from continuation.homotopy import (
     offers,
 )
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
-from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Round-off of a point, in ulps."""
@@ -45,19 +44,24 @@ class CountedSystem:
 
     system: BorderedSystem
     counts: Counts
-    solve: Callable[[Array, float], Array] = field(init=False)
-    """Bordered solve; EvaluationError if not finite."""
-    approximate: Callable[[Array, float], Array] = field(init=False)
-    """Unrefined solve, if iterations measure their residual."""
 
-    @solve.default
-    def _solve(self) -> Callable[[Array, float], Array]:
-        return partial(_counted if getattr(self.system, "finite", False) else _finite, self.counts, self.system.solve)
+    def solve(self, r: Array, rho: float) -> Array:
+        """Bordered solve; EvaluationError if not finite."""
+        return self._counted(self.system.solve, r, rho)
 
-    @approximate.default
-    def _approximate(self) -> Callable[[Array, float], Array]:
-        own = getattr(self.system, "approximate", None)
-        return self.solve if own is None else partial(_finite, self.counts, own)
+    def approximate(self, r: Array, rho: float) -> Array:
+        """Unrefined solve, if iterations measure their residual."""
+        return self._counted(getattr(self.system, "approximate", self.system.solve), r, rho)
+
+    def _counted(self, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
+        self.counts.solves += 1
+        try:
+            z = solve(r, rho)
+        except SingularError as error:
+            raise EvaluationError(str(error)) from error
+        if not finite(z):
+            raise EvaluationError("a bordered solve gave values that are not finite")
+        return z
 
     @cached_property
     def sign(self) -> int:
@@ -67,29 +71,14 @@ class CountedSystem:
     @property
     def approximates(self) -> bool:
         """Whether `approximate` differs from `solve`."""
-        return self.approximate is not self.solve
-
-
-def _counted(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
-    counts.solves += 1
-    try:
-        return solve(r, rho)
-    except SingularError as error:
-        raise EvaluationError(str(error)) from error
-
-
-def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
-    z = _counted(counts, solve, r, rho)
-    if not finite(z):
-        raise EvaluationError("a bordered solve gave values that are not finite")
-    return z
+        return hasattr(self.system, "approximate")
 
 
 class Evaluator:
     """Counted access to one homotopy.
 
-    `methods`: BibTeX of substitute derivatives. `keeping`: keep derivatives for `matrix`. `noise`: beyond round-off of
-    u, shape (N,), or None. `TypeError` or `ValueError` for a wrong homotopy.
+    `methods`: BibTeX of substitute derivatives. `noise`: beyond round-off of u, shape (N,), or None. `TypeError` or
+    `ValueError` for a wrong homotopy.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -98,8 +87,8 @@ class Evaluator:
             raise TypeError(f"homotopy: expected an object, found the class {name}; make one, {name}(...)")
         self.counts = counts
         self.methods: set[str] = set()
-        self.keeping = False
         self.noise: Array | None = None
+        self.bindings = 0
         self.bind(homotopy)
         if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -113,6 +102,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
+        self.bindings += 1
         self.followed = True  # by jets
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
@@ -159,11 +149,9 @@ class Evaluator:
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
+    @np.errstate(all="ignore")
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError if not finite."""
-        if not silent():
-            with Silence():
-                return self.residual(u)
         self.counts.residuals += 1
         try:
             # Plug-ins may reuse their arrays.
@@ -261,10 +249,8 @@ class Evaluator:
             return whole.dot
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
+    @np.errstate(all="ignore")
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        if not silent():
-            with Silence():
-                return self._evaluated(u)
         try:
             answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
@@ -272,11 +258,10 @@ class Evaluator:
         if not self._checked:
             check_derivative(answer, u.size - 1)
             self._checked = True
-        if self.keeping:
-            while len(self._kept) >= DERIVATIVES_KEPT:
-                del self._kept[next(iter(self._kept))]
-            # Plug-ins may reuse their arrays.
-            self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
+        while len(self._kept) >= DERIVATIVES_KEPT:
+            del self._kept[next(iter(self._kept))]
+        # Plug-ins may reuse their arrays.
+        self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
 
     def matrix(self, u: Array) -> Matrix:
@@ -295,7 +280,7 @@ class Evaluator:
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
-                with Silence():
+                with np.errstate(all="ignore"):
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:

@@ -33,7 +33,7 @@ class Exact:
     function: Callable[[Residual, Array, Array], Array]
     references: tuple[str, ...] = ()
     entire: Callable[[Residual, Array], Array] | None = None
-    agreement: ClassVar[float] = ROOT_OF_ROUND_OFF
+    agreement: float = ROOT_OF_ROUND_OFF
     even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> None:
@@ -83,7 +83,8 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
         y, lam = u[:-1], float(u[-1])
         return np.stack([np.asarray(differential(y, lam, w), dtype=float) for w in directions], axis=1)
 
-    return Exact("differential", function)
+    # They may be differences.
+    return Exact("differential", function, agreement=AGREEMENT)
 
 
 USUAL_STEP = float(np.cbrt(EPS))

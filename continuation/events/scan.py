@@ -11,6 +11,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import may_vanish, on_value, zeros
+from continuation.homotopy import Watcher, offers
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import REFINED, Linearization
 from continuation.point.projection import PathSolver
@@ -22,8 +23,8 @@ SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points found by events with `found_on`, and whether these and `found` explain the arc."""
-    watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
+    """Points found by each `Watcher`, and whether these and `found` explain the arc."""
+    watching: list[tuple[int, Any]] = [(i, event) for i, event in enumerate(events) if offers(event, Watcher)]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]
     return own, all(event.accounts_for(arc, known) for _, event in watching)
@@ -49,7 +50,7 @@ def scan_events(
     arc: Arc,
     branch_point: Linearization | None = None,
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
-    """Events on the arc in order, without those of `found_on`, and end values of monitors.
+    """Events on the arc in order, without those of a `Watcher`, and end values of monitors.
 
     A zero at the beginning was counted before; the sign behind it replaces it. A zero at the `branch_point` on the arc
     is that point, since corrections beside it lose their digits.
@@ -58,7 +59,7 @@ def scan_events(
     values = []
     noise: Array | None = None
     for i, event in enumerate(events):
-        if hasattr(event, "found_on"):
+        if offers(event, Watcher):
             values.append(0.0)
             continue
         if isinstance(event, SOUGHT_ELSEWHERE):

@@ -13,7 +13,7 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.linear import Banded, Symmetric
+from continuation.linear import Banded
 from continuation.linear.entries import extended
 from continuation.linear.nullspace import RANK, Bordered, kernels
 from continuation.metric import inner, norm
@@ -85,8 +85,6 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
     H_y, H_lam = evaluator.derivative(u[:-1], float(u[-1]))
     evaluator.counts.jacobians += 1
     column = np.asarray(H_lam, dtype=float)
-    if isinstance(H_y, Symmetric):
-        H_y = H_y.matrix
     if isinstance(H_y, Banded):
         H_y = H_y.tosparse()
     if not (sp.issparse(H_y) or isinstance(H_y, np.ndarray)):

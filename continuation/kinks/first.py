@@ -20,9 +20,6 @@ DIP = 0.25
 TIED = NOISE_LOOKS * NOISE_LOOKS
 """Round-off samples differ by this factor: a switch this near to zero has not left it, and several vanish together."""
 
-ZEROS_ON_ARC = 50
-"""Most zeros located on one arc."""
-
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
     """Round-off of the switches at a path point, shape (m,)."""
@@ -42,7 +39,7 @@ def first_zero(
     """The first point of an arc where a switch vanishes, with all that vanish there, or None.
 
     A switch that vanishes at the beginning counts once it has left zero. `signs`: of the arc's piece. `EvaluationError`
-    if the path cannot be evaluated or has too many zeros.
+    if the path cannot be evaluated.
     """
     s = np.array(signs)
     try:
@@ -101,31 +98,19 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
-    """The first zero of suspects and of switches that changed sign before it."""
+    """The first zero of all suspects."""
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
     suspects = np.flatnonzero(_suspects(grid) & (grid != 0.0).any(axis=0)).tolist()
-    waiting = sorted(suspects, key=lambda j: int(order[j]))
-    for _ in range(len(waiting) + ZEROS_ON_ARC):
-        if waiting:
-            j, must = waiting.pop(0), False
-        else:
-            crossed = [] if found is None else np.flatnonzero(signs * pieces.values(found[0].u) < -noise).tolist()
-            crossed = [j for j in crossed if found and j != found[1]]
-            if not crossed:
-                return found
-            j, must = crossed[0], True
+    for j in sorted(suspects, key=lambda j: int(order[j])):
 
         def switch(u: Array, v: Array, j: int = j) -> float:
             return float(signs[j] * pieces.values(u)[j])
 
         point = _zero(solver, switch, float(noise[j]), arc, found[0] if found else arc.b, grid[:, j])
-        if point is not None:
-            found = point, j
-        elif must:
-            raise EvaluationError("a switch has changed its sign on the arc, and its zero is not found")
-    raise EvaluationError("switches vanish without end on the arc")
+        found = found if point is None else (point, j)
+    return found
 
 
 def _zero(

@@ -171,8 +171,9 @@ class _Family:
             small = np.column_stack([small, -self.tilts / self.sizes])
             _, values, rows = np.linalg.svd(small)
             if not values[-1] > ROOT_OF_ROUND_OFF * values[0]:
-                self._refuse_cone(signs, taus, rows[int((values > ROOT_OF_ROUND_OFF * values[0]).sum()) :])
-                return
+                raise UnresolvedError(
+                    f"The kernel of the piece with the signs {list(taus)} has several dimensions there."
+                )
             w, alpha = rows[-1][:-1] * self.sizes, float(rows[-1][-1])
             v = alpha * self.corner.point.tangent - (flipped * w) @ self.Z
         yield v, w
@@ -217,17 +218,6 @@ class _Family:
         if cosine < 1.0 - SIX_DIGITS:
             raise UnresolvedError("The kernel of a piece that meets there has more than one dimension.")
         return found[0]
-
-    def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
-        a, b = np.array(taus), kernel[:, :-1]
-        if len(kernel) == 2:
-            # A cone in the plane has edges on these lines.
-            edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
-            if b.any() and not any(
-                (a * (x @ b) >= -ROOT_OF_ROUND_OFF * norm(np.ones(2), x)).all() for x in edges if x.any()
-            ):
-                return
-        raise UnresolvedError(f"The kernel of the piece with the signs {list(taus)} there has more than one dimension.")
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5

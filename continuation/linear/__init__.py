@@ -7,7 +7,6 @@ from continuation.linear.banded import Banded
 from continuation.linear.dispatch import factor_bordered
 from continuation.linear.operator import Operator
 from continuation.linear.superlu import permutation_sign
-from continuation.linear.symmetric import Symmetric
 from continuation.linear.system import BorderedSystem, SingularError
 
-__all__ = ["Banded", "BorderedSystem", "Operator", "SingularError", "Symmetric", "factor_bordered", "permutation_sign"]
+__all__ = ["Banded", "BorderedSystem", "Operator", "SingularError", "factor_bordered", "permutation_sign"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import isfinite
-from typing import ClassVar
 
 import numpy as np
 from attrs import frozen
@@ -41,8 +40,6 @@ HIDDEN = EPS / SIX_DIGITS
 class Dense:
     """LU factors of the bordered matrix, scaled so that pivots do not depend on units."""
 
-    finite: ClassVar[bool] = True
-    """Solutions are finite, or `solve` raises."""
     lu: Array
     pivots: NDArray[np.int32]
     scale: Array | None

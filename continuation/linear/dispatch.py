@@ -13,7 +13,6 @@ from continuation.linear.elimination import eliminate
 from continuation.linear.entries import real, require_real
 from continuation.linear.operator import Operator, factor_operator
 from continuation.linear.sparse import canonical, factor_square, factor_whole
-from continuation.linear.symmetric import Symmetric, factor_symmetric
 from continuation.linear.system import BorderedSystem
 
 
@@ -22,7 +21,7 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
 
     Parameters
     ----------
-    H_y : ndarray, Symmetric, Banded, scipy sparse array, LinearOperator or Operator
+    H_y : ndarray, Banded, scipy sparse array, LinearOperator or Operator
         Shape (N, N), N >= 1; may be singular if M is not. Dense ones are copied.
     H_lam : Array
         Shape (N,).
@@ -40,9 +39,9 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
     """
     if isinstance(H_y, LinearOperator):
         H_y = Operator(H_y)
-    if not (isinstance(H_y, np.ndarray | Symmetric | Banded | Operator) or issparse(H_y)):
+    if not (isinstance(H_y, np.ndarray | Banded | Operator) or issparse(H_y)):
         raise TypeError(
-            f"H_y is of type {type(H_y).__name__}; expected ndarray, Symmetric, Banded, a scipy sparse array, "
+            f"H_y is of type {type(H_y).__name__}; expected ndarray, Banded, a scipy sparse array, "
             "LinearOperator or Operator"
         )
     column, row = real("H_lam", H_lam), real("border", border)
@@ -54,8 +53,6 @@ def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
         )
     if isinstance(H_y, Operator):
         return factor_operator(H_y, column, row)
-    if isinstance(H_y, Symmetric):
-        return eliminate(H_y, column, row, factor_symmetric, lambda: factor_dense(H_y.matrix, column, row))
     if isinstance(H_y, Banded):
         return eliminate(H_y, column, row, factor_band, lambda: factor_whole(H_y.tosparse(), column, row))
     require_real("H_y", H_y.dtype)

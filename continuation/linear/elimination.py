@@ -12,7 +12,6 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import factor_dense
 from continuation.linear.refine import TRUSTED, BorderedMatrix, Factored, join, refined
-from continuation.linear.silence import without_warnings
 from continuation.linear.system import BorderedSystem
 
 
@@ -79,7 +78,7 @@ class BlockElimination:
         return self.factor_whole()
 
 
-@without_warnings(all="ignore")
+@np.errstate(all="ignore")
 def eliminate(
     matrix: Matrix,
     column: Array,

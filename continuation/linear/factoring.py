@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
-from attrs import define, evolve, field
+from attrs import define, field
 
 from continuation.arrays import Array, Matrix
-from continuation.linear.look import Look
-from continuation.linear.superlu import SparseFactor, SuperLUMethod
+from continuation.linear.refine import BACKWARD_ERROR
+from continuation.linear.superlu import factor_superlu, superlu_sign
+from continuation.linear.system import Solver
 
-METHODS = ("auto", SuperLUMethod.name, "cholmod")
+METHODS = ("auto", "superlu", "cholmod")
 
 CHOLMOD_FROM = 1000
 """Least order for CHOLMOD: on five-point Laplacians it takes half of SuperLU's time from 2,000 on, more below 400."""
@@ -31,47 +35,59 @@ def check_method(argument: str, name: object) -> str:
 class Factoring:
     """Factors sparse matrices.
 
-    `method`: "auto", "superlu", or "cholmod" for definite matrices. `direct`: for the others. `used`: matrices and
-    largest fill by name.
+    `method`: "auto", "superlu", or "cholmod" for definite matrices. `weak_pivots`: SuperLU keeps weak diagonal pivots
+    of symmetric patterns, to save fill; refinement corrects. `used`: number of matrices by method.
     """
 
     method: str = "auto"
-    direct: SuperLUMethod = field(factory=SuperLUMethod)
-    used: dict[str, tuple[int, int]] = field(factory=dict, init=False)
+    weak_pivots: bool = True
+    used: dict[str, int] = field(factory=dict, init=False)
 
-    def factor(self, matrix: Matrix) -> SparseFactor | None:
+    def factor(self, matrix: Matrix) -> Solver | None:
         """Factors of a square matrix, csc, in canonical format; None if singular."""
-        look = Look(matrix)
-        wanted = look.n >= CHOLMOD_FROM and find_spec("cvxopt") is not None
-        definite = self.method == "cholmod" or (self.method == "auto" and wanted)
-        factor = (factor_definite(look) if definite else None) or self.direct.factor(look)
-        if factor is not None:
-            count, fill = self.used.get(factor.name, (0, 0))
-            self.used[factor.name] = count + 1, max(fill, factor.fill)
+        wanted = matrix.shape[0] >= CHOLMOD_FROM and find_spec("cvxopt") is not None
+        diagonal, rows = matrix.diagonal(), matrix.tocsr()
+        matrix.sort_indices()
+        symmetric = bool(diagonal.all()) and all(
+            np.array_equal(getattr(rows, part), getattr(matrix, part)) for part in ("indptr", "indices")
+        )
+        if symmetric and (self.method == "cholmod" or (self.method == "auto" and wanted)):
+            factor = factor_definite(matrix, diagonal, rows)
+            if factor is not None:
+                return self._counted("CHOLMOD", factor)
+        how: dict[str, Any] = {"permc_spec": "COLAMD"}
+        if symmetric or not self.weak_pivots:
+            # MMD fills symmetric patterns half as much.
+            how["permc_spec"] = "MMD_AT_PLUS_A"
+        if symmetric and self.weak_pivots:
+            how |= {"diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}
+        lu = factor_superlu(matrix, **how)
+        return None if lu is None else self._counted("SuperLU", Solver(lu.solve, partial(superlu_sign, lu)))
+
+    def _counted(self, name: str, factor: Solver) -> Solver:
+        self.used[name] = self.used.get(name, 0) + 1
         return factor
 
     def __str__(self) -> str:
-        parts = []
-        for name, (count, fill) in self.used.items():
-            held = f", at most {fill:.2g} numbers" if fill else ""
-            parts.append(f"{count} by {name}{held}")
-        return f"Sparse factorisations: {'; '.join(parts)}." if parts else ""
+        parts = "; ".join(f"{count} by {name}" for name, count in self.used.items())
+        return f"Sparse factorisations: {parts}." if parts else ""
 
 
-def factor_definite(look: Look) -> SparseFactor | None:
-    """Factors of a positive or negative definite matrix, or None."""
+def factor_definite(matrix: Matrix, diagonal: Array, rows: Matrix) -> Solver | None:
+    """Factors of a positive or negative definite matrix of symmetric pattern, csc and csr, or None."""
     # A discretised Laplacian is negative definite; det A = (-1)^n det(-A).
-    negative = bool((look.diagonal < 0.0).all())
-    look = Look(-look.matrix) if negative else look
-    factor = factor_cholmod(look.matrix) if look.definite_perhaps else None
-    if factor is None or not negative:
-        return factor
-    solve, sign = factor.solve, -1 if look.n % 2 else 1
-    return evolve(factor, solve=lambda rhs: -solve(rhs), tell_sign=lambda: sign)
+    side = np.sign(diagonal[0])
+    root = np.sqrt(np.abs(diagonal))
+    size = root[matrix.indices] * np.repeat(root, np.diff(matrix.indptr))
+    rounded = (np.abs(matrix.data - rows.data) <= BACKWARD_ERROR * size).all()
+    solve = factor_cholmod(side * matrix) if rounded and (diagonal * side > 0.0).all() else None
+    if solve is None:
+        return None
+    return Solver(lambda rhs: side * solve(rhs), lambda: int(side) ** matrix.shape[0])
 
 
-def factor_cholmod(matrix: Matrix) -> SparseFactor | None:
-    """Supernodal Cholesky factors (Chen et al., ACM Trans. Math. Softw. 35 (2008)); None if a pivot is not positive."""
+def factor_cholmod(matrix: Matrix) -> Callable[[Array], Array] | None:
+    """A solver by Cholesky factors (Chen et al., ACM Trans. Math. Softw. 35, 2008); None if not positive definite."""
     from cvxopt import cholmod, spmatrix
     from cvxopt import matrix as column
 
@@ -90,5 +106,4 @@ def factor_cholmod(matrix: Matrix) -> SparseFactor | None:
         cholmod.solve(factors, x)
         return np.array(x).ravel()
 
-    # cvxopt does not tell the fill.
-    return SparseFactor("CHOLMOD", solve, 0, lambda: 1)
+    return solve

@@ -9,7 +9,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix
-from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
@@ -86,7 +85,7 @@ def join(r: Array, rho: float) -> Array:
     return rhs
 
 
-@without_warnings(all="ignore")
+@np.errstate(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
     """Solve M z = rhs by a corrected approximate inverse; also whether the residual is round-off."""
     z = solve(rhs)

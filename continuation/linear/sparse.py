@@ -9,7 +9,6 @@ from continuation.arrays import Array, Matrix
 from continuation.linear.entries import extended
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import BorderedMatrix, join, refined
-from continuation.linear.superlu import SparseFactor
 from continuation.linear.system import BorderedSystem, SingularError, Solver
 
 
@@ -45,6 +44,6 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
     return Solver(solve, factor.tell_sign)
 
 
-def factor_square(matrix: Matrix) -> SparseFactor | None:
+def factor_square(matrix: Matrix) -> Solver | None:
     """Factor a csc matrix by a suitable method; None if a pivot is zero."""
     return Factoring().factor(matrix)

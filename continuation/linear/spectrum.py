@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 from scipy.linalg import eigvals
+from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array, eye_array, issparse
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix, generic_vector
@@ -16,7 +17,6 @@ from continuation.linear.dense import factor_lu
 from continuation.linear.refine import BACKWARD_ERROR, Factored
 from continuation.linear.sparse import factor_square
 from continuation.linear.superlu import definite
-from continuation.linear.symmetric import Symmetric, factor_cholesky, factor_ldl
 
 ALL_OF_DENSE = 100
 """Largest order for all eigenvalues: 8 ms, and 80 ms at twice the order."""
@@ -42,7 +42,7 @@ by a sixth, so that all tests cost little more than the last."""
 class Spectrum:
     """Known eigenvalues of a matrix.
 
-    `values`: the rightmost first, empty if unknown. `unstable`: number of positive real parts, complete if `covered`.
+    `values`: the rightmost first. `unstable`: number of positive real parts, complete if `covered`.
     """
 
     values: np.ndarray[Any, np.dtype[np.complex128]]
@@ -52,13 +52,13 @@ class Spectrum:
 
     @property
     def rightmost(self) -> float:
-        """The largest real part, or nan."""
-        return float(self.values[0].real) if self.values.size else np.nan
+        """The largest real part."""
+        return float(self.values[0].real)
 
     @property
     def size(self) -> float:
-        """The largest computed modulus, or 1."""
-        return float(np.abs(self.values).max()) if self.values.size else 1.0
+        """The largest computed modulus."""
+        return float(np.abs(self.values).max())
 
     @property
     def pairs(self) -> np.ndarray[Any, np.dtype[np.complex128]]:
@@ -79,13 +79,11 @@ class Spectrum:
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide stability.
 
-    `Symmetric`: the inertia of LDL' (Sylvester's law). Small matrices: all, by QR. Others: the k (default 6) nearest to
+    Small matrices: all, by QR. Others: the k (default 6) nearest to
     a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count
     is complete if their disc covers the right part of the rectangle from `bounds`. Raises `TypeError` for an operator,
     `ArithmeticError` without convergence.
     """
-    if isinstance(matrix, Symmetric):
-        return Spectrum(np.empty(0, dtype=complex), factor_ldl(matrix.matrix)[0].count(side))
     matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
@@ -153,7 +151,7 @@ def _is_above(bound: float, symmetric: Matrix) -> bool:
     """Whether all eigenvalues of a symmetric matrix are less."""
     n = symmetric.shape[0]
     if isinstance(symmetric, np.ndarray):
-        return factor_cholesky(bound * np.eye(n) - symmetric) is not None
+        return int(dpotrf(bound * np.eye(n) - symmetric)[1]) == 0
     return definite(csc_array(bound * eye_array(n, format="csc") - symmetric))
 
 

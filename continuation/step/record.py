@@ -11,6 +11,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
+from continuation.homotopy import Watcher, offers
 from continuation.metric import norm, share
 from continuation.path import LocatedEvent, Step
 from continuation.point.linearization import Linearization
@@ -27,7 +28,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
     It raises `ValueError` if two have one name.
     """
     own = observe_of(homotopy)
-    others = [event.observe for event in events if hasattr(event, "observe")]
+    others = [event.observe for event in events if offers(event, Watcher)]
     if not others:
         return own
 

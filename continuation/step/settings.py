@@ -19,7 +19,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
-from continuation.homotopy import SupportsBlocks, SupportsEvents, SupportsMetric, SupportsPieces, offers
+from continuation.homotopy import SupportsBlocks, SupportsBound, SupportsEvents, SupportsMetric, SupportsPieces, offers
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
 from continuation.step.guard import Guard
@@ -87,13 +87,13 @@ class Settings:
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
-        """Bind events with a method `bound` to the homotopy; archives keep unbound ones.
+        """Bind events that need the evaluator; archives keep unbound ones.
 
         Parameters
         ----------
         evaluator : Evaluator
         """
-        known = (event.bound(evaluator) if hasattr(event, "bound") else event for event in self.events)
+        known = (event.bound(evaluator) if isinstance(event, SupportsBound) else event for event in self.events)
         return evolve(self, events=tuple(known))
 
     def _index_of(self, kind: type) -> int | None:

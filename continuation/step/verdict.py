@@ -12,7 +12,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.kinks.crossing import Crossing
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
-from continuation.rejection import Rejected, Rejection
+from continuation.rejection import Rejected
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
 from continuation.step.state import State
@@ -103,8 +103,6 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
     if h >= minimum:
         return None
     last = rejected[-1]
-    if last.reason is Rejection.RAISED:
-        return Verdict(Status.RAISED, f"It says: {last.detail}.", rejected=rejected)
     status = Status.LEFT_DOMAIN if last.reason.leaves_domain else Status.STEP_TOO_SMALL
     return Verdict(status, f"Last reason: {last}.", rejected=rejected)
 

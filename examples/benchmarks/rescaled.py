@@ -7,12 +7,11 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.linear import Banded, Symmetric
+from continuation.linear import Banded
 
 
 def dense(H_y: Any) -> Array:
     """A Jacobian in whatever structure as an array."""
-    H_y = H_y.matrix if isinstance(H_y, Symmetric) else H_y
     H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
     return H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
 

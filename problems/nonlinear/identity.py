@@ -7,15 +7,13 @@ from scipy.sparse import eye_array, issparse
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
 from continuation.arrays import Matrix
-from continuation.linear import Banded, Symmetric
+from continuation.linear import Banded
 
 
 def blend_with_identity(matrix: Matrix, lam: float) -> Matrix:
     """(1 - lam) M + lam I as a new matrix of M's type."""
     if isinstance(matrix, np.ndarray):
         return (1.0 - lam) * matrix + lam * np.eye(len(matrix))
-    if isinstance(matrix, Symmetric):
-        return Symmetric(blend_with_identity(matrix.matrix, lam))
     if isinstance(matrix, Banded):
         bands = (1.0 - lam) * matrix.ab
         bands[matrix.upper] += lam
@@ -25,6 +23,5 @@ def blend_with_identity(matrix: Matrix, lam: float) -> Matrix:
     if isinstance(matrix, LinearOperator):
         return (1.0 - lam) * matrix + lam * aslinearoperator(eye_array(matrix.shape[0]))
     raise TypeError(
-        f"F'(x) is of type {type(matrix).__name__}; expected ndarray, scipy sparse array, Banded, Symmetric or "
-        "LinearOperator"
+        f"F'(x) is of type {type(matrix).__name__}; expected ndarray, scipy sparse array, Banded or LinearOperator"
     )

@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import csc_array, csr_array, issparse
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from continuation.linear import Banded, Operator, Symmetric
+from continuation.linear import Banded, Operator
 from problems.nonlinear import brown, fixed_point, newton
 
 both = pytest.mark.parametrize("make", [fixed_point, newton])
@@ -60,10 +60,9 @@ def cubic_slope(x):
         (lambda x: csr_array(cubic_slope(x)), csr_array),
         (lambda x: csc_array(cubic_slope(x)), csc_array),
         (banded, Banded),
-        (lambda x: Symmetric(cubic_slope(x)), Symmetric),
         (lambda x: aslinearoperator(cubic_slope(x)), LinearOperator),
     ],
-    ids=["dense", "csr", "csc", "banded", "symmetric", "operator"],
+    ids=["dense", "csr", "csc", "banded", "operator"],
 )
 def test_the_structure_of_the_derivative_is_kept(make, slope, kind):
     homotopy = make(cubic, np.full(4, 0.5), slope)

@@ -18,8 +18,6 @@ from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import Factored
-from continuation.linear.silence import without_warnings
-from continuation.linear.superlu import SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure, scaled_band
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
@@ -61,7 +59,7 @@ class Face:
     shift: float
     q: Array
 
-    @without_warnings(over="ignore", invalid="ignore")
+    @np.errstate(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
         """(x, w) on the face, near `near` if there are many; None if not finite."""
         standard = self.problem.standard
@@ -82,7 +80,7 @@ class Face:
         w: Array = self.problem.A.dot(x) + self.q
         return w + self.shift * x if self.shift else w
 
-    @without_warnings(over="ignore", invalid="ignore")
+    @np.errstate(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
         """Correct x once, with accurate w."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
@@ -140,7 +138,7 @@ def _inverse_powers(sizes: Array) -> Array:
 
 def exchanging(method: str = "auto") -> Factoring:
     """Factorisations of faces, at last by SuperLU with row exchanges."""
-    return Factoring(method, SuperLUMethod(weak_pivots=False))
+    return Factoring(method, weak_pivots=False)
 
 
 @frozen(eq=False)

@@ -14,7 +14,6 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem, SingularError
-from continuation.linear.silence import without_warnings
 
 GAINED = 1e-3
 """Largest relative first correction of an accepted core: four such corrections reach round-off."""
@@ -23,7 +22,7 @@ FIRM_CORRECTION = 1e-13
 """Largest correction of the tangent for which solutions need none."""
 
 
-_silently = without_warnings(all="ignore")
+_silently = np.errstate(all="ignore")
 """A pair of zeros gives inf, which the factorisation reports."""
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
+from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from problems.lcp.homotopies.cores import CoreSystem, Pairs, second_eliminated
 from problems.lcp.homotopies.rows import RowPairs
 from problems.lcp.homotopies.sides import BoundPairs
@@ -37,13 +37,12 @@ class Core:
     core: BorderedSystem
 
     @classmethod
-    def of(cls, way: OfPairs | OfRows, border: Array, definite: bool = False) -> Core:
+    def of(cls, way: OfPairs | OfRows, border: Array) -> Core:
         """Factor the core; raises `SingularError`."""
         with np.errstate(all="ignore"):
             column, known = way.forward(way.system.column)
             row = np.append(way.row(border[:-1]), border[-1] - float(border[:-1].dot(known)))
-            matrix = Symmetric(way.matrix(), definite=True) if definite else way.matrix()
-            return cls(way, border, factor_bordered(matrix, column, row))
+            return cls(way, border, factor_bordered(way.matrix(), column, row))
 
     @property
     def sign(self) -> int:
@@ -110,7 +109,7 @@ def factor_pairs(system: System, border: Array) -> BorderedSystem:
     structure = homotopy.structure
 
     def core(larger: bool) -> Core:
-        return Core.of(OfPairs(system, larger, homotopy.sides.eliminated(y, gaps, larger)), border, definite=not larger)
+        return Core.of(OfPairs(system, larger, homotopy.sides.eliminated(y, gaps, larger)), border)
 
     definite = not (structure.problem.sparse or np.any(np.less(homotopy.blend.x, 0)))
     definite = definite and structure.symmetric and structure.semidefinite
@@ -195,7 +194,7 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
             rest = np.where(np.abs(rest) < np.abs(least), least, rest)
             distances = np.maximum(gap, LEAST_GAP * z1 / homotopy.unit)
         way = OfRows(system, rows.sides.eliminated(z1, distances, False), pairs, second_eliminated(pairs.factor, rest))
-        return Core.of(way, border, definite=structure.semidefinite and not structure.problem.sparse)
+        return Core.of(way, border)
 
     def augmented() -> Core:
         return Core.of(OfRows(system, rows.sides.eliminated(z1, gap, True), pairs), border)

@@ -9,7 +9,7 @@ import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
-from continuation.evaluation.errors import RaisedError
+from continuation.evaluation.errors import NotFiniteError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.testing import check_homotopy
 from problems import lcp
@@ -226,7 +226,7 @@ def test_an_exception_of_the_family_is_said():
 
     curve = Curve(family, first_fold(cusp_form(1.0)), mu=1.0)
     path = continuation.trace(curve, target=3.0, budget=Budget(steps=60))
-    assert path.status is continuation.Status.RAISED
+    assert path.status is continuation.Status.LEFT_DOMAIN
     assert "no such state" in path.message
-    with pytest.raises(RaisedError, match="no such state"):
+    with pytest.raises(NotFiniteError, match="no such state"):
         Evaluator(Curve(family, TargetValue(0.3), curve.at, mu=1.0), Counts()).residual(np.array([0.5, 0.3, 2.0]))

@@ -8,7 +8,7 @@ from attrs import frozen
 
 import continuation
 from continuation import from_functions
-from continuation.linear import Banded, Operator, Symmetric
+from continuation.linear import Banded, Operator
 
 
 def cusp_form(mu=1.0):
@@ -178,7 +178,6 @@ class GelfandBanded:
             "banded": lambda: matrix,
             "sparse": matrix.tosparse,
             "dense": matrix.toarray,
-            "symmetric": lambda: Symmetric(matrix.toarray()),
             "operator": lambda: Operator(matrix.toarray(), np.linalg.inv(matrix.toarray())),
         }
         return made[self.kind](), slope

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import aslinearoperator
 
-from continuation.linear import Banded, Operator, SingularError, Symmetric, factor_bordered
+from continuation.linear import Banded, Operator, SingularError, factor_bordered
 
 from ...exact import gauss_jordan
 from ...util import share
@@ -32,12 +32,7 @@ def full_band(matrix):
 
 
 GENERAL = {"dense": np.array, "banded": full_band, "sparse": csc_array}
-SYMMETRIC = {
-    "unknown": Symmetric,
-    "indefinite": lambda matrix: Symmetric(matrix, definite=False),
-    "definite": lambda matrix: Symmetric(matrix, definite=True),
-}
-EVERY = GENERAL | SYMMETRIC | {"operator": aslinearoperator}
+EVERY = GENERAL | {"operator": aslinearoperator}
 
 
 def whole(matrix, column, row):
@@ -55,16 +50,13 @@ def integers(*shape):
 
 
 @st.composite
-def systems(draw, symmetric=False, singular=None):
+def systems(draw, singular=None):
     """(H_y, H_lam, border, rhs) with integer entries: every number of the problem is exact."""
     n = draw(st.integers(1, 12))
     if draw(st.booleans()) if singular is None else singular:
-        left = draw(integers(n, n - 1))
-        right = left.T * np.where(draw(arrays(bool, (n - 1, 1))), 1.0, -1.0) if symmetric else draw(integers(n - 1, n))
-        matrix = left @ right
+        matrix = draw(integers(n, n - 1)) @ draw(integers(n - 1, n))
     else:
         matrix = draw(integers(n, n))
-        matrix = matrix + matrix.T if symmetric else matrix
     return matrix, draw(integers(n)), draw(integers(n + 1)), draw(integers(n + 1))
 
 
@@ -86,8 +78,8 @@ def check(structure, system, rows=1.0):
 @pytest.mark.parametrize("singular", [None, True], ids=["any", "singular H_y"])
 @given(data=st.data(), name=st.sampled_from(sorted(EVERY)))
 @share(60)
-def test_symmetric_systems_are_solved_by_every_structure(singular, data, name):
-    check(EVERY[name], data.draw(systems(symmetric=True, singular=singular)))
+def test_systems_are_solved_by_every_structure(singular, data, name):
+    check(EVERY[name], data.draw(systems(singular=singular)))
 
 
 @given(systems(), st.sampled_from(sorted(GENERAL)), st.data())
@@ -97,31 +89,13 @@ def test_the_units_of_the_rows_do_not_matter(system, name, data):
     check(GENERAL[name], system, rows=2.0**exponents)
 
 
-@given(systems(symmetric=True), st.sampled_from(sorted(SYMMETRIC)), st.data())
-@share(60)
-def test_the_units_of_a_symmetric_system_do_not_matter(system, name, data):
-    """Rows and columns scaled alike: the residual is at round-off in each row."""
-    exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-13, 13)))
-    matrix, column, row, rhs = system
-    square = whole(matrix, column, row)
-    _, sign = exact(square, rhs)
-    assume(sign != 0 and np.linalg.cond(square) < 1e6)
-    d = 2.0**exponents
-    scaled = square * d[:, None] * d
-    factored = factor_bordered(SYMMETRIC[name](scaled[:-1, :-1]), scaled[:-1, -1], scaled[-1])
-    z = factored.solve((d * rhs)[:-1], float((d * rhs)[-1]))
-    assert factored.sign == sign
-    size = np.abs(scaled[:, :-1]).sum(axis=1) * np.abs(z[:-1]).max() + np.abs(scaled[:, -1] * z[-1]) + np.abs(d * rhs)
-    assert (np.abs(scaled @ z - d * rhs) <= 1e-14 * size).all()
-
-
 # Of order one; and [[1e-18, 1], [1, 1]], the classic failure of elimination without pivoting, in the unit of a row.
 @pytest.mark.parametrize(
     ("matrix", "column", "row", "rhs", "z"),
     [(0.0, 2.0, [4.0, 1.0], [6.0, 7.0], [1.0, 3.0]), (1.0, 2.0**60, [1.0, 1.0], [2.0**60, 2.0], [1.0, 1.0])],
     ids=["order one", "a large row"],
 )
-@pytest.mark.parametrize("name", sorted(GENERAL | SYMMETRIC))
+@pytest.mark.parametrize("name", sorted(GENERAL))
 def test_small_systems_are_solved_to_the_last_bits(name, matrix, column, row, rhs, z):
     factored = factor_bordered(EVERY[name](np.array([[matrix]])), np.array([column]), np.array(row))
     np.testing.assert_allclose(factored.solve(np.array(rhs[:1]), rhs[1]), z, rtol=4 * EPS)
@@ -192,12 +166,11 @@ DOUBLED = csc_array(([1.0, 1.0, 3.0, 1.0, 1.0, 1.0], [2, 0, 1, 0, 0, 2], [0, 3, 
 
 @pytest.mark.parametrize(
     "matrix",
-    [PLAIN, PLAIN.tocoo(), PLAIN.tolil(), DOUBLED, Symmetric(PLAIN.toarray())],
-    ids=["csr", "coo", "lil", "entries given twice", "wrongly called symmetric"],
+    [PLAIN, PLAIN.tocoo(), PLAIN.tolil(), DOUBLED],
+    ids=["csr", "coo", "lil", "entries given twice"],
 )
-def test_sparse_matrices_of_any_format_are_taken_and_one_wrongly_called_symmetric(matrix):
-    dense = matrix.matrix if isinstance(matrix, Symmetric) else matrix.toarray()
-    truth, sign = exact(whole(dense, np.ones(3), np.arange(4.0)), [1, 2, 3, 4])
+def test_sparse_matrices_of_any_format_are_taken(matrix):
+    truth, sign = exact(whole(matrix.toarray(), np.ones(3), np.arange(4.0)), [1, 2, 3, 4])
     factored = factor_bordered(matrix, np.ones(3), np.arange(4.0))
     np.testing.assert_allclose(factored.solve(np.arange(1.0, 4.0), 4.0), truth, rtol=1e-13)
     assert factored.sign == sign
@@ -220,7 +193,6 @@ def test_sparse_matrices_of_any_format_are_taken_and_one_wrongly_called_symmetri
         (lambda: Banded(np.ones((2, 4)), 1, 1), ValueError, "ab of Banded"),
         (lambda: Banded(np.ones((1, 4)), -1, 1), ValueError, "lower"),
         (lambda: Banded(np.ones((1, 4)) * 1j, 0, 0), TypeError, "ab of Banded"),
-        (lambda: Symmetric(np.ones((2, 3))), ValueError, "matrix of Symmetric"),
         (lambda: Operator(aslinearoperator(np.eye(3)), aslinearoperator(np.eye(2))), ValueError, "preconditioner"),
         (lambda: banded(np.eye(3), 0, 0) @ np.ones(2), ValueError, "operand"),
     ],

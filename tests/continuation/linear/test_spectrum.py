@@ -5,23 +5,8 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from continuation.linear import Banded, Symmetric
+from continuation.linear import Banded
 from continuation.linear.spectrum import spectrum
-
-
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("side", [1, -1])
-def test_the_inertia_of_a_symmetric_matrix_is_that_of_its_eigenvalues(seed, side):
-    A = np.random.default_rng(seed).standard_normal((12, 12))
-    A = A + A.T + np.diag(np.arange(12.0) % 7 - 3.0)
-    found = spectrum(Symmetric(A), side)
-    assert found.unstable == np.count_nonzero(side * np.linalg.eigvalsh(A) > 0.0)
-    assert found.pairs.size == 0
-
-
-def test_zero_eigenvalues_of_a_symmetric_matrix_count_on_neither_side():
-    A = np.diag([1.0, 0.0, -2.0, 0.0, 3.0])
-    assert [spectrum(Symmetric(A), side).unstable for side in (1, -1)] == [2, 1]
 
 
 def banded(matrix):

@@ -40,7 +40,7 @@ def test_a_membrane_takes_two_factorisations_of_the_finest_level(m, every, order
     found = solved(BENCHMARK["obstacle_2d"](m), sparse="superlu")
     assert found.counts.factorizations == len(orders) == every
     assert sum(2 * order > m * m for order in orders) == 2
-    assert f"Sparse factorisations: {every} by SuperLU, at most " in found.message
+    assert f"Sparse factorisations: {every} by SuperLU" in found.message
 
 
 @pytest.mark.parametrize(("row", "m", "finest"), [("torsion", 60, 2), ("put", 100, 2)])
