@@ -104,21 +104,10 @@ class Examiner:
             if kink is not None:
                 ending = self._ending_in_kink(ending, kink[0])
             at = branch.point if branch is not None and within(arc, branch.point, ending.arc.b) else None
-            found, monitors = scan_events(self.solver, events, state.monitors, ending.arc, at)
-            if index is not None and at is not None:
-                found = sorted((*found, (index, at)), key=lambda pair: position(arc, pair[1].u))
-            last, _ = first_terminal(events, state.occurrences, found)
-            ended = ending.arc
-            if last is not None:
-                ended = cut(ending.arc, found[last][1])
-                at = at if at is not None and within(arc, at, ended.b) else None
-                found = up_to(self.solver, events, state.monitors, ended, found[: last + 1], at)
-            more, all_found = found_by_events(self.solver, events, ended, found)
+            found, monitors, explained = self._events_on(arc, ending, state, at)
             several = ending.limit is not None or (branch is not None and branch.rays is None)
-            if not (all_found or several) and attempt.h > LEAST_STEP_SHARE * state.h:
+            if not (explained or several) and attempt.h > LEAST_STEP_SHARE * state.h:
                 return _rejected(attempt, Rejection.UNACCOUNTED)
-            if more:
-                found = sorted((*found, *more), key=lambda pair: position(arc, pair[1].u))
         except EvaluationError as error:
             return _rejected(attempt, Rejection.ARC, str(error))
         crossing = None
@@ -142,6 +131,27 @@ class Examiner:
         if crossing is not None:
             located[-1] = evolve(located[-1], name=crossing.name, switches=crossing.switches, rays=crossing.rays)
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
+
+    def _events_on(
+        self, arc: Arc, ending: ArcEnd, state: State, branch_point: Linearization | None
+    ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...], bool]:
+        """Events up to the first that is terminal, the monitors' end values, and whether events explain the arc."""
+        solver, events, at, index = self.solver, self.settings.events, branch_point, self.branch_index
+
+        def place(pair: tuple[int, Linearization]) -> float:
+            return position(arc, pair[1].u)
+
+        found, monitors = scan_events(solver, events, state.monitors, ending.arc, at)
+        if index is not None and at is not None:
+            found = sorted((*found, (index, at)), key=place)
+        last, _ = first_terminal(events, state.occurrences, found)
+        ended = ending.arc
+        if last is not None:
+            ended = cut(ending.arc, found[last][1])
+            at = at if at is not None and within(arc, at, ended.b) else None
+            found = up_to(solver, events, state.monitors, ended, found[: last + 1], at)
+        more, explained = found_by_events(solver, events, ended, found)
+        return sorted((*found, *more), key=place) if more else found, monitors, explained
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
         if ending.at is not EndsAt.NOTHING:
