@@ -28,9 +28,6 @@ SINGULAR_SHARE = 1e-10
 DISTANCE, ANGLE = 0.3, 1.0
 """A larger correction, in steps, or angle (radians) shows another branch."""
 
-RETRY, LEAP = 0.3, 10.0
-"""Paths creep towards a boundary: landing is tried so many steps away, and again when this share of the way is left."""
-
 STRETCH = 1.01
 """Targets just beyond the step are landed on, since a step of round-off would be left."""
 
@@ -49,19 +46,12 @@ class Landing:
     stepper: Stepper
     target: float
 
-    @property
-    def lands_from_afar(self) -> bool:
-        """Whether landing is tried from afar: near a boundary steps are short."""
-        return self.stepper.solver.max_step is not None
-
-    def attempt(
-        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
-    ) -> Attempt | None:
+    def attempt(self, point: Linearization, prediction: Prediction, h: float) -> Attempt | None:
         """A step to the target if the prediction reaches it, else None.
 
-        `h`, `longest`: the controller's. `last_failed`: parameter of the last failed landing.
+        `h`: the controller's step.
         """
-        guess = self._guess(point, prediction, h, longest, last_failed)
+        guess = self._guess(point, prediction, h)
         if guess is None:
             return None
         attempt = self._correct(point, *guess)
@@ -72,17 +62,11 @@ class Landing:
             return Rejected(attempt.h, Rejection.ELSEWHERE, contraction=attempt.correction.contraction)
         return attempt
 
-    def _guess(
-        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
-    ) -> tuple[Array, float] | None:
+    def _guess(self, point: Linearization, prediction: Prediction, h: float) -> tuple[Array, float] | None:
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
         target, max_step = self.target, self.stepper.solver.max_step
-        if self.lands_from_afar:
-            if abs(gap) > RETRY * abs(last_failed - target):
-                return None
-            h = min(LEAP * h, longest)
         high = min(prediction.reach, STRETCH * h)
         try:
             reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)

@@ -73,9 +73,6 @@ class Target:
     solver: PathSolver
     target: float | None
 
-    # The target of a homotopy with `max_step` is mostly on the domain's boundary: hence these two and
-    # `Landing.lands_from_afar`.
-
     @property
     def expects_singular_end(self) -> bool:
         """Whether the endgame precedes landing, as H' may lose rank on the boundary."""

@@ -21,6 +21,7 @@ from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsPieces, offers
 from continuation.kinks.start import begin
+from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
 from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
@@ -204,7 +205,7 @@ class Tracer:
 
     def _run(self) -> Iterator[Step]:
         try:
-            with np.errstate(all="ignore"):
+            with Silence():
                 point = self._first() if self.state is None else self._restored(self.state)
         except StartError as error:
             self._end(refused_start(error))
@@ -317,7 +318,7 @@ class Tracer:
         state = self.state
         assert state is not None
         # Non-finite steps show overflow.
-        with np.errstate(all="ignore"):
+        with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):
