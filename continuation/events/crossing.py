@@ -123,19 +123,14 @@ def _eigenvalues(
         if k == 0 and not whole:
             Q[1] = x / left_over
             continue
-        if k == 1 and _nothing_told(H, right, left):
-            if whole or _closed(H[:2, :2], left_over, right):
-                return np.empty(0), np.empty((a.u.size, 0)), scale
-            converged = True
-        else:
-            values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
-            told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
-            before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
-            # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
-            last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
-            same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
-            if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
-                break
+        values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
+        told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
+        before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
+        # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
+        last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
+        same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
+        if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
+            break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
     # Off the path the equal eigenvalues of a multiple point may be a complex pair.
@@ -166,17 +161,3 @@ def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], A
             last[j] = last[j + 1] = math.hypot(last[j], last[j + 1])
             vectors[:, j + 1] = vectors[:, j]
     return values, [left_over * abs(x) for x in last], vectors
-
-
-def _nothing_told(H: Array, right: float, left: float) -> bool:
-    """Whether two dimensions, in closed form, exclude every wanted eigenvalue."""
-    a, b, c, d = float(H[0, 0]), float(H[0, 1]), float(H[1, 0]), float(H[1, 1])
-    middle, discriminant = 0.5 * (a + d), 0.25 * (a - d) ** 2 + b * c
-    root = math.sqrt(abs(discriminant))
-    for sign in (-1.0, 1.0):
-        real, imaginary = (middle + sign * root, 0.0) if discriminant >= 0.0 else (middle, root)
-        # Residual: last component of the unit eigenvector (value - d, c), times H[2, 1].
-        error = float(H[2, 1]) * abs(c) / (math.hypot(real - d, imaginary, c) or 1.0)
-        if real + error > right or real - error < left:
-            return False
-    return True
