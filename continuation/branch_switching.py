@@ -13,7 +13,7 @@ from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.multiple import Leaving, leaving, still, without_noise
+from continuation.events.multiple import NOISE, Leaving, leaving, still, without_noise
 from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import Automatic, inner, norm
 from continuation.path import LocatedEvent
@@ -27,9 +27,6 @@ branch."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""
-
-ROUND_OFF_SHARE = 1e-12
-"""Tangent component, relative to the largest, that may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
@@ -99,7 +96,7 @@ def metric_at(event: LocatedEvent) -> Array:
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)
-    return Automatic().weights(event.u, np.where(size > ROUND_OFF_SHARE * size.max(), size, 0.0), None)
+    return Automatic().weights(event.u, np.where(size > NOISE * size.max(), size, 0.0), None)
 
 
 def switch_branch(

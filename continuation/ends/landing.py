@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, dot, generic_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
@@ -19,9 +19,6 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
-RESOLUTION = 1e-9
-"""Relative accuracy of the step to the target, before Newton's method."""
-
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
@@ -31,9 +28,8 @@ DISTANCE, ANGLE = 0.3, 1.0
 STRETCH = 1.01
 """Targets just beyond the step are landed on, since a step of round-off would be left."""
 
-ROOM, EDGE = 0.9, 1e-6
-"""ROOM: least distance to the boundary, relative to that of the predicted end. EDGE: tolerance of an end on the
-boundary."""
+ROOM = 0.9
+"""Least distance to the boundary, relative to that of the predicted end."""
 
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
 """Correctors at a fixed parameter must contract well: far solutions look as good."""
@@ -69,7 +65,9 @@ class Landing:
         target, max_step = self.target, self.stepper.solver.max_step
         high = min(prediction.reach, STRETCH * h)
         try:
-            reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)
+            reached = zero_between(
+                lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
+            )
             if reached is None:
                 return None
             guess = prediction(reached).copy()
@@ -93,7 +91,7 @@ class Landing:
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end may lie on the boundary.
-        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
+        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
         return self.stepper.arrive(point, border, h, landed)

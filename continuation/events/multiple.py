@@ -12,18 +12,19 @@ from itertools import combinations_with_replacement
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.linear.nullspace import BORDERS, Bordered, kernels
+from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
 from continuation.point.linearization import linearize
 
 LOST_RANKS = 3
 """Lost ranks that are resolved: a sphere in four dimensions."""
 
-STEPS, LAST_INCREMENT, ROOT = 30, 1e-13, 1e-9
-"""Most steps of an iteration; last increment onto the graph of z, and of a zero, relative to the sphere."""
+STEPS, LAST_INCREMENT = 30, 1e-13
+"""Most steps of an iteration; last increment onto the graph of z, relative to the sphere."""
 
 STARTS = 600
 """Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
@@ -31,15 +32,12 @@ STARTS = 600
 SAME_ZERO = 1e-3
 """Nearer zeros, relative to the sphere, are one."""
 
-NOISE, ZERO = 1e-11, 1e-14
-"""Round-off of a direction, relative to its largest component; of a point, in extents."""
+NOISE = 1e-11
+"""Round-off of a direction, relative to its largest component."""
 
 BENT = 0.1
 """Ratio of higher to linear terms off the path: branches of unknowns that stand still along the path, and so have no
 unit, bend by a few degrees within the sphere."""
-
-ISOLATED = 1e-7
-"""Least singular value of the scaled equations at an isolated zero."""
 
 
 class Unresolved(ArithmeticError):
@@ -148,7 +146,7 @@ class Polynomials:
         a = _spread(STARTS, self.powers.shape[1], 2)
         for _ in range(STEPS):
             step, _ = _onto_sphere(*self.at(a), a, 1.0)
-            there = np.abs(step).max(axis=1) < ROOT
+            there = np.abs(step).max(axis=1) < ROOT_OF_ROUND_OFF
             for one in a[there]:
                 _add(found, one)
             a = (a + step)[~there]
@@ -165,8 +163,8 @@ class Polynomials:
             a = a + step
             if not np.isfinite(a).all() or np.linalg.norm(a) > 4.0 * length:
                 return None
-            if np.abs(step).max() <= ROOT * length:
-                return a, bool(np.linalg.svd(rows, compute_uv=False)[-1] >= ISOLATED)
+            if np.abs(step).max() <= ROOT_OF_ROUND_OFF * length:
+                return a, bool(np.linalg.svd(rows, compute_uv=False)[-1] >= ROOT_OF_ROUND_OFF)
         return None
 
 
@@ -246,4 +244,4 @@ def still(v: Array, weights: Array) -> Array:
 def without_noise(u: Array, way: Array, weights: Array) -> Array:
     """The point u + way without round-off."""
     there = u + still(way, weights)
-    return np.where(np.abs(there) * np.sqrt(weights) > ZERO, there, 0.0)
+    return np.where(np.abs(there) * np.sqrt(weights) > BACKWARD_ERROR, there, 0.0)
