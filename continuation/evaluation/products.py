@@ -190,11 +190,10 @@ class ByDifferences:
         return self(residual, u, np.eye(u.size)) / self.scale(u)
 
 
-def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
+def by_differences(residual: Residual, u0: Array, groups: Any = None) -> ByDifferences:
     """Differences with the best step for each component at `u0`.
 
-    `groups`, shape (N + 1,): components that move together; default: none. `rows`, sparse, shape (N + 1, N): ones for
-    each component's equations; default: all.
+    `groups`, shape (N + 1,): components that move together and have one step; default: none.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     unit = size.copy()
@@ -203,12 +202,12 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     for group in range(int(groups.max()) + 1):
         own, reach = groups == group, size.copy()
         while True:
-            changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1].T
-            seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
+            changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1]
+            seen = changes.sum(axis=1)
             steps[own], unit[own] = DIFFERENCE_STEPS[_best(seen)], reach[own]
             # A component that is almost zero has no unit: try longer steps that agree as well.
             longer = own & (size < USUAL_STEP) & (reach < 1.0)
-            longer[own] &= (seen[:, 0] <= seen.min(axis=1)) | (changes.min() == 1.0)
+            longer &= (seen[0] <= seen.min()) | (changes.min() == 1.0)
             if not longer.any():
                 break
             reach[longer] = np.minimum(reach[longer] / DIFFERENCE_STEPS[3], 1.0)
