@@ -28,9 +28,8 @@ SECOND = 1e-5
 DISTINCT_DIRECTIONS = 1e-9
 """Least relative discriminant of two directions: the digits of SECOND."""
 
-HALTED = 1e-9, 100.0
-"""At a simple branch point increments fall below HALTED[0]. Linear convergence means several lost ranks: the next
-singular value was two to four last increments (Bratu's problem on a square)."""
+HALTED = 1e-9
+"""At a simple branch point increments fall below this."""
 
 
 @frozen(eq=False)
@@ -150,16 +149,13 @@ def branch_point_near(
             here = at(u)
             if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > ROOT_OF_ROUND_OFF:
                 return None
-            # After an early halt H' is known to the last increment only.
-            halted = newton.size > HALTED[0]
-            accuracy = max(RANK, HALTED[1] * newton.size)
-            if (here.weak or halted) and kernels(scaled.at(u), accuracy)[0].shape[1] > 2:
+            if here.weak and kernels(scaled.at(u))[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
-            if halted:
+            if newton.size > HALTED:
                 # At a regular zero one more increment is round-off; at a multiple one branches touch, or more cross.
                 newton.run(increment, measure, lambda size: True)
-                if newton.size > HALTED[0]:
+                if newton.size > HALTED:
                     return None
                 u = newton.x[:-1]
                 here = at(u)
