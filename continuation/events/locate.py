@@ -44,6 +44,9 @@ PASSES, NEARLY_ZERO = 60, 1e-10
 """PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if a pass did
 not halve it where the slope is at least half the chord's, so that the zero is simple; else if two did not."""
 
+SLOPE = 1e-3
+"""Step of the difference quotient, in parts: three digits, as the model has."""
+
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
     """A zero of a cheap function by `scipy.optimize.brentq`; None for NaN."""
@@ -161,8 +164,11 @@ def zeros(
                 g = math.copysign(noise, part.ga)
             parts += part.divided(known[t], g, t, arc.border, model(t))[::-1]
         elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * direction <= 0:
-            enough, guess = solver.noise(part.a) / arc.length, zero_between(model, low, high)
-            found = root(partial(value, part, known), (low, part.ga), (high, part.gb), enough, guess)
+            guess, slope = zero_between(model, low, high), math.nan
+            if guess is not None:
+                slope = (model(guess + SLOPE * (high - low)) - model(guess)) / (SLOPE * (high - low))
+            enough = solver.noise(part.a) / arc.length
+            found = root(partial(value, part, known), (low, part.ga), (high, part.gb), enough, guess, slope)
             if found is not None:
                 yield known[found]
 
@@ -173,10 +179,11 @@ def root(
     b: tuple[float, float],
     enough: float,
     guess: float | None = None,
+    slope: float = math.nan,
 ) -> float | None:
     """A zero between a and b = (parameter, value); None if the function jumps.
 
-    `enough`: accuracy. `guess`: of a model.
+    `enough`: accuracy. `guess`, `slope`: of a model.
     """
     scale = max(abs(a[1]), abs(b[1]))
     if 0.0 in (a[1], b[1]):
@@ -184,7 +191,7 @@ def root(
     # An end may be zero but for round-off, where the arc before had its zero.
     best = (a[0], scale)
     last, stalled = None, 0
-    slope = chord = (b[1] - a[1]) / (b[0] - a[0])
+    chord = (b[1] - a[1]) / (b[0] - a[0])
     t = a[0] - a[1] / chord if guess is None else guess
     for _ in range(PASSES):
         if stalled % 2 or not a[0] < t < b[0]:
@@ -197,6 +204,8 @@ def root(
         best = min(best, now, key=lambda place: abs(place[1]))
         if last is not None and now[0] != last[0]:
             slope = (now[1] - last[1]) / (now[0] - last[0])
+        elif not slope * chord > 0.0:
+            slope = chord
         step = -now[1] / slope if slope else math.inf
         small = abs(best[1]) <= NEARLY_ZERO * scale and stalled > (abs(slope) < HALVING * abs(chord))
         if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
