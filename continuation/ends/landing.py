@@ -22,15 +22,6 @@ from continuation.step.stepper import Attempt, Stepper
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
-DISTANCE, ANGLE = 0.3, 1.0
-"""A larger correction, in steps, or angle (radians) shows another branch."""
-
-STRETCH = 1.01
-"""Targets just beyond the step are landed on, since a step of round-off would be left."""
-
-ROOM = 0.9
-"""Least distance to the boundary, relative to that of the predicted end."""
-
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
 """Correctors at a fixed parameter must contract well: far solutions look as good."""
 
@@ -54,7 +45,7 @@ class Landing:
         if isinstance(attempt, Rejected):
             return attempt
         arrival = attempt.point
-        if attempt.angle > ANGLE or share(arrival.weights, arrival.tangent) <= SINGULAR_SHARE:
+        if share(arrival.weights, arrival.tangent) <= SINGULAR_SHARE:
             return Rejected(attempt.h, Rejection.ELSEWHERE, contraction=attempt.correction.contraction)
         return attempt
 
@@ -62,8 +53,8 @@ class Landing:
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
-        target, max_step = self.target, self.stepper.solver.max_step
-        high = min(prediction.reach, STRETCH * h)
+        target = self.target
+        high = min(prediction.reach, h)
         try:
             reached = zero_between(
                 lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
@@ -74,8 +65,6 @@ class Landing:
         except EvaluationError:
             return None
         guess[-1] = target
-        if max_step is not None and max_step(point.u, guess - point.u) < ROOM:
-            return None
         return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
@@ -88,7 +77,7 @@ class Landing:
             return rejected
         border = point.border
         along = dot(border, correction.u - point.u)
-        if along <= 0.0 or correction.distance > DISTANCE * h:
+        if along <= 0.0:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
