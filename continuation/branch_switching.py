@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -99,9 +98,7 @@ def metric_at(event: LocatedEvent) -> Array:
     return Automatic().weights(event.u, np.where(size > NOISE * size.max(), size, 0.0), None)
 
 
-def switch_branch(
-    homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
-) -> tuple[tuple[Array, Array], ...]:
+def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tuple[tuple[Array, Array], ...]:
     """Return starts on the other branches of a branch point or kink, for ``trace(homotopy, start=...)``.
 
     Parameters
@@ -111,8 +108,6 @@ def switch_branch(
         A branch point or kink.
     step : float, default 1e-2
         Distance of the starts in the path's metric; shorter if the corrector fails.
-    ray : int, optional
-        One of a kink's `rays`. Default: all that the path did not use.
 
     Returns
     -------
@@ -128,9 +123,8 @@ def switch_branch(
     """
     expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     if isinstance(event, LocatedEvent) and event.kind == Kind.KINK:
-        return _out_of_kink(event, ray)
-    if ray is not None:
-        raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
+        rays = () if event.rays is None else event.rays[2:]
+        return tuple((event.u.copy(), v.copy()) for v in rays)
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         return tuple((branch.u, branch.tangent) for branch in leaving_branches(homotopy, event, step)[2:])
     _, onward, *others = crossing_rays(homotopy, event)
@@ -160,11 +154,3 @@ def _start(
             return without_noise(u, way, weights), still(v, weights)
         failed = "the corrector fell back onto the branch that the path is on"
     raise ArithmeticError(f"the other branch could not be reached: {failed}")
-
-
-def _out_of_kink(kink: LocatedEvent, ray: int | None) -> tuple[tuple[Array, Array], ...]:
-    rays = kink.rays if kink.rays is not None else np.empty((0, kink.u.size))
-    if ray is None:
-        return tuple((kink.u.copy(), v.copy()) for v in rays[2:])
-    expect(isinstance(ray, Integral) and 0 <= ray < len(rays), "ray", f"the number of one of its {len(rays)} rays", ray)
-    return ((kink.u.copy(), rays[ray].copy()),)

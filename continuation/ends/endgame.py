@@ -26,16 +26,10 @@ from continuation.tolerance import Tolerance
 RATIO = 0.2
 """Ratio of distances to the target: few points, within Newton's reach."""
 
-RELATIVE_FLOOR = 1e-13
-"""Change by the last sample that stops the sampling, relative."""
-
 ULPS = 8.0, -1021.0
 """Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
-
-SAMPLES_WITHOUT_GAIN = 3
-"""Samples without gain that stop the sampling."""
 
 SAMPLE_TOLERANCE = 1e-3
 """Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
@@ -87,7 +81,6 @@ class Endgame:
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
-        worse = 0
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
@@ -102,13 +95,10 @@ class Endgame:
             if len(taken) < 3:
                 continue
             end = _limit(taken, self.target, point.weights)
-            if best is None or end.length < best.length:
-                best, worse = end, 0
-            else:
-                worse += 1
-            if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
+            if best is not None and end.length >= best.length:
                 break
-        if best is None or not self._within(best):
+            best = end
+        if best is None or best.length > self.solver.tolerance.relative:
             return None
         return best if self._keeps_orientation(best, here) else None
 
@@ -131,9 +121,6 @@ class Endgame:
         except EvaluationError:
             return True
         return at.orientation == last.orientation or not regular(self.solver, at, last)
-
-    def _within(self, end: SingularLimit) -> bool:
-        return end.length <= self.solver.tolerance.relative
 
     def _track(self, here: Linearization, guess: Array, lam: float) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, and its noise."""
