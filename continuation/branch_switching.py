@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.multiple import Leaving, leaving, still, without_noise
+from continuation.events.multiple import NOISE, Leaving, leaving, still, without_noise
 from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import Automatic, inner, norm
 from continuation.path import LocatedEvent
@@ -27,9 +26,6 @@ branch."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""
-
-ROUND_OFF_SHARE = 1e-12
-"""Tangent component, relative to the largest, that may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
@@ -99,12 +95,10 @@ def metric_at(event: LocatedEvent) -> Array:
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)
-    return Automatic().weights(event.u, np.where(size > ROUND_OFF_SHARE * size.max(), size, 0.0), None)
+    return Automatic().weights(event.u, np.where(size > NOISE * size.max(), size, 0.0), None)
 
 
-def switch_branch(
-    homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
-) -> tuple[tuple[Array, Array], ...]:
+def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tuple[tuple[Array, Array], ...]:
     """Return starts on the other branches of a branch point or kink, for ``trace(homotopy, start=...)``.
 
     Parameters
@@ -114,8 +108,6 @@ def switch_branch(
         A branch point or kink.
     step : float, default 1e-2
         Distance of the starts in the path's metric; shorter if the corrector fails.
-    ray : int, optional
-        One of a kink's `rays`. Default: all that the path did not use.
 
     Returns
     -------
@@ -131,9 +123,8 @@ def switch_branch(
     """
     expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     if isinstance(event, LocatedEvent) and event.kind == Kind.KINK:
-        return _out_of_kink(event, ray)
-    if ray is not None:
-        raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
+        rays = () if event.rays is None else event.rays[2:]
+        return tuple((event.u.copy(), v.copy()) for v in rays)
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         return tuple((branch.u, branch.tangent) for branch in leaving_branches(homotopy, event, step)[2:])
     _, onward, *others = crossing_rays(homotopy, event)
@@ -163,11 +154,3 @@ def _start(
             return without_noise(u, way, weights), still(v, weights)
         failed = "the corrector fell back onto the branch that the path is on"
     raise ArithmeticError(f"the other branch could not be reached: {failed}")
-
-
-def _out_of_kink(kink: LocatedEvent, ray: int | None) -> tuple[tuple[Array, Array], ...]:
-    rays = kink.rays if kink.rays is not None else np.empty((0, kink.u.size))
-    if ray is None:
-        return tuple((kink.u.copy(), v.copy()) for v in rays[2:])
-    expect(isinstance(ray, Integral) and 0 <= ray < len(rays), "ray", f"the number of one of its {len(rays)} rays", ray)
-    return ((kink.u.copy(), rays[ray].copy()),)

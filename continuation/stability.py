@@ -19,6 +19,7 @@ from continuation.arrays import SIX_DIGITS, Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.locate import root
+from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.spectrum import Spectrum, spectrum
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import Arc, position
@@ -38,9 +39,6 @@ CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SING
 
 SPECTRA_KEPT = 12
 """Enough for an arc and an event."""
-
-ZERO_RESOLVED = 1e-14
-"""Relative real part that is round-off."""
 
 
 @frozen
@@ -180,7 +178,7 @@ class BoundHopf:
         if rank >= found.pairs.size:
             return -found.size
         pair = found.pairs[rank]
-        return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
+        return float(pair.real) if abs(pair.real) > BACKWARD_ERROR * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
         ends = {0.0: arc.a.u, 1.0: arc.b.u}

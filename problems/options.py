@@ -14,8 +14,9 @@ from continuation.arguments.checks import FINITE, integer
 from continuation.arrays import Array
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
+from continuation.linear.silence import without_warnings
 
-quiet = np.errstate(over="ignore", invalid="ignore")
+quiet = without_warnings(over="ignore", invalid="ignore")
 """Decorator: overflow gives inf or nan without warnings; the tracer handles them."""
 
 

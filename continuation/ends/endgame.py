@@ -26,16 +26,10 @@ from continuation.tolerance import Tolerance
 RATIO = 0.2
 """Ratio of distances to the target: few points, within Newton's reach."""
 
-RELATIVE_FLOOR = 1e-13
-"""Change by the last sample that stops the sampling, relative."""
-
 ULPS = 8.0, -1021.0
 """Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
-
-SAMPLES_WITHOUT_GAIN = 3
-"""Samples without gain that stop the sampling."""
 
 SAMPLE_TOLERANCE = 1e-3
 """Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
@@ -87,12 +81,10 @@ class Endgame:
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
-        worse = 0
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            known = best is not None and self._within(best)
-            tracked = self._track(here, _guess(taken, self.target, lam, best), lam, not known)
+            tracked = self._track(here, _guess(taken, self.target, lam, best), lam)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
@@ -103,13 +95,10 @@ class Endgame:
             if len(taken) < 3:
                 continue
             end = _limit(taken, self.target, point.weights)
-            if best is None or end.length < best.length:
-                best, worse = end, 0
-            else:
-                worse += 1
-            if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
+            if best is not None and end.length >= best.length:
                 break
-        if best is None or not self._within(best):
+            best = end
+        if best is None or best.length > self.solver.tolerance.relative:
             return None
         return best if self._keeps_orientation(best, here) else None
 
@@ -133,36 +122,22 @@ class Endgame:
             return True
         return at.orientation == last.orientation or not regular(self.solver, at, last)
 
-    def _within(self, end: SingularLimit) -> bool:
-        return end.length <= self.solver.tolerance.relative
-
-    def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
-        """The point at a parameter value, and its noise.
-
-        If `noisy`, an increment below the tolerance is accepted as noise.
-        """
+    def _track(self, here: Linearization, guess: Array, lam: float) -> tuple[Linearization, Array] | None:
+        """The point at a parameter value, and its noise."""
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
         fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
-        u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
+        if not correction.converged or (max_step is not None and not max_step(here.u, correction.u - here.u) > 1.0):
+            return None
+        u = np.append(correction.u[:-1], lam)
         try:
-            if not correction.converged:
-                if not noisy or anchor is None:
-                    return None
-                increment = anchor.system.solve(-evaluator.residual(u), 0.0)
-                if tolerance.measure(increment, here.weights) > 1.0:
-                    return None
-                u, noise = u + increment, np.abs(increment)
-            if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
-                return None
-            u = np.append(u[:-1], lam)
-            if anchor is not None:
-                at = relinearize(evaluator, u, here.weights, anchor, here.border, signed=True)
+            if correction.anchor is not None:
+                at = relinearize(evaluator, u, here.weights, correction.anchor, here.border, signed=True)
             else:
                 at = linearize(evaluator, u, here.weights, here.border)
-            return at, np.maximum(noise, _round_off(evaluator, at, unit))
+            return at, _round_off(evaluator, at, unit)
         except EvaluationError:
             return None
 

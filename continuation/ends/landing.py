@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, dot, generic_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
@@ -19,24 +19,8 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
-RESOLUTION = 1e-9
-"""Relative accuracy of the step to the target, before Newton's method."""
-
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
-
-DISTANCE, ANGLE = 0.3, 1.0
-"""A larger correction, in steps, or angle (radians) shows another branch."""
-
-RETRY, LEAP = 0.3, 10.0
-"""Paths creep towards a boundary: landing is tried so many steps away, and again when this share of the way is left."""
-
-STRETCH = 1.01
-"""Targets just beyond the step are landed on, since a step of round-off would be left."""
-
-ROOM, EDGE = 0.9, 1e-6
-"""ROOM: least distance to the boundary, relative to that of the predicted end. EDGE: tolerance of an end on the
-boundary."""
 
 LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
 """Correctors at a fixed parameter must contract well: far solutions look as good."""
@@ -49,51 +33,38 @@ class Landing:
     stepper: Stepper
     target: float
 
-    @property
-    def lands_from_afar(self) -> bool:
-        """Whether landing is tried from afar: near a boundary steps are short."""
-        return self.stepper.solver.max_step is not None
-
-    def attempt(
-        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
-    ) -> Attempt | None:
+    def attempt(self, point: Linearization, prediction: Prediction, h: float) -> Attempt | None:
         """A step to the target if the prediction reaches it, else None.
 
-        `h`, `longest`: the controller's. `last_failed`: parameter of the last failed landing.
+        `h`: the controller's step.
         """
-        guess = self._guess(point, prediction, h, longest, last_failed)
+        guess = self._guess(point, prediction, h)
         if guess is None:
             return None
         attempt = self._correct(point, *guess)
         if isinstance(attempt, Rejected):
             return attempt
         arrival = attempt.point
-        if attempt.angle > ANGLE or share(arrival.weights, arrival.tangent) <= SINGULAR_SHARE:
+        if share(arrival.weights, arrival.tangent) <= SINGULAR_SHARE:
             return Rejected(attempt.h, Rejection.ELSEWHERE, contraction=attempt.correction.contraction)
         return attempt
 
-    def _guess(
-        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
-    ) -> tuple[Array, float] | None:
+    def _guess(self, point: Linearization, prediction: Prediction, h: float) -> tuple[Array, float] | None:
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
-        target, max_step = self.target, self.stepper.solver.max_step
-        if self.lands_from_afar:
-            if abs(gap) > RETRY * abs(last_failed - target):
-                return None
-            h = min(LEAP * h, longest)
-        high = min(prediction.reach, STRETCH * h)
+        target = self.target
+        high = min(prediction.reach, h)
         try:
-            reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)
+            reached = zero_between(
+                lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
+            )
             if reached is None:
                 return None
             guess = prediction(reached).copy()
         except EvaluationError:
             return None
         guess[-1] = target
-        if max_step is not None and max_step(point.u, guess - point.u) < ROOM:
-            return None
         return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
@@ -106,10 +77,10 @@ class Landing:
             return rejected
         border = point.border
         along = dot(border, correction.u - point.u)
-        if along <= 0.0 or correction.distance > DISTANCE * h:
+        if along <= 0.0:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end may lie on the boundary.
-        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
+        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
         return self.stepper.arrive(point, border, h, landed)

@@ -9,6 +9,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
+from continuation.ends.divergence import QUADRATIC_STEPS
 from continuation.ends.endgame import Endgame, SingularLimit
 from continuation.ends.landing import SINGULAR_SHARE, crossing
 from continuation.evaluation.errors import EvaluationError
@@ -35,9 +36,6 @@ NEAR_ENOUGH = 30.0
 
 VANISHING_SHARE = 1e-18
 """Parameter's share of the tangent that is zero, the square of round-off."""
-
-END_CORRECTIONS = 4
-"""Newton's increments at the target: they converge quadratically."""
 
 
 class EndsAt(Enum):
@@ -72,9 +70,6 @@ class Target:
 
     solver: PathSolver
     target: float | None
-
-    # The target of a homotopy with `max_step` is mostly on the domain's boundary: hence these two and
-    # `Landing.lands_from_afar`.
 
     @property
     def expects_singular_end(self) -> bool:
@@ -157,7 +152,7 @@ class Target:
         u = np.append(end.y, value)
         r = evaluator.residual(u)
         try:
-            for _ in range(END_CORRECTIONS):
+            for _ in range(QUADRATIC_STEPS):
                 there = linearize(evaluator, u, end.weights, end.border)
                 nearer = u + there.solve(-r, 0.0, unit)
                 nearer[-1] = value

@@ -164,7 +164,7 @@ def from_residual(
     if pattern is None:
         return _said(Derivative(residual, by_differences(residual, u), None, said))
     groups = np.append(pattern.groups, pattern.count)
-    return _said(Derivative(residual, by_differences(residual, u, groups, pattern.structure()), pattern, said))
+    return _said(Derivative(residual, by_differences(residual, u, groups), pattern, said))
 
 
 def _said(derivative: Derivative) -> Derivative:

@@ -30,6 +30,8 @@ from continuation.homotopy import (
     offers,
 )
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.linear.dense import Dense
+from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Round-off of a point, in ulps."""
@@ -45,30 +47,27 @@ class CountedSystem:
     system: BorderedSystem
     counts: Counts
 
-    def solve(self, r: Array, rho: float) -> Array:
+    def solve(self, r: Array, rho: float, approximate: bool = False) -> Array:
         """Bordered solve; EvaluationError if not finite."""
-        return self._counted(self.system.solve, r, rho)
+        self.counts.solves += 1
+        try:
+            z = self.system.approximate(r, rho) if approximate else self.system.solve(r, rho)  # type: ignore[attr-defined]
+        except SingularError as error:
+            raise EvaluationError(str(error)) from error
+        if type(self.system) is not Dense and not finite(z):
+            raise EvaluationError("a bordered solve gave values that are not finite")
+        return z
 
     def approximate(self, r: Array, rho: float) -> Array:
         """Unrefined solve, if iterations measure their residual."""
-        return self._counted(getattr(self.system, "approximate", self.system.solve), r, rho)
-
-    def _counted(self, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
-        self.counts.solves += 1
-        try:
-            z = solve(r, rho)
-        except SingularError as error:
-            raise EvaluationError(str(error)) from error
-        if not finite(z):
-            raise EvaluationError("a bordered solve gave values that are not finite")
-        return z
+        return self.solve(r, rho, self.approximates)
 
     @cached_property
     def sign(self) -> int:
         """Sign of the determinant; 0 if unknown."""
         return self.system.sign
 
-    @property
+    @cached_property
     def approximates(self) -> bool:
         """Whether `approximate` differs from `solve`."""
         return hasattr(self.system, "approximate")
@@ -149,9 +148,11 @@ class Evaluator:
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
-    @np.errstate(all="ignore")
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError if not finite."""
+        if not silent():
+            with Silence():
+                return self.residual(u)
         self.counts.residuals += 1
         try:
             # Plug-ins may reuse their arrays.
@@ -249,8 +250,10 @@ class Evaluator:
             return whole.dot
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
-    @np.errstate(all="ignore")
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
+        if not silent():
+            with Silence():
+                return self._evaluated(u)
         try:
             answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
@@ -280,7 +283,7 @@ class Evaluator:
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
-                with np.errstate(all="ignore"):
+                with Silence():
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:

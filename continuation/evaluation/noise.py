@@ -37,8 +37,8 @@ of distances."""
 NOISE_STEADY = 30.0
 """Agreement of noise at two distances, each the largest of five samples."""
 
-WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
-"""Accuracy factor and limits of `allowed_along`'s lengths."""
+WIDENED, ENDLESS = 4.0, 1e150
+"""Accuracy factor of `allowed_along`'s lengths, and the longest."""
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array, enough: Array) -> Array:
@@ -74,7 +74,7 @@ def allowed_along(
     """
     low, high, over, power = 0.0, np.inf, np.inf, 2.0
     length, factor, allowed = begin, WIDENED, np.maximum(allowed, np.finfo(float).tiny)
-    while high > WIDENED * low and NOTHING_LEFT < length < ENDLESS:
+    while high > WIDENED * low and 1.0 / ENDLESS < length < ENDLESS:
         try:
             found = float((np.abs(residual(u + length * way)) / allowed).max())
         except Exception:

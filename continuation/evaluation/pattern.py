@@ -117,11 +117,6 @@ class Pattern:
         ab.ravel().put(self._in_band, entries)
         return Banded(ab, lower, upper)
 
-    def structure(self) -> Matrix:
-        """The transposed pattern as csr, with a full last row."""
-        own = sp.csr_array((np.ones(self.rows.size), (self.columns, self.rows)), shape=(self.n, self.n))
-        return sp.vstack([own, np.ones((1, self.n))], format="csr")
-
     def joined(self, other: Pattern) -> Pattern:
         """The union of two patterns."""
         return pattern_of(np.append(self.rows, other.rows), np.append(self.columns, other.columns), self.n)

@@ -8,7 +8,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arguments.checks import complain
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array, largest
+from continuation.arrays import Array, largest
 from continuation.evaluation.products import USUAL_STEP, Exact, exact
 
 Signs = tuple[int, ...]
@@ -79,20 +79,6 @@ class Pieces:
         h = USUAL_STEP * size
         change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
         return change
-
-    def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
-        """The lower median distance to borders ahead along v.
-
-        A border within half of the digits, relative to `direction`, is the start's own. Without a border: the size of
-        the given direction, else of the point, else 1.
-        """
-        s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
-        beside = 0.0 if direction is None else ROOT_OF_ROUND_OFF * np.abs(self.along(u, direction))
-        ahead = (s > beside) & (slope > ROOT_OF_ROUND_OFF * slope.max(initial=0.0))
-        if ahead.any():
-            return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
-        size = float(np.abs(u if direction is None else direction).max())
-        return (size or 1.0) / (float(np.abs(v).max()) or 1.0)
 
 
 class WholeMap:

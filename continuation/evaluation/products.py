@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -99,35 +98,37 @@ def sizes(u: Array) -> Array:
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 
-def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[list[Array], Array]:
-    """Central differences along w at all steps, and relative changes: (steps - 1, N).
+def _central(residual: Residual, u: Array, w: Array) -> Array:
+    """Half of the change from u - w to u + w."""
+    ahead, behind = u + w, u - w
+    # Residuals may reuse their arrays.
+    change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+    return np.asarray(0.5 * change, dtype=float)
+
+
+def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[Array, Array]:
+    """Central differences along w at all steps, (steps, N), and relative changes, (steps - 1, N).
 
     `rows`, shape (N,): least unit of a change; else noise decides for equations constant along w.
     """
 
     def at(h: float) -> Array:
-        ahead, behind = u + h * w, u - h * w
-        # Residuals may reuse their arrays.
         try:
-            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+            return _central(residual, u, h * w) / h
         except (ArithmeticError, ValueError):
             # Outside the domain.
             return np.full(u.size - 1, np.nan)
-        return np.asarray(change / (2.0 * h), dtype=float)
 
     with np.errstate(all="ignore"):
-        found = [at(float(h)) for h in DIFFERENCE_STEPS]
-        # Short steps in single precision show no change: zeros do not agree.
-        seen = (np.array(found) != 0.0).any(axis=0)
-        # Closer agreement than a difference's accuracy is chance.
-        changes = []
-        for one, other in pairwise(found):
-            size = np.maximum(np.abs(one) + np.abs(other), rows)
-            change = np.where(
-                (one == 0.0) & (other == 0.0) & seen, 1.0, np.abs(one - other) / np.where(size > 0.0, size, 1.0)
-            )
-            changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), USUAL_STEP**2))
-    return found, np.array(changes)
+        found = np.array([at(float(h)) for h in DIFFERENCE_STEPS])
+        one, other = found[:-1], found[1:]
+        size = np.maximum(np.abs(one) + np.abs(other), rows)
+        changes = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
+    # Short steps in single precision show no change: zeros do not agree.
+    changes[(one == 0.0) & (other == 0.0) & (found != 0.0).any(axis=0)] = 1.0
+    changes[~np.isfinite(changes)] = 1.0
+    # Closer agreement than a difference's accuracy is chance.
+    return found, np.maximum(changes, USUAL_STEP**2)
 
 
 def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
@@ -136,13 +137,13 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
     `u`, `w` of shape (N + 1,).
     """
     found, changes = _trials(residual, u, w)
-    best = int(_best(changes.mean(axis=1)))
+    best = _best(changes.mean(axis=1))
     return found[best], float(DIFFERENCE_STEPS[best])
 
 
-def _best(changes: Array) -> Any:
-    order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
-    return order[np.argmin(changes[..., order], axis=-1)] + 1
+def _best(changes: Array) -> int:
+    """The step with the least change, among equals that nearest to the usual one."""
+    return min(range(changes.size), key=lambda k: (changes[k], abs(k - 1))) + 1
 
 
 @frozen(eq=False)
@@ -178,23 +179,17 @@ class ByDifferences:
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
         """H'(u) times directions in units of `scale`, (k, N + 1) to (N, k), by two residuals each."""
-        found = []
-        for w in directions * self.scale(u):
-            ahead, behind = u + w, u - w
-            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
-            found.append(0.5 * change)
-        return np.stack(found, axis=1)
+        return np.stack([_central(residual, u, w) for w in directions * self.scale(u)], axis=1)
 
     def whole(self, residual: Residual, u: Array) -> Array:
         """H'(u), column by column."""
         return self(residual, u, np.eye(u.size)) / self.scale(u)
 
 
-def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
+def by_differences(residual: Residual, u0: Array, groups: Any = None) -> ByDifferences:
     """Differences with the best step for each component at `u0`.
 
-    `groups`, shape (N + 1,): components that move together; default: none. `rows`, sparse, shape (N + 1, N): ones for
-    each component's equations; default: all.
+    `groups`, shape (N + 1,): components that move together and have one step; default: none.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     unit = size.copy()
@@ -203,12 +198,12 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     for group in range(int(groups.max()) + 1):
         own, reach = groups == group, size.copy()
         while True:
-            changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1].T
-            seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
+            changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1]
+            seen = changes.sum(axis=1)
             steps[own], unit[own] = DIFFERENCE_STEPS[_best(seen)], reach[own]
             # A component that is almost zero has no unit: try longer steps that agree as well.
             longer = own & (size < USUAL_STEP) & (reach < 1.0)
-            longer[own] &= (seen[:, 0] <= seen.min(axis=1)) | (changes.min() == 1.0)
+            longer &= (seen[0] <= seen.min()) | (changes.min() == 1.0)
             if not longer.any():
                 break
             reach[longer] = np.minimum(reach[longer] / DIFFERENCE_STEPS[3], 1.0)
@@ -226,7 +221,8 @@ def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
             found = products(residual, u, w[None])[:, 0]
     except (TypeError, ArithmeticError, ValueError, AttributeError, IndexError, np.exceptions.ComplexWarning):
         return False
-    expected = np.array([change for change in _trials(residual, u, w)[0] if np.isfinite(change).all()])
+    expected = _trials(residual, u, w)[0]
+    expected = expected[np.isfinite(expected).all(axis=1)]
     if not len(expected) or found.shape != expected.shape[1:]:
         return False
     # A zero row is measured by the others, though each has its own unit.

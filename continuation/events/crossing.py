@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg.lapack import dgeev
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array, dot
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
@@ -27,16 +27,13 @@ OUTSIDE_SPACE = 0.1
 """If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
 Otherwise a tenth of 400 crossings just behind an arc is missed."""
 
-EXHAUSTED = 1e-10
-"""Share left after orthogonalisation of a dependent vector."""
-
 ROUNDING = ROOT_OF_ROUND_OFF
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
 Eigenvalue Problem, Section 2.22), as near a pole."""
 
-SAME, INDEPENDENT = 1e-3, 1e-4
-"""Relative distance of equal eigenvalues; singular value of dependent unit vectors, which have half the eigenvalues'
-digits."""
+SAME = math.sqrt(SIX_DIGITS)
+"""Relative distance of equal eigenvalues, and singular value of dependent unit vectors: these have half the
+eigenvalues' digits."""
 
 
 def changes(
@@ -67,11 +64,11 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
     found = np.empty((a.u.size, 0))
     for k in range(a.u.size):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
-        values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
+        values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SIX_DIGITS)
         near = np.flatnonzero(np.abs(values * place - 1.0) < SAME)
         # One start may have no part along an eigenvector; one of two has.
         found = np.column_stack((found, vectors[:, near[:1]]))
-        if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < INDEPENDENT:
+        if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < SAME:
             return found.shape[1] - 1
         if k > found.shape[1]:
             break
@@ -119,23 +116,18 @@ def _eigenvalues(
         x = x - second.dot(space)
         H[: k + 1, k] = first + second
         H[k + 1, k] = left_over = math.sqrt(dot(x, x))
-        whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
+        whole = k + 1 == a.u.size or left_over <= ROOT_OF_ROUND_OFF * size
         if k == 0 and not whole:
             Q[1] = x / left_over
             continue
-        if k == 1 and _nothing_told(H, right, left):
-            if whole or _closed(H[:2, :2], left_over, right):
-                return np.empty(0), np.empty((a.u.size, 0)), scale
-            converged = True
-        else:
-            values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
-            told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
-            before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
-            # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
-            last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
-            same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
-            if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
-                break
+        values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
+        told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
+        before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
+        # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
+        last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
+        same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
+        if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
+            break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
     # Off the path the equal eigenvalues of a multiple point may be a complex pair.
@@ -166,17 +158,3 @@ def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], A
             last[j] = last[j + 1] = math.hypot(last[j], last[j + 1])
             vectors[:, j + 1] = vectors[:, j]
     return values, [left_over * abs(x) for x in last], vectors
-
-
-def _nothing_told(H: Array, right: float, left: float) -> bool:
-    """Whether two dimensions, in closed form, exclude every wanted eigenvalue."""
-    a, b, c, d = float(H[0, 0]), float(H[0, 1]), float(H[1, 0]), float(H[1, 1])
-    middle, discriminant = 0.5 * (a + d), 0.25 * (a - d) ** 2 + b * c
-    root = math.sqrt(abs(discriminant))
-    for sign in (-1.0, 1.0):
-        real, imaginary = (middle + sign * root, 0.0) if discriminant >= 0.0 else (middle, root)
-        # Residual: last component of the unit eigenvector (value - d, c), times H[2, 1].
-        error = float(H[2, 1]) * abs(c) / (math.hypot(real - d, imaginary, c) or 1.0)
-        if real + error > right or real - error < left:
-            return False
-    return True

@@ -16,7 +16,7 @@ import numpy as np
 from attrs import evolve, frozen
 from scipy.optimize import brentq, minimize_scalar
 
-from continuation.arrays import Array, largest
+from continuation.arrays import SIX_DIGITS, Array, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.arc import Arc
@@ -37,8 +37,8 @@ CONVERGES = 8.0
 """Least fall of the model's error at half the length; a cubic's falls sixteenfold. Without it functions that cubics
 model badly, as a determinant beside a fold, cost 256 divisions of an arc."""
 
-DIVISIONS, INSIDE_ARC = 8, 1e-6
-"""Most divisions of an arc; least relative distance from its ends."""
+DIVISIONS = 8
+"""Most divisions of an arc."""
 
 PASSES, NEARLY_ZERO = 60, 1e-10
 """PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if a pass did
@@ -46,9 +46,6 @@ not halve it where the slope is at least half the chord's, so that the zero is s
 
 SLOPE = 1e-3
 """Step of the difference quotient, in parts: three digits, as the model has."""
-
-TRANSVERSAL = 1e-6
-"""Least tangent component, relative to the largest, along which a point is put on a value."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
@@ -161,7 +158,7 @@ def zeros(
         low, high, model = part.low, part.high, partial(along, part)
         known = {low: part.a, high: part.b}
         t = part.undecided(model) if part.depth < DIVISIONS else None
-        if t is not None and INSIDE_ARC < (t - low) / (high - low) < 1.0 - INSIDE_ARC:
+        if t is not None and SIX_DIGITS < (t - low) / (high - low) < 1.0 - SIX_DIGITS:
             g = value(part, known, t)
             if abs(g) <= noise:
                 g = math.copysign(noise, part.ga)
@@ -219,7 +216,7 @@ def root(
 
 def on_value(solver: PathSolver, point: Linearization, component: int, value: float) -> Linearization:
     """Put a component exactly on a value, if the path is transversal."""
-    if abs(point.tangent[component]) <= TRANSVERSAL * largest(point.tangent):
+    if abs(point.tangent[component]) <= SIX_DIGITS * largest(point.tangent):
         return point
     unit, guess = np.zeros_like(point.u), point.u.copy()
     unit[component], guess[component] = 1.0, value

@@ -12,40 +12,32 @@ from itertools import combinations_with_replacement
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.linear.nullspace import BORDERS, Bordered, kernels
+from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
 from continuation.point.linearization import linearize
 
 LOST_RANKS = 3
 """Lost ranks that are resolved: a sphere in four dimensions."""
 
-CHORD, LAST_INCREMENT = 30, 1e-13
-"""Chord steps onto the graph of z; last increment, relative to the sphere."""
+STEPS, LAST_INCREMENT = 30, 1e-13
+"""Most steps of an iteration; last increment onto the graph of z, relative to the sphere."""
 
 STARTS = 600
 """Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
 
-NEWTON, ROOT = 30, 1e-9
-"""Newton steps; last increment, relative to the sphere."""
-
-DIFFERENCE = 1e-4
-"""Step of differences of g, relative to the sphere; half the digits remain."""
-
 SAME_ZERO = 1e-3
 """Nearer zeros, relative to the sphere, are one."""
 
-NOISE, ZERO = 1e-11, 1e-14
-"""Round-off of a direction, relative to its largest component; of a point, in extents."""
+NOISE = 1e-11
+"""Round-off of a direction, relative to its largest component."""
 
-BENT, BALANCINGS = 0.1, 20
+BENT = 0.1
 """Ratio of higher to linear terms off the path: branches of unknowns that stand still along the path, and so have no
-unit, bend by a few degrees within the sphere. Twenty halvings leave no digit."""
-
-ISOLATED = 1e-7
-"""Least singular value of the scaled equations at an isolated zero."""
+unit, bend by a few degrees within the sphere."""
 
 
 class Unresolved(ArithmeticError):
@@ -100,7 +92,7 @@ class Reduced:
         """The point over the kernel, from u, and g."""
         n, size = self.sizes.size, float(np.linalg.norm(a))
         w, g = self.kernel @ a, np.zeros(self.left.shape[1])
-        for _ in range(CHORD):
+        for _ in range(STEPS):
             H = self.evaluator.residual(self.u + self.extent * w) / self.sizes
             step = self.bordered.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]))
             w, g = w + step[: n + 1], g + step[n + 1 :]
@@ -108,42 +100,21 @@ class Reduced:
                 break
         return w, g
 
-    def slopes(self, a: Array, radius: float) -> Array:
-        """Derivatives of g."""
-        h = DIFFERENCE * radius
-        return np.column_stack([(self.at(a + h * e)[1] - self.at(a - h * e)[1]) / (2.0 * h) for e in np.eye(a.size)])
 
-    def newton(self, a: Array, radius: float) -> Array | None:
-        """A zero on the sphere, or None."""
-        a = a * (radius / np.linalg.norm(a))
-        for _ in range(NEWTON):
-            step = _onto_sphere(self.at(a)[1], self.slopes(a, radius), a, radius)
-            a = a + step
-            if not np.isfinite(a).all() or np.linalg.norm(a) > 4.0 * radius:
-                return None
-            if np.abs(step).max() <= ROOT * radius:
-                return a
-        return None
-
-
-def _equations(slopes: Array, a: Array, radius: float) -> tuple[Array, Array]:
-    """Derivatives of g = 0 and |a| = radius, over their sizes, and the sizes."""
+def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> tuple[Array, Array]:
+    """Newton's step to g = 0 and |a| = radius, and the derivatives of these, over their sizes."""
     rows = np.concatenate([slopes, 2.0 * a[..., None, :] / radius], axis=-2)
-    sizes = np.maximum(np.linalg.norm(rows, axis=-1), np.finfo(float).tiny)
-    return rows / sizes[..., None], sizes
-
-
-def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> Array:
-    rows, sizes = _equations(slopes, a, radius)
+    sizes = np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)
     off = np.concatenate([g, ((a**2).sum(axis=-1, keepdims=True) - radius**2) / radius], axis=-1)
-    step: Array = -(np.linalg.pinv(rows, rcond=1e-12) @ (off / sizes)[..., None])[..., 0]
-    return step
+    return -(np.linalg.pinv(rows / sizes, rcond=1e-12) @ (off[..., None] / sizes))[..., 0], rows / sizes
 
 
 @frozen(eq=False)
 class Polynomials:
-    """g near zero as polynomials of degrees two to four."""
+    """g near zero as polynomials of degrees two to four, in radii."""
 
+    reduced: Reduced
+    radius: float
     powers: Array
     coefficients: Array
 
@@ -157,10 +128,10 @@ class Polynomials:
         places = np.vstack([half, -half, 0.5 * half])
         values = np.array([reduced.at(radius * a)[1] for a in places])
         terms = np.prod(places[:, None, :] ** powers, axis=2)
-        return cls(powers, np.linalg.lstsq(terms, values, rcond=None)[0])
+        return cls(reduced, radius, powers, np.linalg.lstsq(terms, values, rcond=None)[0])
 
     def at(self, a: Array) -> tuple[Array, Array]:
-        """Values, shape (points, k), and derivatives, shape (points, k, m), in radii."""
+        """Values, shape (points, k), and derivatives, shape (points, k, m)."""
         raised = a[:, None, :] ** self.powers
         slopes = []
         for i in range(a.shape[1]):
@@ -173,15 +144,28 @@ class Polynomials:
         """Zeros on the unit sphere."""
         found: list[Array] = []
         a = _spread(STARTS, self.powers.shape[1], 2)
-        for _ in range(NEWTON):
-            step = _onto_sphere(*self.at(a), a, 1.0)
-            there = np.abs(step).max(axis=1) < ROOT
+        for _ in range(STEPS):
+            step, _ = _onto_sphere(*self.at(a), a, 1.0)
+            there = np.abs(step).max(axis=1) < ROOT_OF_ROUND_OFF
             for one in a[there]:
                 _add(found, one)
             a = (a + step)[~there]
             far = np.linalg.norm(a, axis=1) > 2.0
             a[far] /= np.linalg.norm(a[far], axis=1)[:, None]
         return found
+
+    def root(self, a: Array, length: float = 1.0) -> tuple[Array, bool] | None:
+        """A zero of g on a sphere, by Newton's method with these slopes, and whether it is isolated; or None."""
+        a = a * (length / np.linalg.norm(a))
+        for _ in range(STEPS):
+            g, slopes = self.reduced.at(self.radius * a)[1], self.at(a[None])[1][0]
+            step, rows = _onto_sphere(g, slopes, a, length)
+            a = a + step
+            if not np.isfinite(a).all() or np.linalg.norm(a) > 4.0 * length:
+                return None
+            if np.abs(step).max() <= ROOT_OF_ROUND_OFF * length:
+                return a, bool(np.linalg.svd(rows, compute_uv=False)[-1] >= ROOT_OF_ROUND_OFF)
+        return None
 
 
 def _spread(count: int, m: int, seed: int) -> Array:
@@ -204,15 +188,14 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
     extent = 1.0 / np.sqrt(weights)
     resting = np.abs(heading) <= NOISE * extent * np.max(np.abs(heading) / extent)
     try:
-        for _ in range(BALANCINGS):
+        for _ in range(STEPS):
             reduced = Reduced.beside(evaluator, u, extent, heading)
             bend = reduced.bend(heading / extent, step)
             if not resting.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
             # This suits cubic terms; for quadratic ones it halves the extent's error, in digits.
             extent = np.where(resting, extent * np.sqrt(BENT / bend), extent)
-        found = _on_sphere(reduced, step)
-        branches = [_branch(reduced, a, step, reduced.extent**-2.0) for a in found]
+        branches = _branches(Polynomials.of(reduced, step))
     except Unresolved:
         raise
     except (ArithmeticError, np.linalg.LinAlgError) as error:
@@ -222,40 +205,34 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
     return branches
 
 
-def _on_sphere(reduced: Reduced, radius: float) -> list[Array]:
-    m = reduced.kernel.shape[1]
+def _branches(near: Polynomials) -> list[Leaving]:
+    m = near.reduced.kernel.shape[1]
     found: list[Array] = []
-    for guess in Polynomials.of(reduced, radius).zeros():
-        if len(found) > 2 * 4 ** (m - 1):
-            break
-        for way in (guess, -guess):
-            a = reduced.newton(way, radius)
-            if a is not None:
-                _add(found, a)
-    many = len(found) > 2 * 4 ** (m - 1)
-    if many or not found or any(_flat(reduced, a, radius) for a in found):
+    flat = False
+    for guess in near.zeros():
+        for root in (near.root(guess), near.root(-guess)) if len(found) <= 2 * 4 ** (m - 1) else ():
+            if root is not None:
+                _add(found, root[0])
+                flat |= not root[1]
+    if len(found) > 2 * 4 ** (m - 1) or not found or flat:
         said = "there is a continuum of branches, as symmetries make it" if found else "none was found"
         raise Unresolved(f"the kernel of H' has dimension {m} there, and its branches do not leave one by one: {said}")
-    return found
+    return [_branch(near, a) for a in found]
 
 
-def _flat(reduced: Reduced, a: Array, radius: float) -> bool:
-    rows, _ = _equations(reduced.slopes(a, radius), a, radius)
-    return bool(np.linalg.svd(rows, compute_uv=False)[-1] < ISOLATED)
-
-
-def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leaving:
-    w = reduced.at(a)[0]
-    nearer = reduced.newton(0.5 * a, 0.5 * radius)
+def _branch(near: Polynomials, a: Array) -> Leaving:
+    reduced, half = near.reduced, near.root(a, 0.5)
+    weights = reduced.extent**-2.0
+    w = reduced.at(near.radius * a)[0]
     ray = w / np.linalg.norm(w)
-    if nearer is not None:
-        half = reduced.at(nearer)[0]
+    if half is not None:
+        nearer = reduced.at(near.radius * half[0])[0]
         # Extrapolated, as branches may curve.
-        ray = 2.0 * half / np.linalg.norm(half) - ray
+        ray = 2.0 * nearer / np.linalg.norm(nearer) - ray
     ray = still(reduced.extent * ray, weights)
     u = without_noise(reduced.u, reduced.extent * w, weights)
-    near = linearize(reduced.evaluator, u, weights, weights * ray)
-    return Leaving(u, ray / norm(weights, ray), still(near.tangent, weights), weights)
+    at = linearize(reduced.evaluator, u, weights, weights * ray)
+    return Leaving(u, ray / norm(weights, ray), still(at.tangent, weights), weights)
 
 
 def still(v: Array, weights: Array) -> Array:
@@ -267,4 +244,4 @@ def still(v: Array, weights: Array) -> Array:
 def without_noise(u: Array, way: Array, weights: Array) -> Array:
     """The point u + way without round-off."""
     there = u + still(way, weights)
-    return np.where(np.abs(there) * np.sqrt(weights) > ZERO, there, 0.0)
+    return np.where(np.abs(there) * np.sqrt(weights) > BACKWARD_ERROR, there, 0.0)

@@ -11,7 +11,6 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import may_vanish, on_value, zeros
-from continuation.homotopy import Watcher, offers
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import REFINED, Linearization
 from continuation.point.projection import PathSolver
@@ -23,8 +22,8 @@ SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points found by each `Watcher`, and whether these and `found` explain the arc."""
-    watching: list[tuple[int, Any]] = [(i, event) for i, event in enumerate(events) if offers(event, Watcher)]
+    """Points found by each `continuation.homotopy.Watcher`, and whether these and `found` explain the arc."""
+    watching: list[tuple[int, Any]] = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]
     return own, all(event.accounts_for(arc, known) for _, event in watching)
@@ -59,7 +58,7 @@ def scan_events(
     values = []
     noise: Array | None = None
     for i, event in enumerate(events):
-        if offers(event, Watcher):
+        if hasattr(event, "found_on"):
             values.append(0.0)
             continue
         if isinstance(event, SOUGHT_ELSEWHERE):

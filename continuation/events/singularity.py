@@ -9,20 +9,18 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, generic_vector
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Banded
 from continuation.linear.entries import extended
 from continuation.linear.nullspace import RANK, Bordered, kernels
+from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
 """First increments may grow; the result is checked."""
-
-POLISHED, POLISHED_NEARLY = 1e-14, 1e-6
-"""Last increment, in extents; below the second, stalled increments are round-off."""
 
 SECOND = 1e-5
 """Step, in extents, of central differences of H': ten digits."""
@@ -30,12 +28,8 @@ SECOND = 1e-5
 DISTINCT_DIRECTIONS = 1e-9
 """Least relative discriminant of two directions: the digits of SECOND."""
 
-HALTED = 1e-9, 100.0
-"""At a simple branch point increments fall below HALTED[0]. Linear convergence means several lost ranks: the next
-singular value was two to four last increments (Bratu's problem on a square)."""
-
-IMPERFECT = 1e-8
-"""Largest relative term that the system adds to H; beyond, H has no zero where H' loses rank."""
+HALTED = 1e-9
+"""At a simple branch point increments fall below this."""
 
 
 @frozen(eq=False)
@@ -143,28 +137,25 @@ def branch_point_near(
     def done(size: float) -> bool:
         lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
         # Stalled increments are round-off; if they grow, several ranks are lost.
-        near = size < POLISHED_NEARLY * max(newton.ratio, 1.0)
-        return lost or size <= POLISHED or (near and newton.ratio >= HALVING)
+        near = size < SIX_DIGITS * max(newton.ratio, 1.0)
+        return lost or size <= BACKWARD_ERROR or (near and newton.ratio >= HALVING)
 
     try:
         # Nearly singular matrices may give non-finite numbers.
         with np.errstate(all="ignore"):
-            if not newton.run(increment, measure, done) or not newton.size <= POLISHED_NEARLY:
+            if not newton.run(increment, measure, done) or not newton.size <= SIX_DIGITS:
                 return None
             u = newton.x[:-1]
             here = at(u)
-            if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
+            if not np.abs(here.left[1]).max() <= RANK or abs(float(newton.x[-1])) > ROOT_OF_ROUND_OFF:
                 return None
-            # After an early halt H' is known to the last increment only.
-            halted = newton.size > HALTED[0]
-            accuracy = max(RANK, HALTED[1] * newton.size)
-            if (here.weak or halted) and kernels(scaled.at(u), accuracy)[0].shape[1] > 2:
+            if here.weak and kernels(scaled.at(u))[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
-            if halted:
+            if newton.size > HALTED:
                 # At a regular zero one more increment is round-off; at a multiple one branches touch, or more cross.
                 newton.run(increment, measure, lambda size: True)
-                if newton.size > HALTED[0]:
+                if newton.size > HALTED:
                     return None
                 u = newton.x[:-1]
                 here = at(u)

@@ -12,6 +12,7 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import factor_dense
 from continuation.linear.refine import TRUSTED, BorderedMatrix, Factored, join, refined
+from continuation.linear.silence import without_warnings
 from continuation.linear.system import BorderedSystem
 
 
@@ -78,7 +79,7 @@ class BlockElimination:
         return self.factor_whole()
 
 
-@np.errstate(all="ignore")
+@without_warnings(all="ignore")
 def eliminate(
     matrix: Matrix,
     column: Array,

@@ -149,20 +149,17 @@ def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
     return found
 
 
-def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
-    """Orthonormal bases of both kernels of a matrix, shape (N, N + 1), as columns.
-
-    `accuracy`: relative size of vanishing singular values.
-    """
+def kernels(matrix: Matrix) -> tuple[Array, Array]:
+    """Orthonormal bases of both kernels of a matrix, shape (N, N + 1), as columns."""
     n = matrix.shape[0]
     k = min(BORDERS, n)
     generator = np.random.default_rng(7)
     bordered = Bordered.of(matrix, generator.standard_normal((n, k)), generator.standard_normal((k + 1, n + 1)))
-    return _vanishing(*bordered.right, accuracy), _vanishing(*bordered.left, accuracy)
+    return _vanishing(*bordered.right), _vanishing(*bordered.left)
 
 
-def _vanishing(vectors: Array, defects: Array, accuracy: float) -> Array:
+def _vanishing(vectors: Array, defects: Array) -> Array:
     values, turned = np.linalg.svd(defects)[1:]
-    rank = int(np.count_nonzero(values > accuracy * np.linalg.norm(vectors, 2)))
+    rank = int(np.count_nonzero(values > RANK * np.linalg.norm(vectors, 2)))
     basis: Array = np.linalg.qr(vectors @ turned[rank:].T)[0]
     return basis

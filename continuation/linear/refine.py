@@ -9,6 +9,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix
+from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
@@ -85,7 +86,7 @@ def join(r: Array, rho: float) -> Array:
     return rhs
 
 
-@np.errstate(all="ignore")
+@without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
     """Solve M z = rhs by a corrected approximate inverse; also whether the residual is round-off."""
     z = solve(rhs)

@@ -48,15 +48,13 @@ SMALL_INCREMENT = 1e-4
 class PathSolver:
     """Puts points of one homotopy on its path.
 
-    `tolerance`: raised at the start for noise in H. `max_step`: how far an interior path may go in a direction.
-    `straight`: about how far a path of straight pieces goes before it bends. `room`: how far a straight path without a
-    target goes to its end.
+    `tolerance`: raised at the start for noise in H. `max_step`: how far an interior path may go in a direction. `room`:
+    how far a straight path without a target goes to its end.
     """
 
     evaluator: Evaluator
     tolerance: Tolerance
     max_step: MaxStep | None = None
-    straight: MaxStep | None = None
     room: MaxStep | None = None
     asked: float = field(default=Factory(lambda solver: solver.tolerance.relative, takes_self=True), init=False)
 

@@ -8,6 +8,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
+from continuation.linear.silence import without_warnings
 from continuation.metric import INVERTIBLE
 from continuation.tolerance import Tolerance
 
@@ -81,7 +82,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
     return Series(numerator * back[: order - m + 1, None], 0.0, d * back[: m + 1])
 
 
-@np.errstate(all="ignore")
+@without_warnings(all="ignore")
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Series | None:
     """The approximant with the longest range, or None.
 

@@ -134,9 +134,7 @@ class Advance:
         if math.isinf(h):
             # Neither controller nor predictor has a range: begin with the point's size.
             h = 1.0 + norm(point.weights, point.u)
-        landing = self.landing and self.landing.attempt(
-            point, prediction, h, controller.bounds.maximum, state.last_failed_landing
-        )
+        landing = self.landing and self.landing.attempt(point, prediction, h)
         if landing is not None:
             # A long correction makes a landing unreliable too.
             if (

@@ -66,22 +66,20 @@ def initial_extent(
     point: Linearization,
     target: float | None,
     residual: Array,
-    farthest: float = np.inf,
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
     """Return how far each component goes until the path turns or reaches the target; and its noise.
 
-    Components that stand still get the median. `residual`: H at the point. `farthest`: length for straight pieces
-    without target. `room`: distance to an end value. `sizes`: of the components. Arrays have shape (N + 1,).
+    Components that stand still get the median. `residual`: H at the point.
+    `room`: distance to an end value. `sizes`: of the components. Arrays have shape (N + 1,).
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
     if np.isfinite(gap):
         whole = abs(gap / v[-1])
         v = v * np.sign(gap / v[-1])
-    whole = whole if np.isfinite(whole) else farthest
-    exactly = sizes is None and np.isinf(farthest)
+    exactly = sizes is None
     standstill, unit = STANDSTILL if exactly else STILL_PIECEWISE, np.ones_like(v) if sizes is None else sizes
     if not exactly:
         v = np.where(np.abs(v) > standstill * unit * float(np.abs(v / unit).max()), v, 0.0)

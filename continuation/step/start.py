@@ -123,11 +123,10 @@ def measured(
 
     Noise of H raises the tolerance, and the extents of noisier components.
     """
-    farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
-    extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
+    extent, blur = initial_extent(solver.evaluator, point, target, residual, room, sizes)
     noisy = solver.evaluator.noise is not None
     least = max(CLEAR_OF_NOISE * median(blur / extent), solver.tolerance.relative)
     solver.noisy(min(least, COARSEST) if noisy else 0.0)

@@ -6,7 +6,6 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from functools import partial
 from typing import Any, Protocol, Unpack
 
 import numpy as np
@@ -21,6 +20,7 @@ from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsPieces, offers
 from continuation.kinks.start import begin
+from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
 from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
@@ -131,10 +131,8 @@ class Tracer:
         self.observers = tuple(observers)
         self._finish = finish_of(homotopy, asked["finish"])
         self._pieces = Pieces(homotopy) if offers(homotopy, SupportsPieces) else None
-        leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
-        straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         room, farthest = self.settings.room, max_step_of(homotopy)
-        self._solver = PathSolver(self._evaluator, self.settings.tolerance, farthest, straight, room)
+        self._solver = PathSolver(self._evaluator, self.settings.tolerance, farthest, room)
         self._recorder = StepRecorder(self._evaluator, observing(homotopy, self._bound.events))
         self._advance = Advance(self._solver, self._bound, self._recorder, self._spent, self._pieces)
         self._check = asked["check_jacobian"]
@@ -204,7 +202,7 @@ class Tracer:
 
     def _run(self) -> Iterator[Step]:
         try:
-            with np.errstate(all="ignore"):
+            with Silence():
                 point = self._first() if self.state is None else self._restored(self.state)
         except StartError as error:
             self._end(refused_start(error))
@@ -317,7 +315,7 @@ class Tracer:
         state = self.state
         assert state is not None
         # Non-finite steps show overflow.
-        with np.errstate(all="ignore"):
+        with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):

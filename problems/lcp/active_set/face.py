@@ -18,6 +18,7 @@ from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import Factored
+from continuation.linear.silence import without_warnings
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure, scaled_band
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
@@ -59,7 +60,7 @@ class Face:
     shift: float
     q: Array
 
-    @np.errstate(over="ignore", invalid="ignore")
+    @without_warnings(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
         """(x, w) on the face, near `near` if there are many; None if not finite."""
         standard = self.problem.standard
@@ -80,7 +81,7 @@ class Face:
         w: Array = self.problem.A.dot(x) + self.q
         return w + self.shift * x if self.shift else w
 
-    @np.errstate(over="ignore", invalid="ignore")
+    @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
         """Correct x once, with accurate w."""
         return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)

@@ -14,6 +14,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem, SingularError
+from continuation.linear.silence import without_warnings
 
 GAINED = 1e-3
 """Largest relative first correction of an accepted core: four such corrections reach round-off."""
@@ -22,7 +23,7 @@ FIRM_CORRECTION = 1e-13
 """Largest correction of the tangent for which solutions need none."""
 
 
-_silently = np.errstate(all="ignore")
+_silently = without_warnings(all="ignore")
 """A pair of zeros gives inf, which the factorisation reports."""
 
 

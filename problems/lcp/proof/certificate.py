@@ -10,6 +10,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, finite, largest, least
+from continuation.linear.silence import without_warnings
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, error_bound, row_terms
@@ -34,7 +35,7 @@ MOST_MADE_UP = 2.0**-50
 """2^-1074 times the largest float bounds the effect of a subnormal x_j on a row."""
 
 
-_quiet = np.errstate(over="ignore", under="ignore", invalid="ignore")
+_quiet = without_warnings(over="ignore", under="ignore", invalid="ignore")
 
 
 @frozen(eq=False, slots=False)

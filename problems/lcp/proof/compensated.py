@@ -11,6 +11,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix, largest, least
+from continuation.linear.silence import without_warnings
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
 
@@ -28,7 +29,7 @@ LARGEST_TERMS = 1e240
 """Rows whose terms sum to more than this, or less than its inverse, are scaled: products below 1e-260 are inexact."""
 
 
-@np.errstate(over="ignore", invalid="ignore", under="ignore")
+@without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
     """A x + q by compensated summation, with error bounds; both are infinite where a product overflows. `x` is finite.
 
@@ -72,7 +73,7 @@ class Terms:
         return np.ldexp(values, self.exponents) if self.scaled else values
 
 
-@np.errstate(over="ignore", invalid="ignore", under="ignore")
+@without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """The rows of A x + q without overflow or underflow."""
     w, size, _ = _rows(problem, x)

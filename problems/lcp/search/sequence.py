@@ -10,6 +10,7 @@ from attrs import define, field
 
 from continuation.arrays import Array, Matrix
 from continuation.budget import Budget
+from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
 from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.finish import Finish
@@ -90,7 +91,7 @@ class Solver:
         guess = self._active if active is None else _mask(active, problem.n)
         found = None
         if problem.n:
-            with np.errstate(all="ignore"):
+            with Silence():
                 found = self._nearby(problem, guess)
         if found is None:
             found = solve(problem, tolerance=self.tolerance, **options)

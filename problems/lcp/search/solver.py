@@ -18,6 +18,7 @@ from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
+from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
@@ -166,7 +167,7 @@ def solve(
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
     current = problem if scaled is None else scaled.problem
     log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
-    with np.errstate(all="ignore"), one_thread, nullcontext() if log is None else log:
+    with Silence(), one_thread, nullcontext() if log is None else log:
         found = beyond_floats(problem, tolerance) if beyond else None
         if found is None and automatic and finish and not path and start is None and near is None:
             found = at_once(current, tolerance)
