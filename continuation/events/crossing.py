@@ -61,18 +61,18 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
     """Ranks lost at a `place` of `changes`. One Krylov space holds one vector of each eigenspace, so several starts
     serve.
     """
-    found = np.empty((a.u.size, 0))
+    found, lost = np.empty((a.u.size, 0)), 0
     for k in range(a.u.size):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
-        values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SIX_DIGITS)
-        near = np.flatnonzero(np.abs(values * place - 1.0) < SAME)
+        values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
+        near = np.abs(values * place - 1.0) < SAME
+        # Eigenvalues that vanish at different rates are apart beside the point, and one start has all their vectors.
+        found, before = np.column_stack((found, vectors[:, near])), lost
+        lost = int(np.count_nonzero(np.linalg.svd(_unit(found, scale), compute_uv=False) >= SAME))
         # One start may have no part along an eigenvector; one of two has.
-        found = np.column_stack((found, vectors[:, near[:1]]))
-        if near.size and np.linalg.svd(_unit(found, scale), compute_uv=False)[-1] < SAME:
-            return found.shape[1] - 1
-        if k > found.shape[1]:
+        if (near.any() and lost == before) or k > lost:
             break
-    return found.shape[1]
+    return lost
 
 
 def _unit(vectors: Array, scale: Array) -> Array:
