@@ -52,7 +52,8 @@ def changes(
     so that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to
     it are not found. `accuracy`: relative.
     """
-    values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy)
+    # Two that have crossed may have met behind, and be a pair.
+    values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy, passed=1.0)
     order = np.argsort(values)
     return values[order].tolist(), _unit(vectors[:, order], np.sqrt(a.weights))
 
@@ -89,8 +90,11 @@ def _eigenvalues(
     left: float,
     start: Array,
     accuracy: float,
+    passed: float = math.inf,
 ) -> tuple[Array, Array, Array]:
     """Eigenvalues; vectors, in units of the unknowns; the scale of Arnoldi's method.
+
+    Of pairs only those whose real part has `passed` a value are told, by that.
 
     An unknown with too small a unit would dominate every eigenvector: the first product gives a scale in which it does
     not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
@@ -135,7 +139,7 @@ def _eigenvalues(
         j
         for j, (z, e) in enumerate(zip(values, errors))
         if (z.real > right or z.real < left)
-        and abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z))
+        and (abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z)) or z.real > passed)
         and abs(z) > rounding
     ]
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
