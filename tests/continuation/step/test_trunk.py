@@ -101,7 +101,7 @@ def test_unknowns_that_stand_still_have_units_of_their_own(seed, preset):
 
 
 @every_preset
-@pytest.mark.parametrize("seed", [0, 3, 8, 33, 43, 49])
+@pytest.mark.parametrize("seed", [0, 3, 8, 33, 49, 206])
 def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, preset):
     passed(Trunk(seed, bent=True), preset)
 
