@@ -13,7 +13,7 @@ from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.multiple import NOISE, Leaving, leaving, still, without_noise
-from continuation.events.singularity import branch_point_near, row_sizes
+from continuation.events.singularity import branch_point_near, scales
 from continuation.metric import Automatic, inner, norm
 from continuation.path import LocatedEvent
 from continuation.point.linearization import linearize
@@ -83,8 +83,8 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
     if event.rays is not None:
         return event.rays
     weights = metric_at(event)
-    rows = row_sizes(evaluator, 1.0 / np.sqrt(weights), (event.u, event.u + 0.1 * event.tangent))
-    found = branch_point_near(evaluator, event.u, event.tangent, weights, rows)
+    units = scales(evaluator, 1.0 / np.sqrt(weights), (event.u, event.u + 0.1 * event.tangent))
+    found = branch_point_near(evaluator, event.u, event.tangent, weights, units)
     if found is None:
         raise ArithmeticError("the branches that cross at this point could not be told")
     return found.rays(event.tangent, weights)

@@ -17,7 +17,7 @@ from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
 from continuation.evaluation.products import difference_along, sizes
-from continuation.events.singularity import SECOND, full_derivative, row_sizes
+from continuation.events.singularity import SECOND, full_derivative, scales
 from continuation.linear import BorderedSystem
 from continuation.linear.nullspace import Bordered, null_vectors
 from continuation.linear.system import Solver
@@ -56,7 +56,7 @@ class Calculus:
     @cached_property
     def rows(self) -> Array:
         """Row sizes of H' at the start, shape (N,)."""
-        return row_sizes(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))
+        return scales(self.evaluator(float(self.u0[-1])), self.extent, (self.u0[:-1],))[1]
 
     def scaled(self, matrix: Matrix) -> Matrix:
         """The matrix times extents over row sizes."""

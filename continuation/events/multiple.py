@@ -14,7 +14,7 @@ from attrs import frozen
 
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.singularity import ScaledDerivative, row_sizes
+from continuation.events.singularity import ScaledDerivative, scales
 from continuation.linear.nullspace import BORDERS, Bordered, kernels
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
@@ -69,7 +69,7 @@ class Reduced:
     @classmethod
     def beside(cls, evaluator: Evaluator, u: Array, extent: Array, heading: Array) -> Reduced:
         """In units of the path, by two factorisations."""
-        sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
+        _, sizes = scales(evaluator, extent, (u, u + 0.1 * heading))
         matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
         kernel, left = kernels(matrix)
         m = kernel.shape[1]

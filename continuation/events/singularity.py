@@ -86,27 +86,37 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
     return extended(H_y, column[:, None], np.empty((0, column.size + 1)))
 
 
-def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> Array:
-    """Largest entry of each row of H', scaled; 1 for a zero row."""
-    sizes = np.zeros(extent.size - 1)
-    for u in points:
-        full = abs(full_derivative(evaluator, u))
-        if sp.issparse(full):
-            np.maximum.at(sizes, full.indices, full.data * np.repeat(extent, np.diff(full.indptr)))
-        else:
-            sizes = np.maximum(sizes, (full * extent).max(axis=1))
-    return np.where(sizes > 0.0, sizes, 1.0)
+def scales(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Extents, larger where an unknown's column of H' is small, and sizes of rows: their largest entries at some points.
+
+    An unknown that stands still has no extent of its own, and in too small a unit its column looks like a lost rank.
+    The parameter's column vanishes where all unknowns stand still.
+    """
+    entries = abs(full_derivative(evaluator, points[0]))
+    for u in points[1:]:
+        other = abs(full_derivative(evaluator, u))
+        entries = entries.maximum(other) if sp.issparse(other) else np.maximum(entries, other)
+    rows = _largest(entries, extent, 1)
+    rows = np.where(rows > 0.0, rows, 1.0)
+    columns = extent * _largest(entries.T, 1.0 / rows, 1)
+    columns[-1] = 1.0
+    return extent / np.where(columns > 0.0, np.minimum(columns, 1.0), 1.0), rows
+
+
+def _largest(entries: Matrix, factors: Array, axis: int) -> Array:
+    found = (entries * factors[None]).max(axis=axis)
+    return np.asarray(found.toarray().ravel() if sp.issparse(found) else found)
 
 
 def branch_point_near(
-    evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
+    evaluator: Evaluator, guess: Array, heading: Array, weights: Array, units: tuple[Array, Array]
 ) -> SimpleBranchPoint | None:
     """Solve H(u) + beta b = 0, gamma(u) = 0 by Newton's method; None without a simple branch point.
 
     The system is regular at one, with beta = 0 (Govaerts, Section 8.1). `guess`, `heading`: approximate point and
-    direction; |heading| bounds the correction. `rows`: see `row_sizes`.
+    direction; |heading| bounds the correction. `units`: see `scales`.
     """
-    extent, n = 1.0 / np.sqrt(weights), guess.size - 1
+    (extent, rows), n = units, guess.size - 1
     scaled = ScaledDerivative(evaluator, extent, rows)
     generic = generic_vector(3 * n + 2)
     newton = Iteration(np.append(guess, 0.0), POLISHING)

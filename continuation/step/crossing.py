@@ -18,7 +18,7 @@ from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
 from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
-from continuation.events.singularity import branch_point_near, row_sizes
+from continuation.events.singularity import branch_point_near, scales
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
@@ -255,7 +255,7 @@ class _Looks:
                 return 1.0 - min(seen, key=lambda mu: abs(mu - 1.0), default=np.nan)
 
             at = degenerate_point(solver, arc, self.prediction, t, z_at, lost)
-            if at is None or not self._vanishes(at[0], self._rows()):
+            if at is None or not self._vanishes(at[0], self._units()[1]):
                 return None
             u, order = at
             t = min(position(arc, u) / arc.length, 1.0)
@@ -270,9 +270,9 @@ class _Looks:
             return 1
         return max(multiplicity(self.arc.a, apply, self._border(t), 1.0 / told[-1]), 1)
 
-    def _rows(self) -> Array:
+    def _units(self) -> tuple[Array, Array]:
         a, b = self.arc.a, self.arc.b
-        return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
+        return scales(self.solver.evaluator, 1.0 / np.sqrt(a.weights), (a.u, b.u))
 
     def _vanishes(self, u: Array, rows: Array) -> bool:
         evaluator = self.solver.evaluator
@@ -282,9 +282,9 @@ class _Looks:
         """The simple branch point near the arc, by Newton's method."""
         arc, a = self.arc, self.arc.a
         try:
-            rows = self._rows()
-            found = branch_point_near(self.solver.evaluator, guess, arc.b.u - a.u, a.weights, rows)
-            if found is None or not self._vanishes(found.u, rows):
+            units = self._units()
+            found = branch_point_near(self.solver.evaluator, guess, arc.b.u - a.u, a.weights, units)
+            if found is None or not self._vanishes(found.u, units[1]):
                 return None
         except EvaluationError:
             return None
