@@ -87,7 +87,7 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
 
 
 def scales(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> tuple[Array, Array]:
-    """Extents, larger where an unknown's column of H' is small, and sizes of rows: their largest entries at some points.
+    """Extents, larger where an unknown's column of H' is small, and sizes of rows: largest entries at some points.
 
     An unknown that stands still has no extent of its own, and in too small a unit its column looks like a lost rank.
     The parameter's column vanishes where all unknowns stand still.
