@@ -1,18 +1,16 @@
 """Files and locks.
 
-New data is synced as ``.NAME.xxxxxxxx.part``, then renamed. The next writer removes parts that a kill left.
+New data is synced as ``.NAME.xxxxxxxx.part``, then renamed.
 """
 
 from __future__ import annotations
 
 import errno
 import fcntl
-import glob
 import os
 import re
 import secrets
 import struct
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
@@ -33,17 +31,9 @@ class ArchiveExistsError(ArchiveError, FileExistsError):
     """The file exists already; archives are never overwritten."""
 
 
-_ABANDONED = 60.0
-"""Seconds after which an unlocked part is removed; writers lock theirs at once."""
-
-
 @contextmanager
 def beside(target: File) -> Iterator[File]:
-    """A new name beside `target`; a part left in the end is removed."""
-    for left in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
-        with suppress(OSError):
-            if time.time() - left.stat().st_mtime > _ABANDONED and not is_held(left):
-                left.unlink()
+    """A new name beside `target`, removed in the end."""
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         yield part
@@ -172,22 +162,20 @@ def is_held(file: File) -> bool:
     return not lock.taken
 
 
-def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """Lock a file, read as `descriptor` and last written by process `writer`, to replace it.
+def own(file: File, descriptor: int) -> Lock:
+    """Lock a file, read as `descriptor`, to replace it.
 
-    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, being written, or replaced.
+    Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """
     # The mode too: root may write everything.
-    if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
+    if not file.stat().st_mode & 0o222:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
-    if not os.access(file.parent, os.W_OK):
-        raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
-    lock, said = Lock(file), "was replaced by another process this moment; try again"
-    if not force and not lock.taken:
-        said = f"process {writer or 'unknown'}, which writes it, seems to be alive; end it first, or say force=True"
-    elif file.exists() and all(
-        os.path.samestat(os.fstat(lock.descriptor), s) for s in (file.stat(), os.fstat(descriptor))
+    lock = Lock(file)
+    if (
+        lock.taken
+        and file.exists()
+        and all(os.path.samestat(os.fstat(lock.descriptor), status) for status in (file.stat(), os.fstat(descriptor)))
     ):
         return lock
     lock.close()
-    raise ArchiveError(f"{file}: {said}")
+    raise ArchiveError(f"{file}: is being written by another process, or was replaced by it; end it first")

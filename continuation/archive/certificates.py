@@ -46,7 +46,7 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
     name = File(os.path.realpath(as_file("file", file)))
     with (
         open_archive(name) as source,
-        closing(own(name, source.contents.descriptor, source.attributes.get("process"))),
+        closing(own(name, source.contents.descriptor)),
     ):
         number = range(len(source))[path]
         with beside(name) as part:

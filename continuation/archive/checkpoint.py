@@ -13,8 +13,7 @@ import attrs
 import numpy as np
 from attrs import frozen
 
-from continuation.archive.codec import UnstorableError, encode, order
-from continuation.archive.schema import SLOTS
+from continuation.archive.codec import UnstorableError, described, encode, order
 from continuation.archive.trust import UnknownError, decode
 from continuation.step.settings import Settings
 from continuation.step.state import State
@@ -85,15 +84,8 @@ def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any]
         # A new tracer adds the homotopy's events again.
         first = 0 if own[0] in watched[:1] else 1
         values["events"] = watched[first + len(own) :]
-    options = {name: _described(value) for name, value in values.items()}
-    return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}
-
-
-def _described(value: Any) -> Any:
-    try:
-        return encode(value, _whole)
-    except UnstorableError as error:
-        return {"unstorable": str(error)}
+    options = {name: described(value, _whole) for name, value in values.items()}
+    return {"options": options, "homotopy": homotopy or described(tracer.homotopy, _whole), "member": member}
 
 
 def _whole(name: str, array: Any) -> Any:
@@ -109,8 +101,8 @@ def whole(place: Any) -> Any:
     return numbers(bytes.fromhex(place["hex"]), place["dtype"], place["shape"], place["order"]).copy("K")
 
 
-def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
-    """Head, JSON, run (JSON of ``checkpoint.run``, if already made), arrays."""
+def pack(checkpoint: Checkpoint) -> bytes:
+    """Head, JSON, run, arrays."""
     arrays: dict[int, np.ndarray[Any, Any]] = {}
 
     def place(name: str, array: Any) -> Any:
@@ -126,15 +118,9 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
         "seconds": checkpoint.seconds,
         "state": encode(checkpoint.state, place),
     }
-    run = json.dumps(dict(checkpoint.run)).encode() if run is None else run
-    parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in arrays.values())]
-    body = b"\n".join(parts)
+    raw = b"".join(np.ascontiguousarray(array).tobytes() for array in arrays.values())
+    body = b"\n".join((json.dumps(tree).encode(), json.dumps(dict(checkpoint.run)).encode(), raw))
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
-
-
-def slot_of(checkpoint: Checkpoint | None, run: bytes | None = None) -> dict[int, bytes]:
-    """The checkpoint by its slot; `run` as for `pack`."""
-    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint, run)}
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
@@ -144,8 +130,8 @@ def unpack(raw: bytes) -> Checkpoint | None:
         body = raw[HEAD.size : HEAD.size + length]
         if not length or len(body) < length or zlib.crc32(body) != crc:
             return None
-        head, described, arrays = body.split(b"\n", 2)
-        tree, run = json.loads(head), dict(json.loads(described))
+        head, ran, arrays = body.split(b"\n", 2)
+        tree, run = json.loads(head), dict(json.loads(ran))
         if major(str(tree["version"])) != major(__version__):
             return None
         state = decode(tree["state"], _fetched(arrays), hint=State)

@@ -33,11 +33,15 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
             arrays[names[id(array)]] = array
         return names[id(array)]
 
+    return json.dumps(described(homotopy, place)), arrays
+
+
+def described(value: Any, place: Place) -> Any:
+    """JSON for a value, or why it is "unstorable"."""
     try:
-        tree = encode(homotopy, place)
+        return encode(value, place)
     except UnstorableError as error:
-        return json.dumps({"unstorable": str(error)}), {}
-    return json.dumps(tree), arrays
+        return {"unstorable": str(error)}
 
 
 def set_attributes(thing: Any, attributes: Mapping[str, Any]) -> None:

@@ -7,7 +7,6 @@ import os
 import platform
 import secrets
 import socket
-import sys
 from collections.abc import Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -21,7 +20,7 @@ import numpy as np
 import scipy
 
 from continuation.archive.checkpoint import OPTIONS
-from continuation.archive.codec import UnstorableError, encode, inline
+from continuation.archive.codec import described, inline
 from continuation.archive.schema import SCHEMA
 from continuation.archive.trust import ENTRY_POINTS, UnknownError, decode
 from continuation.step.tracer import Tracer
@@ -69,8 +68,7 @@ def _distribution(path: str) -> str:
         return f"{point.dist.name} {point.dist.version}"
     with suppress(metadata.PackageNotFoundError):
         return f"{top} {metadata.version(top)}"
-    # This search takes an eighth of a second.
-    return next((f"{name} {metadata.version(name)}" for name in metadata.packages_distributions().get(top, ())), "")
+    return ""
 
 
 @lru_cache
@@ -121,14 +119,6 @@ def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def readable(value: Any) -> Any:
-    """JSON, or the repr if there is none."""
-    try:
-        return encode(value, inline)
-    except UnstorableError:
-        return repr(value)
-
-
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes of a new archive.
 
@@ -141,22 +131,20 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
         "title": title,
         "identifier": secrets.token_hex(8),
         **process(),
-        "command": " ".join(sys.argv)[:1000],
         **history({}, "created"),
     }
     if tracer is None:
         return attributes
     homotopy = tracer.homotopy
     path, own = class_path(homotopy), {**parameters(homotopy), **made_with}
-    point, described = _entry_point(path), readable(homotopy)
-    fields = described.get("fields", described.get("data")) if isinstance(described, dict) and not made_with else None
+    point = _entry_point(path)
     return attributes | {
         "title": title or f"Paths of {type(homotopy).__name__}",
         "homotopy": path,
         "homotopy_entry_point": point.name if point is not None else "",
         "homotopy_distribution": _distribution(path),
-        "parameters": json.dumps({name: readable(value) for name, value in own.items()} if fields is None else fields),
+        "parameters": json.dumps({name: described(value, inline) for name, value in own.items()}),
         **tracer.path.labels.attributes(),
-        "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
+        "settings": json.dumps({name: described(getattr(tracer.settings, name), inline) for name in OPTIONS}),
         "references": "\n\n".join(tracer.references),
     }

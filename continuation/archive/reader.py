@@ -9,7 +9,7 @@ from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -44,8 +44,8 @@ class Archive(Sequence[Path]):
         False if the file is growing or its writer was killed.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
-        self.contents = contents = Contents(file, limit=limit)
+    def __init__(self, contents: Contents) -> None:
+        self.contents = contents
         self.file, self.layout, self.closed_by_writer = contents.file, contents.layout, contents.closed_by_writer
         # A snapshot; the growing file may be opened anew.
         self.points, self._ended = contents.table("point"), contents.table("path")
@@ -82,13 +82,8 @@ class Archive(Sequence[Path]):
     def __len__(self) -> int:
         return len(self._first_rows) - 1
 
-    @overload
-    def __getitem__(self, index: int) -> Path: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Path]: ...
-
-    def __getitem__(self, index: int | slice) -> Path | list[Path]:
+    def __getitem__(self, index: Any) -> Any:
+        """A path, or the list of a slice."""
         if isinstance(index, slice):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)
@@ -243,7 +238,7 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
     ArchiveError
         If the file is missing, unreadable, foreign, truncated, damaged or of a newer schema.
     """
-    return Archive(file, limit=limit)
+    return Archive(Contents(file, limit=limit))
 
 
 _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}

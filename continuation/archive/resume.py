@@ -11,7 +11,7 @@ from pathlib import Path as File
 from typing import Any, Unpack
 
 from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
-from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
+from continuation.archive.checkpoint import OPTIONS, Checkpoint, pack, whole
 from continuation.archive.growing import check_homotopy, copy, share_of
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
@@ -91,7 +91,7 @@ def resume(
     with ExitStack() as stack:
         source = stack.enter_context(open_archive(name))
         if archive is None:
-            stack.enter_context(closing(own(target, source.contents.descriptor, source.attributes.get("process"))))
+            stack.enter_context(closing(own(target, source.contents.descriptor)))
         elif not source.closed_by_writer and is_held(name):
             raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
@@ -197,4 +197,4 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
-    return copy([share], target, what=what, more=more, checkpoints=slot_of(checkpoint), replace=replace, grows=True)
+    return copy([share], target, what=what, more=more, checkpoint=pack(checkpoint), replace=replace, grows=True)

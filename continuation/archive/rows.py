@@ -15,21 +15,16 @@ from attrs import evolve, frozen
 from continuation.archive.provenance import class_path, scalars
 from continuation.archive.schema import (
     ACCEPTED,
-    CONTROLLER_STATE,
     COUNT_NAMES,
     KINK_PART,
-    KINKS,
+    LATER,
     LOCATED,
-    NO_EVENT,
     OBSERVED,
-    ORIGINS,
     PARAMETER,
-    TANGENTS,
     Layout,
     text,
 )
 from continuation.arrays import Array
-from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.segment import hermite
 
@@ -52,14 +47,14 @@ class Row:
     switch: int = -1
 
 
-def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
+def rows_at(step: Step, events: Sequence[LocatedEvent]) -> list[Row]:
     """Rows of a step and its events; an event at the step shares its row, a kink adds switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
     rows = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
     rows.append(Row(step, last, ACCEPTED, step.tangent))
-    if last is not None and layout.more >= KINKS:
+    if last is not None and last.switches:
         nothing, rays = np.full_like(last.u, _NAN), () if last.rays is None else last.rays
         for switch, ray in zip_longest(last.switches, rays):
             tangent = nothing if ray is None else ray
@@ -67,31 +62,24 @@ def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[
     return rows
 
 
-def rows_of(path: Path, layout: Layout) -> list[Row]:
+def rows_of(path: Path) -> list[Row]:
     """Steps and events in path order."""
     rows, begin = list[Row](), 0
     for step in path.steps:
         end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
-        rows += rows_at(step, path.events[begin:end], layout)
+        rows += rows_at(step, path.events[begin:end])
         begin = end
     return rows
 
 
 def layout_of(
-    homotopy: Any,
-    unknowns: int,
-    observed: Iterable[str],
-    controller: Sequence[float],
-    tangents: bool = False,
-    pieces: bool = False,
-    early: Iterable[Record] = (),
+    homotopy: Any, unknowns: int, observed: Iterable[str], controller: Sequence[float], early: Iterable[Record] = ()
 ) -> Layout:
     """The layout of a new file; `early` are rows without points."""
-    held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
     said = {PARAMETER + name for name in scalars(homotopy)}
     said |= {name for row in early for name in row if name.startswith(PARAMETER)}
-    more = ORIGINS | held | said | {OBSERVED + name for name in observed}
-    return Layout(unknowns, max(len(controller), CONTROLLER_STATE), more)
+    layout = Layout(unknowns, more=LATER | said | {OBSERVED + name for name in observed})
+    return evolve(layout, controller=max(len(controller), layout.controller))
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
@@ -100,18 +88,16 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
     block: dict[str, Any] = {
         "path_index": np.full(len(rows), path, dtype="i4"),
         "role": np.array([row.role for row in rows], dtype="i1"),
-        "event_index": np.array([NO_EVENT if e is None else number(e.name) for e in events], dtype="i2"),
+        "event_index": np.array([-1 if e is None else number(e.name) for e in events], dtype="i2"),
+        "switch": np.array([row.switch for row in rows], dtype="i4"),
         "event_monitor": np.array([_NAN if e is None else e.monitor for e in events]),
         _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
         **_split("parameter", "y", [point.u for point in points]),
+        **_split("tangent_parameter", "tangent_y", [row.tangent for row in rows]),
     }
     block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
     block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
     block["orientation"][block["role"] == KINK_PART] = 0
-    if layout.more >= TANGENTS:
-        block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
-    if layout.more >= KINKS:
-        block["switch"] = np.array([row.switch for row in rows], dtype="i4")
     for name in layout.own(OBSERVED):
         block[OBSERVED + name] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
     return block
@@ -127,8 +113,10 @@ def from_columns(
 ) -> tuple[list[Step], list[LocatedEvent]]:
     """Steps, numbered from `first`, and events of one path."""
     points = np.column_stack((block["y"], block["parameter"]))
-    held = "tangent_y" in block
-    tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"])) if held else np.full_like(points, _NAN)
+    tangents = np.full_like(points, _NAN)
+    if "tangent_y" in block:
+        tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"]))
+    held = not np.isnan(tangents[block["role"] == ACCEPTED]).any()
     steps: list[Step] = []
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
@@ -139,7 +127,7 @@ def from_columns(
         at = dict(zip(fields, [column[i] for column in columns]))
         seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
         number, role, monitor, share = (at.pop(name) for name in ("event_index", "role", "event_monitor", _SHARE))
-        if number != NO_EVENT:
+        if number >= 0:
             shared = {name: at[name] for name in ("kind", "arclength", "residual_norm", "orientation")}
             events.append(
                 LocatedEvent(names[number], u=u, tangent=v, monitor=monitor, step=index, observed=seen, **shared)

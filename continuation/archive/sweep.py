@@ -35,7 +35,8 @@ from continuation.archive.schema import Layout
 from continuation.archive.store import Store, put
 from continuation.archive.transfer import gather
 from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import LocatedEvent, Path, Step
+from continuation.linear.threads import one_thread
+from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
@@ -59,24 +60,6 @@ class Task:
     archived: bool
     options: Options
     stop: Event | None = None
-
-
-@frozen(eq=False)
-class Stopping:
-    """An observer that ends paths in threads, which Ctrl-C does not reach."""
-
-    stop: Event
-
-    def step(self, tracer: Tracer, step: Step) -> None:
-        """Raise KeyboardInterrupt if the sweep was interrupted."""
-        if self.stop.is_set():
-            raise KeyboardInterrupt
-
-    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Do nothing."""
-
-    def end(self, tracer: Tracer) -> None:
-        """Do nothing."""
 
 
 def trace_many(
@@ -186,8 +169,6 @@ class _Kept:
     token: str = field(factory=partial(secrets.token_hex, 4))
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
-    numbers: list[int] = field(factory=list)
-    """Numbers of paths in the parts, in order of arrival."""
 
     def add(self, number: int, found: Result) -> None:
         """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
@@ -201,22 +182,17 @@ class _Kept:
         else:
             assert self.target is not None
             append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
-            self.numbers.append(number)
         if _status(found) is Status.INTERRUPTED:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
         """Make the archive from its parts."""
-        files, stores = [store.file for store in self.parts.values()], [*self.parts.values()]
-        if self.target is None or not files:
-            return
-        if len(files) == 1 and self.numbers == sorted(self.numbers):
-            put(self.target, lambda part: stores[0])
-        else:
-            self.stack.close()
+        self.stack.close()
+        files = [store.file for store in self.parts.values()]
+        if self.target is not None and files:
             gather(files, self.target)
         for file in files:
-            file.unlink(missing_ok=True)
+            file.unlink()
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
@@ -290,24 +266,24 @@ def _end_processes(executor: Executor | None) -> None:
             process.join()
 
 
+@one_thread
 def traced(task: Task) -> Path | Share:
     """Trace a homotopy, whatever it raises."""
-    path, controller = Path(), tuple[float, ...]()
+    path, tracer = Path(), None
     try:
-        observers = () if task.stop is None else (Stopping(task.stop),)
-        tracer = Tracer(task.homotopy, observers=observers, **task.options)
+        tracer = Tracer(task.homotopy, **task.options)
         path = tracer.path
-        try:
-            tracer.run()
-        finally:
-            controller = () if tracer.state is None else tracer.state.controller
-    except Interrupted:
+        for _ in tracer:
+            # Ctrl-C does not reach threads.
+            if task.stop is not None and task.stop.is_set():
+                raise KeyboardInterrupt
+    except KeyboardInterrupt:
         path.status = Status.INTERRUPTED
     except _ITS_OWN as error:
         if path.status in (Status.TRACING, Status.ABANDONED):
             path.status = Status.RAISED
         path.message = sentence(error)
-    return _sent(path, task, controller)
+    return _sent(path, task, () if tracer is None or tracer.state is None else tracer.state.controller)
 
 
 def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:

@@ -19,7 +19,6 @@ from continuation.diagrams.branches import Diagram
 from continuation.diagrams.search import BranchSearch
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.box import is_boundless
-from continuation.homotopy import SupportsPieces
 from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.stability import Stability
@@ -131,7 +130,7 @@ def diagram(
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)
-    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces), keep)
+    log = None if file is None else Growing(file, "A diagram", keep)
     search = BranchSearch(homotopy, asked, executor, float(step), branches, generations, log)
     with nullcontext() if log is None else log:
         try:

@@ -92,17 +92,6 @@ def test_a_file_that_was_closed_stays_as_it_is(tmp_path):
     assert (tmp_path / "run.h5").read_bytes() == before
 
 
-def test_recovery_by_force_keeps_what_was_committed(tmp_path):
-    steps = iter(Tracer(FreudensteinRoth(), observers=(logged(tmp_path / "run.h5", 2),)))
-    next(step for step in steps if step.index == 4)
-    recover(tmp_path / "run.h5", force=True)
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert len(archive.path(0)) == 4
-        assert archive.path(0).message.endswith("Its writer was killed.")
-        assert "recovered" in archive.attributes["history"]
-    steps.close()
-
-
 def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
     """Ctrl-C between the phases: the commit at the end of the path writes the same rows again, once."""
     path, flush, calls = trace(FreudensteinRoth()), Store._flush, []

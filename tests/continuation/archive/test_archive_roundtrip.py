@@ -43,12 +43,11 @@ def differences(found, expected, kind, without):
 
 
 @pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("tangents", [False, True])
-def test_a_path_comes_back_as_it_was(tmp_path, case, tangents):
+def test_a_path_comes_back_as_it_was(tmp_path, case):
     homotopy, options = CASES[case]
-    path = trace(homotopy, archive=PathLog(tmp_path / "run.h5", tangents=tangents), **options)
+    path = trace(homotopy, archive=tmp_path / "run.h5", **options)
     found = read(tmp_path / "run.h5")
-    unstored = {"segment", "weights", "rejected"} | (set() if tangents else {"tangent"})
+    unstored = {"segment", "weights", "rejected"}
     assert not differences(found.steps, path.steps, Step, unstored)
     # The directions at a branch point are found again when they are asked for.
     assert not differences(found.events, path.events, LocatedEvent, unstored | {"rays"})
