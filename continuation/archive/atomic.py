@@ -17,7 +17,7 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 
 
 class ArchiveError(OSError):
@@ -76,8 +76,8 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
 
 def as_file(argument: str, value: Any) -> File:
     """The path; `TypeError` otherwise."""
-    if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
-        raise complain(TypeError, argument, "the name of a file", value)
+    named = isinstance(value, (str, PathLike)) and not isinstance(os.fspath(value), bytes)
+    expect(named, argument, "the name of a file", value, TypeError)
     return File(value)
 
 

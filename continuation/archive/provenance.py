@@ -61,17 +61,6 @@ def software() -> dict[str, str]:
 
 
 @lru_cache
-def _distribution(path: str) -> str:
-    """Distribution and version of a class, if any."""
-    point, top = _entry_point(path), path.partition(":")[0].partition(".")[0]
-    if point is not None and point.dist is not None:
-        return f"{point.dist.name} {point.dist.version}"
-    with suppress(metadata.PackageNotFoundError):
-        return f"{top} {metadata.version(top)}"
-    return ""
-
-
-@lru_cache
 def _entry_point(path: str) -> metadata.EntryPoint | None:
     return next((point for point in metadata.entry_points(group=ENTRY_POINTS) if point.value == path), None)
 
@@ -138,11 +127,12 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
     homotopy = tracer.homotopy
     path, own = class_path(homotopy), {**parameters(homotopy), **made_with}
     point = _entry_point(path)
+    dist = None if point is None else point.dist
     return attributes | {
         "title": title or f"Paths of {type(homotopy).__name__}",
         "homotopy": path,
         "homotopy_entry_point": point.name if point is not None else "",
-        "homotopy_distribution": _distribution(path),
+        "homotopy_distribution": "" if dist is None else f"{dist.name} {dist.version}",
         "parameters": json.dumps({name: described(value, inline) for name, value in own.items()}),
         **tracer.path.labels.attributes(),
         "settings": json.dumps({name: described(getattr(tracer.settings, name), inline) for name in OPTIONS}),

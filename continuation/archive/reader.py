@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
@@ -18,7 +18,7 @@ from continuation.archive.contents import Contents
 from continuation.archive.rows import from_columns, record_of, row_columns
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, OBSERVED
 from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset, kept_whole
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
 from continuation.counts import Counts
@@ -108,8 +108,7 @@ class Archive(Sequence[Path]):
             For another `keep`.
         """
         whole = kept_whole(keep)
-        if not isinstance(index, Integral):
-            raise complain(TypeError, "index", "an integer or a slice", index)
+        expect(isinstance(index, Integral), "index", "an integer or a slice", index, TypeError)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         return self.contents.guarded(partial(self._path, int(index) % len(self), whole))
@@ -241,10 +240,6 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
     return Archive(Contents(file, limit=limit))
 
 
-_COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
-"""Step fields in every file."""
-
-
 class StoredSteps(Sequence[Step]):
     """Steps of a path: ends (and uncommitted ones) in memory, others in the file.
 
@@ -253,12 +248,13 @@ class StoredSteps(Sequence[Step]):
 
     def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
         held = list(steps)
-        self._file, self._path, self._first = file, path, next(iter(held), None)
+        self._file, self._path, self._first = file, path, held[:1]
         self._last, self._count = (held, len(held)) if count is None else (held[-1:], count)
+        self._some: tuple[int, list[Step]] = 0, []
 
     def append(self, step: Step) -> None:
         """Add the next step."""
-        self._first = self._first or step
+        self._first = self._first or [step]
         self._last.append(step)
         self._count += 1
 
@@ -271,26 +267,27 @@ class StoredSteps(Sequence[Step]):
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
-            wanted = range(*index.indices(self._count))
-            first = min(wanted, default=0)
-            between = list(self._between(first, max(wanted, default=-1) + 1))
-            return [between[i - first] for i in wanted]
-        if not -self._count <= index < self._count:
-            raise IndexError(f"index: expected a step below {self._count}, found {index}")
-        index %= self._count
-        return self._first if not index and self._first else next(self._between(index, index + 1))
-
-    def __iter__(self) -> Iterator[Step]:
-        return self._between(0, self._count)
+            return [self[i] for i in range(*index.indices(self._count))]
+        at, begin = range(self._count)[index], self._count - len(self._last)
+        if at >= begin or not at:
+            return self._last[at - begin] if at >= begin else self._first[0]
+        first, steps = self._some
+        if not first <= at < first + len(steps):
+            with open_archive(self._file) as archive:
+                size = archive.points.at_once
+                # With the step before, for the segment.
+                first, before = at // size * size, max(at // size * size - 1, 0)
+                steps = _window(archive, self._path, before, min(first + size, begin))[0][first - before :]
+            self._some = first, steps
+        return steps[at - first]
 
     def __repr__(self) -> str:
-        held = {id(step) for step in (self._first, *self._last) if step is not None}
-        return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
+        return f"<{self._count} steps in {self._file}, {len(self._last)} of the last in memory>"
 
     def column(self, name: str) -> Any:
         """All steps' ``u``, ``tangent`` or ``arclength`` as an array."""
-        fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
-        if not fields or not begin:
+        fields, begin = {"u": ("y", "parameter"), "arclength": ("arclength",)}.get(name), self._count - len(self._last)
+        if fields is None or not begin:
             return np.array([getattr(step, name) for step in self])
         with open_archive(self._file) as archive:
             # Making steps takes 14 times as long.
@@ -299,17 +296,6 @@ class StoredSteps(Sequence[Step]):
             found = [archive.points.some(field, rows)[steps] for field in fields]
         stored = found[0] if len(found) == 1 else np.column_stack(found)
         return np.concatenate((stored, [getattr(step, name) for step in self._last]))
-
-    def _between(self, start: int, stop: int) -> Iterator[Step]:
-        begin = self._count - len(self._last)
-        while start < min(stop, begin):
-            # One more row, for the segment.
-            before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
-            with open_archive(self._file) as archive:
-                steps, _ = _window(archive, self._path, before, end)
-            yield from steps[start - before :]
-            start = end
-        yield from self._last[start - begin : max(stop - begin, 0)]
 
 
 def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from continuation.archive.atomic import ArchiveError
 from continuation.archive.schema import COMPONENT, EVENT_NAME, Column, Layout
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 
 Fetch = Callable[[Column, slice], np.ndarray[Any, Any]]
 Block = dict[str, Any]
@@ -104,8 +104,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
 def kept_whole(keep: str) -> bool:
     """Whether `keep` is ``"all"``, not ``"ends"``."""
-    if keep not in ("all", "ends"):
-        raise complain(ValueError, "keep", '"all" or "ends"', keep)
+    expect(keep in ("all", "ends"), "keep", '"all" or "ends"', keep)
     return keep == "all"
 
 

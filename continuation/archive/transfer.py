@@ -25,7 +25,7 @@ from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
 from continuation.archive.schema import MESSAGE, text
 from continuation.archive.tables import ROWS_AT_ONCE, Table, flat
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.path import Path
 from continuation.status import Kind, Status
 
@@ -48,11 +48,10 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
     ArchiveError
         If a file is no archive, numbers of unknowns differ, files share a path, or `target` exists.
     """
-    if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
-        raise complain(TypeError, "files", "names of archives, in a list", files)
+    several = isinstance(files, Iterable) and not isinstance(files, (str, bytes, PathLike))
+    expect(several, "files", "names of archives, in a list", files, TypeError)
     files = list(files)
-    if not files:
-        raise ValueError("files: expected at least one archive, found none")
+    expect(files, "files", "at least one archive", files)
     whole = new_file("target", target)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]

@@ -24,7 +24,7 @@ from continuation.archive.rows import Record, Row, counted, layout_of, record_of
 from continuation.archive.schema import COUNT_NAMES, check_names
 from continuation.archive.store import Store, put
 from continuation.archive.tables import joined, kept_whole
-from continuation.arguments.checks import complain, integer, number
+from continuation.arguments.checks import expect, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from continuation.step.state import State
@@ -117,10 +117,9 @@ class PathLog:
         keep: str = "all",
         save_every: int = 1,
     ) -> None:
-        if not isinstance(limits, Limits | None):
-            raise complain(TypeError, "limits", "Limits(...)", limits)
-        if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
-            raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
+        expect(isinstance(limits, Limits | None), "limits", "Limits(...)", limits, TypeError)
+        fine = isinstance(save_every, Integral) and (save_every == 1 or (save_every > 1 and keep == "all"))
+        expect(fine, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
         self._whole, self.file = kept_whole(keep), new_file("file", file)
         self._limits, self._save_every = limits or Limits(), int(save_every)
         self._durable, self._about = durable, (title, dict(parameters or {}))
