@@ -47,15 +47,12 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Rename a complete file; `replace` keeps the old file's mode and, if allowed, owner.
+    """Rename a complete file; `replace` keeps the old file's mode.
 
     Raises `ArchiveExistsError` if the name is taken.
     """
     if replace and target.exists():
-        status = target.stat()
-        with suppress(PermissionError):
-            os.chown(part, status.st_uid, status.st_gid)
-        part.chmod(status.st_mode & 0o7777)
+        part.chmod(target.stat().st_mode & 0o7777)
     try:
         (os.replace if replace else os.link)(part, target)
     except FileExistsError:
@@ -66,12 +63,6 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
         # Without hard links, this reserves the name.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         os.replace(part, target)
-    with suppress(OSError):
-        descriptor = os.open(target.parent, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
 
 
 def as_file(argument: str, value: Any) -> File:
@@ -90,12 +81,12 @@ def new_file(argument: str, value: Any) -> File:
 
 def check_new(file: File) -> None:
     """Raise `ArchiveError` unless the file can be made."""
-    if "\0" in str(file):
-        raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
         raise exists(file)
     said = (
-        f"there is no directory {file.parent}"
+        "is no name for a file (it holds a NUL)"
+        if "\0" in str(file)
+        else f"there is no directory {file.parent}"
         if not file.parent.is_dir()
         else f"the directory {file.parent} may not be written"
         if not os.access(file.parent, os.W_OK)

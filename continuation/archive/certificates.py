@@ -82,17 +82,14 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 def _check(columns: dict[str, Any]) -> None:
     # Cells may be wider than the path (`certifying.SupportsWrittenOut`).
     count, width = columns["begin"].shape
-    for name in COLUMNS:
-        shape = (count,) if name == "slabs" else (count, 2 if name == "place" else width)
-        kind = "i" if name == "slabs" else "f"
-        if columns[name].shape != shape or columns[name].dtype.kind != kind or not np.isfinite(columns[name]).all():
+    shapes = dict.fromkeys(COLUMNS, (count, width)) | {"slabs": (count,), "place": (count, 2)}
+    kinds = dict.fromkeys(COLUMNS, "f") | {"slabs": "i"}
+    for name, values in ((name, columns[name]) for name in COLUMNS):
+        if values.shape != shapes[name] or values.dtype.kind != kinds[name] or not np.isfinite(values).all():
             raise StructureError(f"{name} is of another shape, or holds numbers that are not finite")
-    if not all(1 <= slabs <= _MOST_SLABS for slabs in columns["slabs"]):
+    # Our files hold fewer slabs; more take long to check.
+    if not all(1 <= slabs <= 64 for slabs in columns["slabs"]):
         raise StructureError("slabs are not from 1 to 64")
-
-
-_MOST_SLABS = 64
-"""Our files hold fewer; more take long to check."""
 
 
 def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:

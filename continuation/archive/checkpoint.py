@@ -73,19 +73,20 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
     return np.frombuffer(raw, kind, count).reshape(shape, order=order)
 
 
-def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def describe_run(tracer: Tracer, member: int | None, first: bool = False) -> dict[str, Any]:
     """Options and homotopy as JSON, or why they are "unstorable".
 
-    `homotopy`: its description if the problem group holds it.
+    `first`: the problem group describes the homotopy.
     """
     values = {name: getattr(tracer.settings, name) for name in OPTIONS}
     own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
     if own:
         # A new tracer adds the homotopy's events again.
-        first = 0 if own[0] in watched[:1] else 1
-        values["events"] = watched[first + len(own) :]
+        begin = 0 if own[0] in watched[:1] else 1
+        values["events"] = watched[begin + len(own) :]
     options = {name: described(value, _whole) for name, value in values.items()}
-    return {"options": options, "homotopy": homotopy or described(tracer.homotopy, _whole), "member": member}
+    homotopy = {"problem": True} if first else described(tracer.homotopy, _whole)
+    return {"options": options, "homotopy": homotopy, "member": member}
 
 
 def _whole(name: str, array: Any) -> Any:

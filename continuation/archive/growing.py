@@ -23,7 +23,7 @@ from continuation.archive.contents import Contents
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import Archive, StoredSteps, open_archive
 from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
-from continuation.archive.schema import LATER, PATH_COLUMNS, SCHEMA, Layout, text
+from continuation.archive.schema import LATER, SCHEMA, SOURCE, Layout, text
 from continuation.archive.store import Store, put
 from continuation.archive.tables import Block, Table, dataframe, dataset, joined
 from continuation.arrays import Array
@@ -57,11 +57,10 @@ class Share:
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
     """Paths `first` to `last` - 1 of an archive with their first `points` points; by default all."""
     stop, contents = len(archive) if last is None else last, archive.contents
-    about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
+    begin = archive.rows(first).start if stop > first else 0
     end = begin + points if points is not None else archive.rows(stop - 1).stop if stop > first else 0
     paths = {name: values.copy() for name, values in archive.paths.block(slice(first, stop)).items()}
-    share = Share(contents.layout, contents.event_names, paths, archive.points, slice(begin, end), first, contents)
-    return sourced(share, about.get("identifier", ""), contents.file.name, about.get("homotopy", ""))
+    return Share(contents.layout, contents.event_names, paths, archive.points, slice(begin, end), first, contents)
 
 
 def share_of_path(path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0) -> Share:
@@ -77,18 +76,6 @@ def share_of_path(path: Path, homotopy: Any = None, controller: Sequence[float] 
     return Share(layout, names, row_columns(row, layout), table, slice(0, len(rows)))
 
 
-def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
-    """The share with missing homotopies and sources."""
-    count, begin = len(share.paths["path"]), share.first if first is None else first
-    said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
-    paths = dict(share.paths)
-    for column in [column for column in PATH_COLUMNS if column.name in said]:
-        own = paths.get(column.name, np.zeros(count, dtype=column.storage))
-        here = np.array([text(value, column.length) for value in said[column.name]], dtype=column.storage)
-        paths[column.name] = np.where(own == b"", here, own)
-    return evolve(share, paths=paths)
-
-
 def leading(shares: Sequence[Share]) -> Contents:
     """The archive of the first point."""
     found = next((share for share in shares if share.size), shares[0]).origin
@@ -99,8 +86,9 @@ def leading(shares: Sequence[Share]) -> Contents:
 def append(store: Store, share: Share, file: str) -> int:
     """Append a finished path of `file` in one commit; returns its number."""
     number = store.committed.paths
-    own = sourced(share, store.identifier, file, first=number)
-    store.commit(_numbered(own, store, own.rows, number) if own.size else None, _rows(own, store, number))
+    points = _numbered(share, store, share.rows, number) if share.size else None
+    source = np.array([text(f"{store.identifier} {number} {file}", SOURCE.length)], dtype=SOURCE.storage)
+    store.commit(points, {**_rows(share, store, number), "source": source})
     return number
 
 
@@ -183,7 +171,7 @@ def _attributes(path: Path, title: str = "A path") -> dict[str, Any]:
 def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
     attributes = _attributes(path)
-    share = sourced(share_of_path(path), attributes["identifier"], "")
+    share = share_of_path(path)
     paths = Table.of(share.layout, "path", share.paths)
     return dataset(share.points, paths, share.names, share.layout.unknowns, attributes)
 

@@ -56,8 +56,8 @@ def _lines(archive: Archive) -> Iterator[str]:
         "software": ", ".join(f"{name} {about.get(f'{name}_version', '?')}" for name in _SOFTWARE),
         "BLAS": f"{about.get('blas', '')}, threads {about.get('blas_threads', '')}",
         "parent": str(about.get("parent", "")),
-        "work": ", ".join(f"{int(archive.paths[name].sum())} {name}" for name in COUNT_NAMES.values()),
-        "seconds": f"{archive.paths['wall_time'].sum():.3g}",
+        "work": ", ".join(f"{int(archive.paths[name].clip(0).sum())} {name}" for name in COUNT_NAMES.values()),
+        "seconds": f"{np.nansum(archive.paths['wall_time']):.3g}",
     }
     yield from _titled(str(about["title"]), "=")
     for name, told in (*said.items(), *(("history", line) for line in str(about.get("history", "")).splitlines())):

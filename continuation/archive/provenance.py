@@ -14,7 +14,6 @@ from functools import lru_cache
 from importlib import metadata
 from typing import Any
 
-import attrs
 import h5py
 import numpy as np
 import scipy
@@ -77,13 +76,9 @@ def class_path(thing: Any) -> str:
 
 def parameters(homotopy: Any) -> dict[str, Any]:
     """Public fields or attributes of the homotopy."""
-    cls = type(homotopy)
-    if attrs.has(cls):
-        names = [a.name for a in attrs.fields(cls)]
-    else:
-        slots = (getattr(c, "__slots__", ()) for c in cls.__mro__)
-        names = [name for own in slots for name in ((own,) if isinstance(own, str) else own)]
-        names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
+    slots = (getattr(cls, "__slots__", ()) for cls in type(homotopy).__mro__)
+    names = [name for own in slots for name in ((own,) if isinstance(own, str) else own)]
+    names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
     public = (name for name in dict.fromkeys(names) if not name.startswith("_"))
     return {name: getattr(homotopy, name) for name in public if hasattr(homotopy, name)}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
@@ -65,8 +65,10 @@ class Archive(Sequence[Path]):
         """The path table, with a row for an unfinished path."""
         if len(self) == self._ended.size:
             return self._ended
-        rest = self.rows(self._ended.size)
-        row = row_columns(self._unended(rest.stop - rest.start), self.layout)
+        number, rows = self._ended.size, self.rows(self._ended.size)
+        # What it has cost is told at its end.
+        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
+        row = row_columns({**row, "path": number, "member": number, "n_points": rows.stop - rows.start}, self.layout)
         columns = {name: np.concatenate((self._ended[name], row[name])) for name in self._ended}
         return Table.of(self.layout, "path", columns)
 
@@ -189,10 +191,6 @@ class Archive(Sequence[Path]):
             valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
 
-    def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """Description (JSON) and arrays of the first homotopy."""
-        return self.contents.problem()
-
     def close(self) -> None:
         """Close the file: what was not read by then raises `ArchiveError`."""
         self.contents.close()
@@ -204,21 +202,6 @@ class Archive(Sequence[Path]):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
-
-    def _unended(self, rows: int) -> dict[str, Any]:
-        number = self._ended.size
-        member = int(self._ended["member"][-1]) + 1 if number else 0
-        # Counts of an older checkpoint are out of date.
-        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        row |= {"path": number, "member": member, "n_points": rows}
-        checkpoint = self.checkpoint()
-        if checkpoint is not None and checkpoint.path == number:
-            told = checkpoint.run.get("member")
-            row["member"] = number if told is None else int(told)
-            if self.contents.committed.checkpoint == checkpoint.sequence:
-                row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
-                row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
-        return row
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:

@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
+from continuation.archive.atomic import ArchiveError, as_file, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, pack, whole
 from continuation.archive.growing import check_homotopy, copy, share_of
 from continuation.archive.provenance import process
@@ -92,8 +92,6 @@ def resume(
         source = stack.enter_context(open_archive(name))
         if archive is None:
             stack.enter_context(closing(own(target, source.contents.descriptor)))
-        elif not source.closed_by_writer and is_held(name):
-            raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
@@ -167,7 +165,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
     tree: Any = checkpoint.run["homotopy"]
     fetch: Callable[[Any], Any] = whole
     if isinstance(tree, dict) and tree.get("problem"):
-        described, arrays = source.problem()
+        described, arrays = source.contents.problem()
         tree, fetch = source.contents.guarded(lambda: json.loads(described)), arrays.__getitem__
     return _made(source, "the homotopy", tree, fetch, known, "homotopy= or --homotopy")
 

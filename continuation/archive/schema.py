@@ -103,6 +103,14 @@ POINT_COLUMNS = (
 
 MESSAGE = Column("message", "S240", "1", "how the path ended, in words", ("path",))
 
+SOURCE = Column(
+    "source",
+    "S160",
+    "1",
+    "identifier of the file that the path was written to, its number there, and the file's name then",
+    ("path",),
+)
+
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
     Column(
@@ -123,13 +131,7 @@ PATH_COLUMNS = (
     Column("winding_number", "i4", "1", "winding number of a singular end; 0 where there is none", ("path",)),
     Column("controller_state", "f8", "1", "state of the step controller at the end", ("path", "controller")),
     Column("homotopy", "S160", "1", "class of the homotopy", ("path",)),
-    Column(
-        "source",
-        "S160",
-        "1",
-        "identifier of the file that the path was written to, its number there, and the file's name then",
-        ("path",),
-    ),
+    SOURCE,
 )
 
 LATER = frozenset({"tangent_y", "tangent_parameter", "switch", "homotopy", "source"})

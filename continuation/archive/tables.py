@@ -114,6 +114,7 @@ def joined(blocks: Sequence[Block]) -> Block:
 
 
 def _part(columns: Mapping[str, Any], column: Column, rows: slice) -> Any:
+    """Picklable, as shares of a sweep are sent."""
     return columns[column.name][rows]
 
 

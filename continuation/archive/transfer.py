@@ -19,7 +19,7 @@ from attrs import evolve
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
 from continuation.archive.checkpoint import pack
 from continuation.archive.contents import TABLES, Contents
-from continuation.archive.growing import Share, copy, leading, share_of, sourced
+from continuation.archive.growing import Share, copy, leading, share_of
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
@@ -65,7 +65,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
     known: dict[bytes, str] = {}
     for archive, share in zip(archives, shares):
-        for k, source in enumerate(share.paths["source"]):
+        for k, source in enumerate(share.paths.get("source", ())):
             # Without the name, since files may be renamed.
             key = b" ".join(source.split(b" ", 2)[:2])
             if key in known:
@@ -80,12 +80,8 @@ def gather(files: Sequence[File], target: File) -> None:
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
         runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
         shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
-        head, made = leading(shares), []
-        for run, share in zip(runs, shares):
-            # Parts are no source: they are deleted.
-            share.paths["source"][:] = b""
-            whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
-            made.append(_of_size(whole, head.layout.unknowns, target))
+        unknowns = leading(shares).layout.unknowns
+        made = [_of_size(share, unknowns, target) for share in shares]
         copy(made, target, what=f"a sweep of {len(places)} paths", more=process())
 
 

@@ -40,12 +40,10 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
     parts = [thing for module in _MODULES for thing in vars(module).values()]
     found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
     for thing in trust:
-        if not callable(thing):
-            raise TypeError(f"trust: expected classes and functions, found {thing!r}")
         try:
             found[path_of(thing)] = thing
         except UnstorableError as error:
-            raise TypeError(f"trust: expected something that an archive can name; {error}") from None
+            raise TypeError(f"trust: expected classes and functions that an archive can name; {error}") from None
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from functools import partial
@@ -102,8 +101,8 @@ class PathLog:
     _open: OpenPath | None = None
     _limits, _whole, _save_every, _durable = Limits(), True, 1, False
     _about: tuple[str, Mapping[str, Any]] = ("", {})
-    _known: tuple[Any, Any] = (None, None)
-    """The file's first homotopy and its description."""
+    _first: Any = None
+    """The homotopy that the file's problem group describes."""
     _commit_at = 0.0
 
     def __init__(
@@ -140,11 +139,7 @@ class PathLog:
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._ended = store.file, store, (points, []), {}
-        log._whole, log._known, log.member = (
-            whole,
-            (tracer.homotopy, checkpoint.run["homotopy"]),
-            checkpoint.run["member"],
-        )
+        log._whole, log.member = whole, checkpoint.run["member"]
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
         log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, checkpoint.run, mark, mark)
@@ -240,8 +235,7 @@ class PathLog:
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
         layout = layout_of(homotopy, unknowns, observed, state, self._ended.values())
-        problem = problem_data(homotopy)
-        self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
+        self._first, problem = homotopy, problem_data(homotopy)
         attributes = root_attributes(tracer, *self._about)
         make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
         self._store = store = put(self.file, make, grows=True)
@@ -260,10 +254,8 @@ class PathLog:
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
-            homotopy, known = self._known
-            path.run = path.run or describe_run(
-                path.tracer, self.member, known if homotopy is path.tracer.homotopy else None
-            )
+            first = self._first is path.tracer.homotopy
+            path.run = path.run or describe_run(path.tracer, self.member, first)
             (state, counts, held), seconds = path.resume, path.seconds + path.tracer.seconds
             named, sequence = dict(zip(COUNT_NAMES, counts)), store.committed.checkpoint + 1
             checkpoint = pack(Checkpoint(sequence, path.number, held, state, named, seconds, path.run))

@@ -76,7 +76,7 @@ def damaged(whole: bytes, kind: str, generator: random.Random) -> bytes:
 def content(file: Path) -> dict[str, object]:
     """The whole content of an archive, for comparison."""
     with open_archive(file) as archive:
-        text, arrays = archive.problem()
+        text, arrays = archive.contents.problem()
         tables = {"points": archive.points, "paths": archive.paths, "problem": arrays}
         return {
             "attributes": {name: np.asarray(value).tobytes() for name, value in archive.attributes.items()},

@@ -153,7 +153,12 @@ def test_a_closed_archive_says_that_it_is_closed(base):
     assert len(archive.points["arclength"]) == 14
     archive.close()
     archive.close()
-    for asked in (lambda: archive.points["y"], lambda: archive.path(0), archive.problem, lambda: archive.status(0)):
+    for asked in (
+        lambda: archive.points["y"],
+        lambda: archive.path(0),
+        archive.contents.problem,
+        lambda: archive.status(0),
+    ):
         with pytest.raises(ArchiveError, match=r"base.h5: the archive was closed; open it again"):
             asked()
     assert repr(archive) == f"<Archive {base}, closed>"

@@ -98,7 +98,7 @@ def test_the_same_thing_read_again_counts_once(small):
     with open_archive(small, limit=1 << 20) as archive:
         for _ in range(100):
             archive.path(0)
-            archive.problem()
+            archive.contents.problem()
 
 
 # -- files that are cut off -----------------------------------------------------------------------------------
