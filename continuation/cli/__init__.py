@@ -20,12 +20,6 @@ __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError",
 INTERRUPTED = 130
 """The shell's status after Ctrl-C."""
 
-DOOR = (
-    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
-    "parameter_name", "names", "units",
-)  # fmt: skip
-"""Names that begin a complaint about a homotopy."""
-
 
 def register(subparsers: Subparsers) -> None:
     """Add every command, the engine's own last.
@@ -124,7 +118,7 @@ def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, st
     if blamed is None or not isinstance(error, Exception):
         leaves = "a plug-in wanted to end the process: " if isinstance(error, SystemExit) else ""
         return BAD_INPUT, f"{leaves}{_told(error)}"
-    if isinstance(error, TypeError | ValueError) and first in DOOR:
+    if isinstance(error, TypeError | ValueError) and complaint.startswith(" expected "):
         return BAD_INPUT, f"{blamed}: {error}"
     return FAILURE, f"{blamed}: {_told(error)}"
 

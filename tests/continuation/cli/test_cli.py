@@ -127,7 +127,7 @@ def test_resume_goes_on(run, tmp_path):
     status, _, err = run("resume", file, "--steps", 100)
     assert status == BAD_INPUT
     assert "Fold is not registered: pass it in trust=[...]" in err
-    status, out, _ = run("resume", file, "--budget-steps", 4, "--budget-seconds", 60, *trust)
+    status, out, _ = run("resume", file, "--steps", 4, *trust)
     assert status == FAILURE
     assert out.startswith("BUDGET_EXHAUSTED")
     status, out, _ = run("resume", file, "--steps", 100, *trust)
