@@ -1,6 +1,6 @@
 """Files and locks.
 
-New data is synced as ``.NAME.xxxxxxxx.part``, then renamed.
+New data is written as ``.NAME.xxxxxxxx.part``, then renamed.
 """
 
 from __future__ import annotations
@@ -47,10 +47,12 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Rename a complete file; `replace` keeps the old file's mode.
+    """Rename a complete file that the disk then has; `replace` keeps the old file's mode.
 
     Raises `ArchiveExistsError` if the name is taken.
     """
+    with part.open("rb") as written:
+        os.fsync(written.fileno())
     if replace and target.exists():
         part.chmod(target.stat().st_mode & 0o7777)
     try:

@@ -37,8 +37,7 @@ def put(
 ) -> Store:
     """Make and fill a new file beside `target`, then rename it.
 
-    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open; otherwise it is synced
-    first.
+    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open.
     """
     if not replace:
         check_new(target)
@@ -48,7 +47,7 @@ def put(
             if fill is not None:
                 fill(store)
             if not grows:
-                store.close(sync=True)
+                store.close()
             publish(store.file, target, replace=replace)
         except BaseException:
             store.close()
@@ -170,12 +169,10 @@ class Store:
         if self.durable:
             os.fsync(self._h5.id.get_vfd_handle())
 
-    def close(self, *, sync: bool = False) -> None:
-        """Close the file, idempotently; `sync` waits for the disk."""
+    def close(self) -> None:
+        """Close the file, idempotently."""
         try:
             self._h5.close()
-            if sync:
-                os.fsync(self._lock.descriptor)
         except (OSError, RuntimeError):
             if not self.abandoned:
                 raise

@@ -133,18 +133,15 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
     opened: Any = gzip.open if points.suffix == ".gz" else open
-    with beside(points) as first, beside(paths) as second:
-        for part, table in ((first, archive.points), (second, archive.paths)):
+    for target, table in ((paths, archive.paths), (points, archive.points)):
+        with beside(target) as part:
             with opened(part, "xt", encoding="utf-8", newline="") as out:
                 writer = csv.writer(out)
                 for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
                     columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
                     writer.writerows([[*columns]] if not start else [])
                     writer.writerows(zip(*(values.tolist() for values in columns.values())))
-            with part.open("rb") as written:
-                os.fsync(written.fileno())
-        publish(second, paths)
-        publish(first, points)
+            publish(part, target)
     return [points, paths]
 
 

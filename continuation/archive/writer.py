@@ -221,9 +221,7 @@ class PathLog:
         if path is None:
             if self._closed:
                 raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
-            number = max(self._ended, default=-1) + 1
-            if self._store is not None:
-                number = max(number, self._store.committed.paths)
+            number = max([*self._ended, (self._store.committed.paths if self._store else 0) - 1]) + 1
             self._open = path = OpenPath(tracer, number, self._rows[0])
             self._commit_at = time.monotonic() + self._limits.seconds
         if path.tracer is not tracer:

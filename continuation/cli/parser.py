@@ -60,7 +60,7 @@ def add_command(
     **options: Any,
 ) -> argparse.ArgumentParser:
     """Add a command; `plugin`: the argument that names foreign code, whose exceptions are reported of it."""
-    parser = subparsers.add_parser(name, **options)
+    parser: argparse.ArgumentParser = subparsers.add_parser(name, **options)
     for typed, about in arguments:
         parser.add_argument(*typed, **about)
     parser.set_defaults(run=run, names=names or {}, plugin=plugin)
