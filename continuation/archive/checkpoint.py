@@ -13,8 +13,8 @@ import attrs
 import numpy as np
 from attrs import frozen
 
-from continuation.archive.codec import UnstorableError, described, encode, order
-from continuation.archive.trust import UnknownError, decode
+from continuation.archive.codec import UnknownError, UnstorableError, decode, described, encode
+from continuation.archive.hdf5 import order
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.tracer import Tracer

@@ -26,9 +26,8 @@ from continuation.archive.checks import (
     latest,
     of_attributes,
 )
-from continuation.archive.codec import GROUP as PROBLEM
-from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import Allowance, Image, LimitError, dataset, member, names
+from continuation.archive.hdf5 import PROBLEM, Allowance, Image, LimitError, dataset, member, names, read_problem
+from continuation.archive.rows import Table
 from continuation.archive.schema import (
     EVENT_NAME,
     LATER,
@@ -40,7 +39,6 @@ from continuation.archive.schema import (
     Layout,
     check_names,
 )
-from continuation.archive.tables import Table
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")

@@ -22,10 +22,20 @@ from continuation.archive.atomic import ArchiveError, new_file, own
 from continuation.archive.contents import Contents
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import Archive, StoredSteps, open_archive
-from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
+from continuation.archive.rows import (
+    Block,
+    Table,
+    dataframe,
+    dataset,
+    joined,
+    layout_of,
+    record_of,
+    row_columns,
+    rows_of,
+    to_columns,
+)
 from continuation.archive.schema import LATER, SCHEMA, SOURCE, Layout, text
 from continuation.archive.store import Store, put
-from continuation.archive.tables import Block, Table, dataframe, dataset, joined
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator

@@ -19,9 +19,8 @@ import numpy as np
 import scipy
 
 from continuation.archive.checkpoint import OPTIONS
-from continuation.archive.codec import described, inline
+from continuation.archive.codec import ENTRY_POINTS, UnknownError, decode, described, inline
 from continuation.archive.schema import SCHEMA
-from continuation.archive.trust import ENTRY_POINTS, UnknownError, decode
 from continuation.step.tracer import Tracer
 from continuation.version import __version__
 

@@ -15,9 +15,17 @@ import numpy as np
 
 from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.rows import from_columns, record_of, row_columns
+from continuation.archive.rows import (
+    ROWS_AT_ONCE,
+    Table,
+    dataframe,
+    dataset,
+    from_columns,
+    kept_whole,
+    record_of,
+    row_columns,
+)
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, OBSERVED
-from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset, kept_whole
 from continuation.arguments.checks import expect
 from continuation.arguments.labels import Labels
 from continuation.citation import entries

@@ -22,9 +22,8 @@ from continuation.archive.contents import TABLES, Contents
 from continuation.archive.growing import Share, copy, leading, share_of
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.rows import record_of, row_columns
+from continuation.archive.rows import ROWS_AT_ONCE, Table, flat, record_of, row_columns
 from continuation.archive.schema import MESSAGE, text
-from continuation.archive.tables import ROWS_AT_ONCE, Table, flat
 from continuation.arguments.checks import expect
 from continuation.path import Path
 from continuation.status import Kind, Status

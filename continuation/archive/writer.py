@@ -19,10 +19,20 @@ from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import StoredSteps
-from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
+from continuation.archive.rows import (
+    Record,
+    Row,
+    counted,
+    joined,
+    kept_whole,
+    layout_of,
+    record_of,
+    row_columns,
+    rows_at,
+    to_columns,
+)
 from continuation.archive.schema import COUNT_NAMES, check_names
 from continuation.archive.store import Store, put
-from continuation.archive.tables import joined, kept_whole
 from continuation.arguments.checks import expect, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status

@@ -109,7 +109,7 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _named(path: str) -> Any:
-    from continuation.archive.trust import registry
+    from continuation.archive.codec import registry
 
     try:
         trusted = plug_in(path)

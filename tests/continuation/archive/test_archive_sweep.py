@@ -76,8 +76,8 @@ def test_the_page(tmp_path):
     with open_archive(tmp_path / "run.h5") as archive:
         page = describe(archive)
     for text in (
-        "A classic", "FreudensteinRoth", "predictor=Hermite", "AllgowerGeorg", "REACHED_TARGET", path.message, "0.5875873254",
-        "-0.6863527575", f"{path.counts.solves} solves", "python 3.",
+        "A classic", "FreudensteinRoth", "predictor=Hermite", "AllgowerGeorg", "REACHED_TARGET", path.message,
+        "0.5875873254", "-0.6863527575", f"{path.counts.solves} solves", "python 3.",
     ):  # fmt: skip
         assert text in page
     trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))

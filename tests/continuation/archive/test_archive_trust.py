@@ -16,7 +16,7 @@ from continuation import Budget, trace
 from continuation.archive import ArchiveError, open_archive, resume
 from continuation.archive.checkpoint import HEAD, pack
 from continuation.archive.checks import Committed, digest
-from continuation.archive.trust import _registered
+from continuation.archive.codec import _registered
 from problems.bifurcation import ExponentialCosine
 
 from .util import OPERATIONS, outcome

@@ -6,7 +6,7 @@ import pytest
 from attrs import evolve
 
 from continuation import certify, from_functions, trace
-from continuation.archive import ArchiveError, PathLog, add_proof, recheck
+from continuation.archive import ArchiveError, add_proof, recheck
 from continuation.certificate.certifying import recheck as checked_again
 from continuation.cli import main
 from problems.bifurcation import FreudensteinRoth
