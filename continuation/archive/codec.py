@@ -155,8 +155,9 @@ class UnknownError(LookupError):
 
 def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
     """Objects that may be made, by path; `TypeError` for other than importable classes and functions."""
-    parts = [thing for module in _MODULES for thing in vars(module).values()]
-    found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
+    things = [thing for module in _MODULES for thing in vars(module).values()]
+    parts = [thing for thing in things if isinstance(thing, type) and attrs.has(thing)]
+    found: dict[str, Any] = {class_path(part): part for part in parts}
     for thing in trust:
         try:
             found[path_of(thing)] = thing
@@ -176,12 +177,13 @@ def _registered(path: str) -> type | None:
         made = _options(thing if isinstance(thing, type) else _hints(thing).get("return"))
         classes = [typing.get_origin(option) or option for option in made]
         for found in (*classes, *(type(getattr(cls, "metric", None)) for cls in classes)):
-            if isinstance(found, type) and _path(found) == path:
+            if isinstance(found, type) and class_path(found) == path:
                 return found
     return None
 
 
-def _path(cls: type) -> str:
+def class_path(cls: type) -> str:
+    """``module:class``."""
     return f"{cls.__module__}:{cls.__qualname__}"
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import scipy
 
 from continuation.archive.checkpoint import OPTIONS
-from continuation.archive.codec import ENTRY_POINTS, UnknownError, decode, described, inline
+from continuation.archive.codec import ENTRY_POINTS, UnknownError, class_path, decode, described, inline
 from continuation.archive.schema import SCHEMA
 from continuation.step.tracer import Tracer
 from continuation.version import __version__
@@ -68,11 +68,6 @@ def process() -> dict[str, Any]:
     return {"created": now(), "process": np.int64(os.getpid()), **software()}
 
 
-def class_path(thing: Any) -> str:
-    """``module:class`` of an object."""
-    return f"{type(thing).__module__}:{type(thing).__qualname__}"
-
-
 def parameters(homotopy: Any) -> dict[str, Any]:
     """Public fields or attributes of the homotopy."""
     slots = (getattr(cls, "__slots__", ()) for cls in type(homotopy).__mro__)
@@ -119,7 +114,7 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
     if tracer is None:
         return attributes
     homotopy = tracer.homotopy
-    path, own = class_path(homotopy), {**parameters(homotopy), **made_with}
+    path, own = class_path(type(homotopy)), {**parameters(homotopy), **made_with}
     point = _entry_point(path)
     dist = None if point is None else point.dist
     return attributes | {

@@ -14,7 +14,8 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.archive.atomic import ArchiveError
-from continuation.archive.provenance import class_path, scalars
+from continuation.archive.codec import class_path
+from continuation.archive.provenance import scalars
 from continuation.archive.schema import (
     ACCEPTED,
     COMPONENT,
@@ -179,7 +180,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
         **{PARAMETER + name: value for name, value in scalars(homotopy).items()},
-        "homotopy": "" if homotopy is None else class_path(homotopy),
+        "homotopy": "" if homotopy is None else class_path(type(homotopy)),
         "source": "",
     }
 

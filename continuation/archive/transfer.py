@@ -132,7 +132,7 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
     opened: Any = gzip.open if points.suffix == ".gz" else open
-    for target, table in ((paths, archive.paths), (points, archive.points)):
+    for target, table in ((points, archive.points), (paths, archive.paths)):
         with beside(target) as part:
             with opened(part, "xt", encoding="utf-8", newline="") as out:
                 writer = csv.writer(out)

@@ -85,13 +85,6 @@ def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):
     assert np.array_equal(resume(file, budget=Budget()).u, trace(FreudensteinRoth()).u)
 
 
-def test_a_file_that_was_closed_stays_as_it_is(tmp_path):
-    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
-    before = (tmp_path / "run.h5").read_bytes()
-    recover(tmp_path / "run.h5")
-    assert (tmp_path / "run.h5").read_bytes() == before
-
-
 def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
     """Ctrl-C between the phases: the commit at the end of the path writes the same rows again, once."""
     path, flush, calls = trace(FreudensteinRoth()), Store._flush, []

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 
-from continuation import Budget, Status, trace
+from continuation import Budget, trace
 from continuation.archive import ArchiveError, PathLog, describe, export, merge, open_archive
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
 
@@ -42,17 +42,6 @@ def test_export_to_netcdf(tmp_path, engine):
         assert first.drop_attrs(deep=False).identical(second.drop_attrs(deep=False))
         assert second.y.encoding.get("complevel", second.y.encoding.get("compression_opts")) == 4
         assert "exported from run.h5" in second.attrs["history"]
-
-
-def test_an_export_says_who_traced(tmp_path, monkeypatch):
-    trace(Circle(), archive=tmp_path / "a.h5")
-    monkeypatch.setattr("continuation.archive.provenance.software", lambda: {"host": "another"})
-    export(tmp_path / "a.h5", tmp_path / "b.nc")
-    with open_archive(tmp_path / "a.h5") as traced, open_archive(tmp_path / "b.nc") as copy:
-        assert copy.attributes["host"] == traced.attributes["host"] != "another"
-        assert copy.status(-1) is copy.status(0) is Status.CLOSED
-        with pytest.raises(IndexError):
-            copy.status(1)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".csv.gz"])

@@ -233,11 +233,3 @@ def test_paths_of_a_sweep_are_of_its_file(tmp_path, monkeypatch, links):
         sources = [source.split() for source in archive.paths["source"]]
     assert sorted(int(number) for _, number, _ in sources) == list(range(5))
     assert {name for *_, name in sources} == {b"run.h5"}
-
-
-def test_what_another_sweep_left_is_in_nobodys_way(tmp_path, expected):
-    for name in ("run.h5.stop", "run.0001.h5", "run.sweep-00000000.0001.h5", "run.sweep-00000000.stop"):
-        (tmp_path / name).write_bytes(b"left behind")
-    with POOLS["threads"]() as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
-        assert [len(path) for path in paths] == [len(path) for path in expected]
-    assert (tmp_path / "run.0001.h5").read_bytes() == b"left behind"
