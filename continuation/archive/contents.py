@@ -26,7 +26,7 @@ from continuation.archive.checks import (
     latest,
     of_attributes,
 )
-from continuation.archive.hdf5 import PROBLEM, Allowance, Image, LimitError, dataset, member, names, read_problem
+from continuation.archive.hdf5 import PROBLEM, Allowance, Image, LimitError, dataset, member, read_problem
 from continuation.archive.rows import Table
 from continuation.archive.schema import (
     EVENT_NAME,
@@ -132,7 +132,7 @@ class Contents:
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
         self.root = file = h5py.File(image, "r", rdcc_nbytes=0)
-        self._present = names(file)
+        self._present = set(file)
         _check_schema(self.file, file.attrs, self._present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
         for name in ("y", "controller_state"):

@@ -12,7 +12,6 @@ from copy import deepcopy
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -262,11 +261,7 @@ class Growing:
         steps: Any = StoredSteps(self.file, number, [path.steps[0], path.steps[-1]], len(path.steps))
         return evolve(path, steps=steps)
 
-    def __enter__(self) -> Growing:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Close the file."""
         if self._store is not None:
             self._store.close()

@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 import h5py
 import numpy as np
-from h5py import h5a, h5d, h5l, h5o, h5s, h5t, h5z
+from h5py import h5d, h5l, h5o, h5z
 
 from continuation.archive.atomic import ArchiveError, short
 from continuation.archive.checks import DamageError, digest
@@ -186,13 +186,6 @@ def member(group: Any, name: str) -> Any:
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
-def names(group: Any) -> set[str]:
-    """Names in a group, several times faster than h5py."""
-    raw = list[bytes]()
-    group.id.links.iterate(raw.append)
-    return {name.decode(errors="surrogateescape") for name in raw}
-
-
 def subgroup(group: Any, name: str) -> Any:
     """A group in a group."""
     found = member(group, name)
@@ -251,20 +244,10 @@ def order(array: Any) -> str:
     return "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
 
 
-def set_attributes(thing: Any, attributes: Mapping[str, Any]) -> None:
-    """Create attributes, several times faster than h5py."""
-    kind, one = h5t.py_create(h5py.string_dtype(), logical=True), h5s.create(h5s.SCALAR)
-    for name, value in attributes.items():
-        if isinstance(value, str):
-            h5a.create(thing.id, name.encode(), kind, one).write(np.array(value.encode(), dtype=object))
-        else:
-            thing.attrs[name] = value
-
-
 def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
     """Write the problem group."""
     group = file.create_group(PROBLEM)
-    set_attributes(group, {"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
+    group.attrs.update({"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
     write_arrays(group, arrays)
 
 
@@ -272,7 +255,7 @@ def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
     """Write arrays with checksums."""
     for name, array in arrays.items():
         stored = group.create_dataset(name, data=array)
-        set_attributes(stored, {"order": order(array), "checksum": np.uint32(digest(array))})
+        stored.attrs.update({"order": order(array), "checksum": np.uint32(digest(array))})
 
 
 def read_arrays(group: Any, allowance: Allowance) -> dict[str, Any]:

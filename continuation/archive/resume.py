@@ -19,7 +19,7 @@ from continuation.archive.checkpoint import OPTIONS, Checkpoint, pack, whole
 from continuation.archive.codec import UnknownError, decode, registry
 from continuation.archive.contents import FAULTS
 from continuation.archive.growing import check_homotopy, copy, share_of
-from continuation.archive.hdf5 import StructureError, member, names, read_arrays, write_arrays
+from continuation.archive.hdf5 import StructureError, member, read_arrays, write_arrays
 from continuation.archive.provenance import process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import kept_whole
@@ -251,7 +251,7 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
     """Cells of a stored proof, or None."""
     try:
         root = archive.contents.root
-        if GROUP not in names(root) or str(path) not in names(member(root, GROUP)):
+        if GROUP not in set(root) or str(path) not in set(member(root, GROUP)):
             return None
         columns = read_arrays(member(root, f"{GROUP}/{path}"), archive.contents.allowance)
         _check(columns)

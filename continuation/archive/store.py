@@ -21,7 +21,7 @@ from h5py import h5d, h5s, h5t
 from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, publish, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD, RECORDS, Committed, digest, of_attributes, seal
-from continuation.archive.hdf5 import set_attributes, write_problem
+from continuation.archive.hdf5 import write_problem
 from continuation.archive.schema import EVENT_NAME, LIBVER, RESUME, Layout, empty, text
 
 _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
@@ -83,10 +83,10 @@ class Store:
         # HDF5 ends the process if writing fails while it closes a file.
         made = BytesIO(empty(layout, compressed))
         with h5py.File(made, "r+", libver=LIBVER) as new:
-            set_attributes(new, attributes)
+            new.attrs.update(attributes)
             if problem is not None:
                 write_problem(new, *problem)
-            set_attributes(new[GROUP], {"attributes": np.uint32(of_attributes(attributes))})
+            new[GROUP].attrs.update({"attributes": np.uint32(of_attributes(attributes))})
         with part.open("xb") as file:
             file.write(made.getbuffer())
         # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.

@@ -247,9 +247,6 @@ class PathLog:
         attributes = root_attributes(tracer, *self._about)
         make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
         self._store = store = put(self.file, make, grows=True)
-        for event in tracer.settings.events if tracer is not None else ():
-            store.name_event(event.name)
-        store.commit()
         return store
 
     def _commit(self) -> None:

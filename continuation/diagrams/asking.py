@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
@@ -132,7 +132,7 @@ def diagram(
         asked["events"] = (*options.get("events", ()), *stability.events)
     log = None if file is None else Growing(file, "A diagram", keep)
     search = BranchSearch(homotopy, asked, executor, float(step), branches, generations, log)
-    with nullcontext() if log is None else log:
+    with nullcontext() if log is None else closing(log):
         try:
             search.run([None, *starts], [float(lam) for lam in deflate])
         except KeyboardInterrupt as interrupt:

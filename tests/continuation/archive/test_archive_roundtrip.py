@@ -72,7 +72,7 @@ def test_xarray_opens_the_file_without_us(tmp_path, engine):
         "path": 1,
         "component": 2,
         "controller": 4,
-        "event": 2,
+        "event": 1,
     }
     assert set(data.coords) == {"path", "component"}
     assert data.y.dims == ("point", "component")
