@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
+from continuation.archive.provenance import Checkpoint, unpack
 from continuation.archive.rows import (
     ROWS_AT_ONCE,
     Table,

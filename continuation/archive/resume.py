@@ -15,12 +15,11 @@ import h5py
 import numpy as np
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, new_file, own, publish, short
-from continuation.archive.checkpoint import OPTIONS, Checkpoint, pack, whole
 from continuation.archive.codec import UnknownError, decode, registry
 from continuation.archive.contents import FAULTS
 from continuation.archive.growing import check_homotopy, copy, share_of
 from continuation.archive.hdf5 import StructureError, member, read_arrays, write_arrays
-from continuation.archive.provenance import process
+from continuation.archive.provenance import OPTIONS, Checkpoint, pack, process, whole
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import kept_whole
 from continuation.archive.store import Store

@@ -17,10 +17,9 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
-from continuation.archive.checkpoint import pack
 from continuation.archive.contents import TABLES, Contents
 from continuation.archive.growing import Share, copy, leading, share_of
-from continuation.archive.provenance import process
+from continuation.archive.provenance import pack, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import ROWS_AT_ONCE, Table, flat, record_of, row_columns
 from continuation.archive.schema import MESSAGE, text

@@ -15,9 +15,8 @@ from typing import Any
 from attrs import define, field, frozen
 
 from continuation.archive.atomic import ArchiveError, new_file
-from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
-from continuation.archive.provenance import root_attributes
+from continuation.archive.provenance import Checkpoint, describe_run, pack, root_attributes
 from continuation.archive.reader import StoredSteps
 from continuation.archive.rows import (
     Record,

@@ -10,7 +10,7 @@ import pytest
 import continuation
 from continuation import Budget, Monitor, Status, TargetValue, Tracer, from_functions, trace
 from continuation.archive import ArchiveError, PathLog, open_archive, recover, resume
-from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
+from continuation.archive.provenance import Checkpoint, describe_run, pack, unpack
 from continuation.metric import Relative
 from problems.bifurcation import Circle, ExponentialCosine, FreudensteinRoth
 

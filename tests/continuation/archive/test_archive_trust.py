@@ -14,9 +14,9 @@ import pytest
 
 from continuation import Budget, trace
 from continuation.archive import ArchiveError, open_archive, resume
-from continuation.archive.checkpoint import HEAD, pack
 from continuation.archive.checks import Committed, digest
 from continuation.archive.codec import _registered
+from continuation.archive.provenance import HEAD, pack
 from problems.bifurcation import ExponentialCosine
 
 from .util import OPERATIONS, outcome
