@@ -273,7 +273,7 @@ class StoredSteps(Sequence[Step]):
         return steps[at - first]
 
     def __repr__(self) -> str:
-        return f"<{self._count} steps in {self._file}, {len(self._last)} of the last in memory>"
+        return f"<{self._count} steps in {self._file}>"
 
     def column(self, name: str) -> Any:
         """All steps' ``u``, ``tangent`` or ``arclength`` as an array."""
