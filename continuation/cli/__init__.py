@@ -116,8 +116,7 @@ def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, st
         return BAD_INPUT, text
     blamed = getattr(arguments, arguments.plugin, None) if arguments.plugin else None
     if blamed is None or not isinstance(error, Exception):
-        leaves = "a plug-in wanted to end the process: " if isinstance(error, SystemExit) else ""
-        return BAD_INPUT, f"{leaves}{_told(error)}"
+        return BAD_INPUT, _told(error)
     if isinstance(error, TypeError | ValueError) and complaint.startswith(" expected "):
         return BAD_INPUT, f"{blamed}: {error}"
     return FAILURE, f"{blamed}: {_told(error)}"

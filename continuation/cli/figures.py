@@ -66,8 +66,6 @@ def check_picture(option: str, file: str) -> None:
         TemporaryFile(dir=path.parent).close()
     except OSError as error:
         raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
-    except ImportError as error:
-        raise UsageError(option, f"{error}, found none") from error
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
