@@ -268,9 +268,6 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
 
 def _known(present: set[str]) -> frozenset[str]:
     """The optional columns."""
-    known = LATER & present
-    for prefix in (OBSERVED, PARAMETER):
-        own = sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix))
-        check_names(prefix, own)
-        known |= {prefix + name for name in own}
-    return known
+    own = {name for name in present if name.startswith((OBSERVED, PARAMETER))}
+    check_names("column", [name.partition("_")[2] for name in sorted(own)])
+    return frozenset(own | (LATER & present))

@@ -172,17 +172,12 @@ class Allowance:
 
 def member(group: Any, name: str) -> Any:
     """A group or dataset behind hard links; `name` may be a path."""
-    *above, last = name.encode().split(b"/")
-    for part in above:
-        group = member(group, part.decode())
-    try:
-        hard = group.id.links.get_info(last).type == h5l.TYPE_HARD
-    except KeyError:
-        hard = False
-    if not hard:
-        raise StructureError(f"it has no {name}, or a link to somewhere else")
-    # `group[name]` would reopen the file.
-    found = h5o.open(group.id, last)
+    found = group.id
+    for part in name.encode().split(b"/"):
+        if not found.links.exists(part) or found.links.get_info(part).type != h5l.TYPE_HARD:
+            raise StructureError(f"it has no {name}, or a link to somewhere else")
+        # `group[name]` would reopen the file.
+        found = h5o.open(found, part)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 

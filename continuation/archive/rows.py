@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import zip_longest
+from itertools import groupby, zip_longest
 from operator import attrgetter
 from typing import Any
 
@@ -71,12 +70,8 @@ def rows_at(step: Step, events: Sequence[LocatedEvent]) -> list[Row]:
 
 def rows_of(path: Path) -> list[Row]:
     """Steps and events in path order."""
-    rows, begin = list[Row](), 0
-    for step in path.steps:
-        end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
-        rows += rows_at(step, path.events[begin:end])
-        begin = end
-    return rows
+    events = {step: [*found] for step, found in groupby(path.events, attrgetter("step"))}
+    return [row for step in path.steps for row in rows_at(step, events.get(step.index, ()))]
 
 
 def layout_of(
@@ -242,9 +237,6 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
     def __len__(self) -> int:
         return len(self.columns)
-
-    def __repr__(self) -> str:
-        return f"<Table of {self.size} rows: {', '.join(self.columns)}>"
 
     def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
         """All columns of some rows.
