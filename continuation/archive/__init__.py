@@ -5,14 +5,13 @@ netCDF-4 tool (h5py, xarray) reads these files.
 """
 
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError
-from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
 from continuation.archive.page import describe
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.resume import resume
+from continuation.archive.resume import add_proof, recheck, resume
+from continuation.archive.rows import Table
 from continuation.archive.schema import SCHEMA
 from continuation.archive.sweep import trace_many
-from continuation.archive.tables import Table
 from continuation.archive.transfer import export, merge, recover
 from continuation.archive.writer import Limits, PathLog
 

@@ -1,25 +1,23 @@
 """Files and locks.
 
-New data is synced as ``.NAME.xxxxxxxx.part``, then renamed. The next writer removes parts that a kill left.
+New data is written as ``.NAME.xxxxxxxx.part``, then renamed.
 """
 
 from __future__ import annotations
 
 import errno
 import fcntl
-import glob
 import os
 import re
 import secrets
 import struct
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 
 
 class ArchiveError(OSError):
@@ -33,17 +31,9 @@ class ArchiveExistsError(ArchiveError, FileExistsError):
     """The file exists already; archives are never overwritten."""
 
 
-_ABANDONED = 60.0
-"""Seconds after which an unlocked part is removed; writers lock theirs at once."""
-
-
 @contextmanager
 def beside(target: File) -> Iterator[File]:
-    """A new name beside `target`; a part left in the end is removed."""
-    for left in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
-        with suppress(OSError):
-            if time.time() - left.stat().st_mtime > _ABANDONED and not is_held(left):
-                left.unlink()
+    """A new name beside `target`, removed in the end."""
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         yield part
@@ -57,15 +47,14 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Rename a complete file; `replace` keeps the old file's mode and, if allowed, owner.
+    """Rename a complete file that the disk then has; `replace` keeps the old file's mode.
 
     Raises `ArchiveExistsError` if the name is taken.
     """
+    with part.open("rb") as written:
+        os.fsync(written.fileno())
     if replace and target.exists():
-        status = target.stat()
-        with suppress(PermissionError):
-            os.chown(part, status.st_uid, status.st_gid)
-        part.chmod(status.st_mode & 0o7777)
+        part.chmod(target.stat().st_mode & 0o7777)
     try:
         (os.replace if replace else os.link)(part, target)
     except FileExistsError:
@@ -76,18 +65,12 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
         # Without hard links, this reserves the name.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         os.replace(part, target)
-    with suppress(OSError):
-        descriptor = os.open(target.parent, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
 
 
 def as_file(argument: str, value: Any) -> File:
     """The path; `TypeError` otherwise."""
-    if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
-        raise complain(TypeError, argument, "the name of a file", value)
+    named = isinstance(value, (str, PathLike)) and not isinstance(os.fspath(value), bytes)
+    expect(named, argument, "the name of a file", value, TypeError)
     return File(value)
 
 
@@ -100,12 +83,12 @@ def new_file(argument: str, value: Any) -> File:
 
 def check_new(file: File) -> None:
     """Raise `ArchiveError` unless the file can be made."""
-    if "\0" in str(file):
-        raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
     if os.path.lexists(file):
         raise exists(file)
     said = (
-        f"there is no directory {file.parent}"
+        "is no name for a file (it holds a NUL)"
+        if "\0" in str(file)
+        else f"there is no directory {file.parent}"
         if not file.parent.is_dir()
         else f"the directory {file.parent} may not be written"
         if not os.access(file.parent, os.W_OK)
@@ -172,22 +155,20 @@ def is_held(file: File) -> bool:
     return not lock.taken
 
 
-def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
-    """Lock a file, read as `descriptor` and last written by process `writer`, to replace it.
+def own(file: File, descriptor: int) -> Lock:
+    """Lock a file, read as `descriptor`, to replace it.
 
-    `force` ignores a live writer. Raises `ArchiveError` if the file is not writable, being written, or replaced.
+    Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """
     # The mode too: root may write everything.
-    if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
+    if not file.stat().st_mode & 0o222:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
-    if not os.access(file.parent, os.W_OK):
-        raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
-    lock, said = Lock(file), "was replaced by another process this moment; try again"
-    if not force and not lock.taken:
-        said = f"process {writer or 'unknown'}, which writes it, seems to be alive; end it first, or say force=True"
-    elif file.exists() and all(
-        os.path.samestat(os.fstat(lock.descriptor), s) for s in (file.stat(), os.fstat(descriptor))
+    lock = Lock(file)
+    if (
+        lock.taken
+        and file.exists()
+        and all(os.path.samestat(os.fstat(lock.descriptor), status) for status in (file.stat(), os.fstat(descriptor)))
     ):
         return lock
     lock.close()
-    raise ArchiveError(f"{file}: {said}")
+    raise ArchiveError(f"{file}: is being written by another process, or was replaced by it; end it first")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from itertools import pairwise, takewhile
+from itertools import pairwise, starmap, takewhile
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, TypeVar
@@ -18,31 +18,27 @@ from continuation.archive.atomic import ArchiveError, as_file, is_held, short
 from continuation.archive.checks import (
     GROUP,
     PLACES,
-    RECORD_BYTES,
+    RECORD,
     RECORDS,
-    STOP,
     DamageError,
     Ledger,
     digest,
     latest,
     of_attributes,
 )
-from continuation.archive.codec import GROUP as PROBLEM
-from continuation.archive.codec import read_problem
-from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, member, names
+from continuation.archive.hdf5 import PROBLEM, Allowance, Image, LimitError, dataset, member, read_problem
+from continuation.archive.rows import Table
 from continuation.archive.schema import (
     EVENT_NAME,
+    LATER,
     OBSERVED,
-    OPTIONAL,
     PARAMETER,
     RESUME,
     SCHEMA,
-    SLOTS,
     Column,
     Layout,
     check_names,
 )
-from continuation.archive.tables import Table
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
@@ -59,8 +55,8 @@ TABLES = ("point", "path")
 class Contents:
     """An open file; any fault raises `ArchiveError`.
 
-    `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `cut_off`: points and
-    paths without checksums.
+    `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `stated`: what was
+    committed, `committed`: what of it has checksums.
     """
 
     root: Any = None
@@ -135,8 +131,8 @@ class Contents:
         self.flaws, self._datasets, self._ledgers = list[str](), dict[str, Any](), dict[str, Ledger]()
         if image.missing:
             self._flaw(f"its last {image.missing} bytes are missing")
-        self.root = file = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
-        self._present = names(file)
+        self.root = file = h5py.File(image, "r", rdcc_nbytes=0)
+        self._present = set(file)
         _check_schema(self.file, file.attrs, self._present)
         self.allowance = Allowance(self.size - image.missing, self._limit)
         for name in ("y", "controller_state"):
@@ -145,12 +141,11 @@ class Contents:
         self.layout = Layout(unknowns, cells, _known(self._present))
         for table in TABLES:
             self.allowance.take(f"a row of {table}s", self.layout.row_bytes(table))
-        records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD_BYTES), self.allowance)
-        self.committed = latest(records[()])
+        records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD.size), self.allowance)
+        self.committed = self.stated = latest(records[()])
         if self._salvage:
-            before, rows = self.committed, {table: self._ledger(table).rows for table in TABLES}
-            self.committed = evolve(before, points=rows["point"], paths=rows["path"])
-            self.cut_off = before.points - rows["point"], before.paths - rows["path"]
+            points, paths = (self._ledger(table).rows for table in TABLES)
+            self.committed = evolve(self.stated, points=points, paths=paths)
             _ = self.attributes, self.event_names
 
     @cached_property
@@ -174,13 +169,12 @@ class Contents:
     def _ledger(self, table: str) -> Ledger:
         if table not in self._ledgers:
             rows, columns = self.committed.rows(table), self.layout.columns(table)
-            blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, STOP + len(columns))
+            blocks, shape = getattr(self.committed, f"{table}_blocks"), (None, 2 + len(columns))
             sums = self._leading(f"{GROUP}/{table}", np.dtype("u4"), shape, blocks)
             ledger = Ledger(sums, [column.name for column in columns], rows)
             if ledger.rows != rows:
                 self._flaw(f"the checksums are damaged: those of {rows - ledger.rows} {table}s are missing")
-            held = ledger.rows * self.layout.row_bytes(table) + len(columns) * COLUMN_BYTES
-            self.allowance.take(f"the table of {table}s", held)
+            self.allowance.take(f"the table of {table}s", ledger.rows * self.layout.row_bytes(table))
             self._ledgers[table] = ledger
         return self._ledgers[table]
 
@@ -223,30 +217,23 @@ class Contents:
         values: Array = found[rows]
         return values
 
-    def sound(self, table: str) -> Array:
+    def sound(self, name: str) -> Array:
         """Which rows of a table can be read, and are what was written."""
-        edges = self._ledger(table).bounds.tolist()
-        sound = np.ones(edges[-1], dtype=bool)
-
-        def is_sound(start: int, stop: int) -> bool:
-            columns, rows = self.layout.columns(table), slice(start, stop)
-            return self._or_else("", lambda: all(len(self.read(table, column, rows)) for column in columns), False)
-
-        for k in range(0, len(edges) - 1, _BLOCKS):
-            some = edges[k : k + _BLOCKS + 1]
-            if not is_sound(some[0], some[-1]):
-                for start, stop in pairwise(some):
-                    sound[start:stop] = is_sound(start, stop)
+        table, edges = self.table(name), self._ledger(name).bounds.tolist()
+        nothing: dict[str, Array] = {}
+        sound = np.zeros(edges[-1], dtype=bool)
+        for rows in starmap(slice, pairwise(edges)):
+            sound[rows] = self._or_else("", partial(table.block, rows), nothing) is not nothing
         return sound
 
     def slots(self) -> list[bytes]:
         """Stored checkpoints, perhaps torn."""
 
         def read() -> list[bytes]:
-            found = dataset(self.root, f"{RESUME}/slots", np.dtype("u1"), (SLOTS, None), self.allowance)
+            found = dataset(self.root, f"{RESUME}/slots", np.dtype("u1"), (PLACES, None), self.allowance)
             return [slot.tobytes() for slot in found[()]]
 
-        return self.guarded(read) if RESUME in self._present else []
+        return self.guarded(lambda: self._or_else("its checkpoints cannot be read", read, []))
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The problem group."""
@@ -257,10 +244,6 @@ class Contents:
 
         nothing = read_problem(None, self.allowance)
         return self.guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
-
-
-_BLOCKS = 64
-"""Blocks (up to 4 MiB each) checked together."""
 
 
 def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
@@ -285,9 +268,6 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
 
 def _known(present: set[str]) -> frozenset[str]:
     """The optional columns."""
-    known = {column.name for column in OPTIONAL} & present
-    for prefix in (OBSERVED, PARAMETER):
-        own = sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix))
-        check_names(prefix, own)
-        known |= {prefix + name for name in own}
-    return frozenset(known)
+    own = {name for name in present if name.startswith((OBSERVED, PARAMETER))}
+    check_names("column", [name.partition("_")[2] for name in sorted(own)])
+    return frozenset(own | (LATER & present))

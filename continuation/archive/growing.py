@@ -12,7 +12,6 @@ from copy import deepcopy
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -22,10 +21,20 @@ from continuation.archive.atomic import ArchiveError, new_file, own
 from continuation.archive.contents import Contents
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import Archive, StoredSteps, open_archive
-from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
-from continuation.archive.schema import ORIGIN_COLUMNS, ORIGINS, SCHEMA, Layout, text
+from continuation.archive.rows import (
+    Block,
+    Table,
+    dataframe,
+    dataset,
+    joined,
+    layout_of,
+    record_of,
+    row_columns,
+    rows_of,
+    to_columns,
+)
+from continuation.archive.schema import LATER, SCHEMA, SOURCE, Layout, text
 from continuation.archive.store import Store, put
-from continuation.archive.tables import Block, Table, dataframe, dataset, joined
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -57,39 +66,23 @@ class Share:
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
     """Paths `first` to `last` - 1 of an archive with their first `points` points; by default all."""
     stop, contents = len(archive) if last is None else last, archive.contents
-    about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
+    begin = archive.rows(first).start if stop > first else 0
     end = begin + points if points is not None else archive.rows(stop - 1).stop if stop > first else 0
     paths = {name: values.copy() for name, values in archive.paths.block(slice(first, stop)).items()}
-    share = Share(contents.layout, contents.event_names, paths, archive.points, slice(begin, end), first, contents)
-    return sourced(share, about.get("identifier", ""), contents.file.name, about.get("homotopy", ""))
+    return Share(contents.layout, contents.event_names, paths, archive.points, slice(begin, end), first, contents)
 
 
-def share_of_path(
-    path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
-) -> Share:
-    """A finished path; `pieces` adds switches and rays."""
+def share_of_path(path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0) -> Share:
+    """A finished path."""
     first = path.steps[0] if path.steps else None
-    tangents = first is not None and bool(np.isfinite(first.tangent).all())
     unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
-    layout = layout_of(homotopy, unknowns, observed, controller, tangents, pieces)
+    layout = layout_of(homotopy, unknowns, observed, controller)
     names = list(dict.fromkeys(event.name for event in path.events))
-    rows = rows_of(path, layout)
+    rows = rows_of(path)
     points = to_columns(rows, 0, layout, names.index) if rows else layout.filled({}, "point", 0)
     row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
     table = Table.of(layout, "point", points)
     return Share(layout, names, row_columns(row, layout), table, slice(0, len(rows)))
-
-
-def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
-    """The share with missing homotopies and sources."""
-    count, begin = len(share.paths["path"]), share.first if first is None else first
-    said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
-    paths = dict(share.paths)
-    for column in ORIGIN_COLUMNS:
-        own = paths.get(column.name, np.zeros(count, dtype=column.storage))
-        here = np.array([text(value, column.length) for value in said[column.name]], dtype=column.storage)
-        paths[column.name] = np.where(own == b"", here, own)
-    return evolve(share, paths=paths)
 
 
 def leading(shares: Sequence[Share]) -> Contents:
@@ -102,8 +95,9 @@ def leading(shares: Sequence[Share]) -> Contents:
 def append(store: Store, share: Share, file: str) -> int:
     """Append a finished path of `file` in one commit; returns its number."""
     number = store.committed.paths
-    own = sourced(share, store.identifier, file, first=number)
-    store.commit(_numbered(own, store, own.rows, number) if own.size else None, _rows(own, store, number))
+    points = _numbered(share, store, share.rows, number) if share.size else None
+    source = np.array([text(f"{store.identifier} {number} {file}", SOURCE.length)], dtype=SOURCE.storage)
+    store.commit(points, {**_rows(share, store, number), "source": source})
     return number
 
 
@@ -113,8 +107,8 @@ def copy(
     *,
     what: str,
     more: Mapping[str, Any] | None = None,
-    checkpoints: Mapping[int, bytes] | None = None,
-    compression: int = 0,
+    checkpoint: bytes | None = None,
+    compressed: bool = False,
     replace: bool = False,
     grows: bool = False,
 ) -> Store:
@@ -129,7 +123,7 @@ def copy(
                 f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
                 f"{head.layout.unknowns}; one file holds one number"
             )
-    width, names = max(layout.controller for layout in layouts), ORIGINS.union(*(layout.more for layout in layouts))
+    width, names = max(layout.controller for layout in layouts), LATER.union(*(layout.more for layout in layouts))
     layout = Layout(head.layout.unknowns, width, names)
     about = {**head.attributes, **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
 
@@ -138,9 +132,9 @@ def copy(
             store.commit(block)
         counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
         rows = [_rows(share, store, number) for share, number in zip(shares, counts)]
-        store.commit(paths=joined(rows) if counts[-1] else None, checkpoints=checkpoints)
+        store.commit(paths=joined(rows) if counts[-1] else None, checkpoint=checkpoint)
 
-    make = partial(Store, layout=layout, attributes=about, problem=head.problem(), compression=compression)
+    make = partial(Store, layout=layout, attributes=about, problem=head.problem(), compressed=compressed)
     return put(target, make, fill, replace=replace, grows=grows)
 
 
@@ -186,7 +180,7 @@ def _attributes(path: Path, title: str = "A path") -> dict[str, Any]:
 def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
     attributes = _attributes(path)
-    share = sourced(share_of_path(path), attributes["identifier"], "")
+    share = share_of_path(path)
     paths = Table.of(share.layout, "path", share.paths)
     return dataset(share.points, paths, share.names, share.layout.unknowns, attributes)
 
@@ -205,8 +199,7 @@ def dataframe_of(path: Path) -> Any:
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
     """Write paths of one homotopy to a new archive."""
     target = new_file("file", file)
-    pieces = any(event.switches for path in many for event in path.events)
-    shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
+    shares = [share_of_path(path, member=k) for k, path in enumerate(many)]
 
     def fill(store: Store) -> None:
         for share in shares:
@@ -229,12 +222,11 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
 class Growing:
     """An archive of finished paths, safe from kills.
 
-    `pieces`: store switches and rays of kinks. `keep`: steps in memory, "all" or "ends".
+    `keep`: steps in memory, "all" or "ends".
     """
 
     file: File
     title: str
-    pieces: bool
     keep: str = "all"
     _store: Store | None = None
 
@@ -245,7 +237,7 @@ class Growing:
         target = File(os.path.realpath(self.file))
         with (
             open_archive(target) as source,
-            closing(own(target, source.contents.descriptor, source.attributes.get("process"))),
+            closing(own(target, source.contents.descriptor)),
         ):
             if len(source):
                 last = source[-1].endpoint
@@ -257,7 +249,7 @@ class Growing:
 
     def add(self, path: Path) -> Path:
         """Append a path and return it as kept."""
-        share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
+        share = share_of_path(path, member=self._store.committed.paths if self._store else 0)
         if self._store is None:
             about = _attributes(path, self.title)
             self._store = put(self.file, partial(Store, layout=share.layout, attributes=about), grows=True)
@@ -269,11 +261,7 @@ class Growing:
         steps: Any = StoredSteps(self.file, number, [path.steps[0], path.steps[-1]], len(path.steps))
         return evolve(path, steps=steps)
 
-    def __enter__(self) -> Growing:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Close the file."""
         if self._store is not None:
             self._store.close()

@@ -5,25 +5,29 @@ HDF5 itself hangs at FIFOs and at checksums that SWMR omits. Links, external sto
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import stat
 import struct
-from collections.abc import Sequence
+import zlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path as File
-from typing import Any
+from typing import Any, Literal
 
 import h5py
 import numpy as np
 from h5py import h5d, h5l, h5o, h5z
 
 from continuation.archive.atomic import ArchiveError, short
+from continuation.archive.checks import DamageError, digest
+
+PROBLEM = "problem"
+"""The group of the homotopy's arrays."""
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
-# Superblock 2 and 3: version at byte 8, a writer's flags at 11 (version 3), length at 28, checksum at 44.
-_VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
-_WORD = 0xFFFFFFFF
-_HEAP = b"GCOL"
+_SUPERBLOCK = struct.Struct("<8s4B4QI")
+"""Signature, version (2 or 3), two sizes, a writer's flags, base, extension, length, root, checksum."""
 
 
 class Image:
@@ -40,12 +44,9 @@ class Image:
             self.descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
             status = os.fstat(self.descriptor)
             if not stat.S_ISREG(status.st_mode):
-                what = "a directory" if stat.S_ISDIR(status.st_mode) else "no regular file"
-                raise StructureError(f"is {what}, an archive is a file")
+                raise StructureError("is no regular file")
             self.length = status.st_size
-            self._head = self._closed(os.pread(self.descriptor, HEAD_BYTES, 0))
-        except FileNotFoundError:
-            raise ArchiveError(f"{file}: there is no such file") from None
+            self._head = self._closed(os.pread(self.descriptor, _SUPERBLOCK.size, 0))
         except (OSError, ValueError) as error:
             self.close()
             said = str(error) if isinstance(error, StructureError) else f"cannot be read ({short(error)})"
@@ -56,17 +57,16 @@ class Image:
         if not head.startswith(SIGNATURE):
             said = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
             raise StructureError(said)
-        padded = head.ljust(HEAD_BYTES, b"\0")
-        if padded[_VERSION] not in (2, 3):
+        signature, version, *sizes, used, base, more, stated, root, checksum = _SUPERBLOCK.unpack(head.ljust(48))
+        if version not in (2, 3):
             return head
-        self.closed_by_writer, stated = head[_VERSION] < 3 or not padded[_IN_USE], stated_length(padded)
+        self.closed_by_writer = version == 2 or not used
         if self.closed_by_writer and stated == self.length:
             return head
-        if struct.unpack_from("<I", padded, _CRC)[0] != lookup3(padded[:_CRC]):
+        if checksum != lookup3(head[:-4]):
             raise StructureError("truncated or damaged, HDF5 cannot open it (its head is not sound)")
         self.missing, self.length = max(stated - self.length, 0), max(stated, self.length)
-        length = struct.pack("<Q", self.length)
-        closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
+        closed = _SUPERBLOCK.pack(signature, version, *sizes, 0, base, more, self.length, root, 0)[:-4]
         return closed + struct.pack("<I", lookup3(closed))
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
@@ -79,28 +79,18 @@ class Image:
         return self.at
 
     def read(self, size: int) -> bytes:
-        """Read bytes; h5py requires this method."""
-        buffer = bytearray(size)
-        self.readinto(buffer)
-        return bytes(buffer)
-
-    def readinto(self, buffer: bytearray) -> int:
-        """Fill the buffer."""
-        view, done = memoryview(buffer).cast("B"), 0
+        """The next bytes, zeros beyond the end."""
+        raw = self._head[self.at : self.at + size]
         try:
-            while done < len(view) and (count := os.preadv(self.descriptor, [view[done:]], self.at + done)):
-                done += count
+            while len(raw) < size and (more := os.pread(self.descriptor, size - len(raw), self.at + len(raw))):
+                raw += more
         except OSError as error:
-            # A kept traceback would keep HDF5's buffer.
             self.failure = short(error)
             raise
-        view[done:] = bytes(len(view) - done)
-        head = self._head[self.at : self.at + len(view)]
-        view[: len(head)] = head
-        self.at += len(view)
-        if view[:4] == _HEAP:
-            _check_heap(view)
-        return len(view)
+        self.at += size
+        if raw.startswith(b"GCOL"):
+            _check_heap(raw)
+        return raw.ljust(size, b"\0")
 
     def close(self) -> None:
         """Close the file."""
@@ -109,12 +99,7 @@ class Image:
         self.descriptor = -1
 
 
-def stated_length(head: bytes) -> int:
-    """Length of the file according to its superblock."""
-    return int(struct.unpack_from("<Q", head, _LENGTH)[0])
-
-
-def _check_heap(heap: memoryview) -> None:
+def _check_heap(heap: bytes) -> None:
     """Raise `OSError` unless objects fill the global heap: HDF5 loops forever in a heap of zeros."""
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16
@@ -131,17 +116,19 @@ def lookup3(head: bytes) -> int:
     words = struct.unpack("<12I", head.ljust(48, b"\0"))
     a = b = c = 0xDEADBEEF + 44
     for k in (0, 3, 6, 9):
-        a, b, c = (a + words[k]) & _WORD, (b + words[k + 1]) & _WORD, (c + words[k + 2]) & _WORD
+        a, b, c = a + words[k], b + words[k + 1], c + words[k + 2]
         for shift in (4, 6, 8, 16, 19, 4) if k < 9 else ():
             # a, b, c rotate, and return after six rounds.
-            a, b, c = b, (c + b) & _WORD, ((a - c) & _WORD) ^ _turned(c, shift)
+            a, b, c = b, c + b, (a - c) ^ _turned(c, shift)
     for shift in (14, 11, 25, 16, 4, 14, 24):
-        a, b, c = b, ((c ^ b) - _turned(b, shift)) & _WORD, a
-    return b
+        a, b, c = b, (c ^ b) - _turned(b, shift), a
+    return b % (1 << 32)
 
 
 def _turned(x: int, k: int) -> int:
-    return ((x << k) | (x >> (32 - k))) & _WORD
+    """The lower 32 bits, rotated; beyond them nothing is read."""
+    x %= 1 << 32
+    return (x << k) | (x >> (32 - k))
 
 
 LEAST_BYTES = 1 << 27
@@ -151,9 +138,6 @@ points."""
 UNFOLDING = 32
 """Memory of a larger file, relative to its size: a point of two unknowns takes 120 bytes, its `Step` 1.5 KiB, twice
 that if compressed; gzip shrinks zeros to a thousandth."""
-
-COLUMN_BYTES = 1 << 14
-"""Bytes of a dataset's chunk cache: tables are read sequentially."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
 """h5py's own filters; others would load a library."""
@@ -188,25 +172,13 @@ class Allowance:
 
 def member(group: Any, name: str) -> Any:
     """A group or dataset behind hard links; `name` may be a path."""
-    *above, last = name.encode().split(b"/")
-    for part in above:
-        group = member(group, part.decode())
-    try:
-        hard = group.id.links.get_info(last).type == h5l.TYPE_HARD
-    except KeyError:
-        hard = False
-    if not hard:
-        raise StructureError(f"it has no {name}, or a link to somewhere else")
-    # `group[name]` would reopen the file.
-    found = h5o.open(group.id, last)
+    found = group.id
+    for part in name.encode().split(b"/"):
+        if not found.links.exists(part) or found.links.get_info(part).type != h5l.TYPE_HARD:
+            raise StructureError(f"it has no {name}, or a link to somewhere else")
+        # `group[name]` would reopen the file.
+        found = h5o.open(found, part)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
-
-
-def names(group: Any) -> set[str]:
-    """Names in a group, several times faster than h5py."""
-    raw = list[bytes]()
-    group.id.links.iterate(raw.append)
-    return {name.decode(errors="surrogateescape") for name in raw}
 
 
 def subgroup(group: Any, name: str) -> Any:
@@ -260,3 +232,44 @@ def dataset(
     read = lengths if rows is None else (rows, *lengths[1:])
     allowance.take(f"{group.name}/{name}".lstrip("/"), stored.itemsize * math.prod(read))
     return found
+
+
+def order(array: Any) -> str:
+    """Memory order, "F" or "C": it decides BLAS's round-off."""
+    return "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
+
+
+def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
+    """Write the problem group."""
+    group = file.create_group(PROBLEM)
+    group.attrs.update({"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
+    write_arrays(group, arrays)
+
+
+def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
+    """Write arrays with checksums."""
+    for name, array in arrays.items():
+        stored = group.create_dataset(name, data=array)
+        stored.attrs.update({"order": order(array), "checksum": np.uint32(digest(array))})
+
+
+def read_arrays(group: Any, allowance: Allowance) -> dict[str, Any]:
+    """Arrays, checked."""
+    arrays = {}
+    for name in group:
+        found = dataset(group, name, None, None, allowance)
+        lying: Literal["C", "F"] = "F" if found.attrs.get("order") == "F" else "C"
+        arrays[name] = np.asarray(found[()], order=lying)
+        if digest(arrays[name]) != found.attrs["checksum"]:
+            raise DamageError(f"the array {name} of its {group.name} is not what was written")
+    return arrays
+
+
+def read_problem(group: Any, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
+    """Description and arrays, checked."""
+    if group is None:
+        return json.dumps({"unstorable": "the file holds no problem"}), {}
+    description = str(group.attrs["description"])
+    if zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
+        raise DamageError("the description of its problem is not what was written")
+    return description, read_arrays(group, allowance)

@@ -1,29 +1,42 @@
-"""Root attributes of an archive: what ran, when, with which software."""
+"""What ran: the root attributes of an archive, and the stepper's state as bytes, to resume from."""
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import platform
 import secrets
 import socket
-import sys
-from collections.abc import Mapping
+import struct
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from functools import lru_cache
 from importlib import metadata
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import h5py
 import numpy as np
 import scipy
+from attrs import frozen
 
-from continuation.archive.checkpoint import OPTIONS
-from continuation.archive.codec import UnstorableError, encode, inline
+from continuation.archive.codec import (
+    ENTRY_POINTS,
+    UnknownError,
+    UnstorableError,
+    class_path,
+    decode,
+    described,
+    encode,
+    inline,
+)
+from continuation.archive.hdf5 import order
 from continuation.archive.schema import SCHEMA
-from continuation.archive.trust import ENTRY_POINTS, UnknownError, decode
+from continuation.step.settings import Settings
+from continuation.step.state import State
 from continuation.step.tracer import Tracer
 from continuation.version import __version__
 
@@ -62,18 +75,6 @@ def software() -> dict[str, str]:
 
 
 @lru_cache
-def _distribution(path: str) -> str:
-    """Distribution and version of a class, if any."""
-    point, top = _entry_point(path), path.partition(":")[0].partition(".")[0]
-    if point is not None and point.dist is not None:
-        return f"{point.dist.name} {point.dist.version}"
-    with suppress(metadata.PackageNotFoundError):
-        return f"{top} {metadata.version(top)}"
-    # This search takes an eighth of a second.
-    return next((f"{name} {metadata.version(name)}" for name in metadata.packages_distributions().get(top, ())), "")
-
-
-@lru_cache
 def _entry_point(path: str) -> metadata.EntryPoint | None:
     return next((point for point in metadata.entry_points(group=ENTRY_POINTS) if point.value == path), None)
 
@@ -83,20 +84,11 @@ def process() -> dict[str, Any]:
     return {"created": now(), "process": np.int64(os.getpid()), **software()}
 
 
-def class_path(thing: Any) -> str:
-    """``module:class`` of an object."""
-    return f"{type(thing).__module__}:{type(thing).__qualname__}"
-
-
 def parameters(homotopy: Any) -> dict[str, Any]:
     """Public fields or attributes of the homotopy."""
-    cls = type(homotopy)
-    if attrs.has(cls):
-        names = [a.name for a in attrs.fields(cls)]
-    else:
-        slots = (getattr(c, "__slots__", ()) for c in cls.__mro__)
-        names = [name for own in slots for name in ((own,) if isinstance(own, str) else own)]
-        names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
+    slots = (getattr(cls, "__slots__", ()) for cls in type(homotopy).__mro__)
+    names = [name for own in slots for name in ((own,) if isinstance(own, str) else own)]
+    names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
     public = (name for name in dict.fromkeys(names) if not name.startswith("_"))
     return {name: getattr(homotopy, name) for name in public if hasattr(homotopy, name)}
 
@@ -121,14 +113,6 @@ def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def readable(value: Any) -> Any:
-    """JSON, or the repr if there is none."""
-    try:
-        return encode(value, inline)
-    except UnstorableError:
-        return repr(value)
-
-
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes of a new archive.
 
@@ -141,22 +125,151 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
         "title": title,
         "identifier": secrets.token_hex(8),
         **process(),
-        "command": " ".join(sys.argv)[:1000],
         **history({}, "created"),
     }
     if tracer is None:
         return attributes
     homotopy = tracer.homotopy
-    path, own = class_path(homotopy), {**parameters(homotopy), **made_with}
-    point, described = _entry_point(path), readable(homotopy)
-    fields = described.get("fields", described.get("data")) if isinstance(described, dict) and not made_with else None
+    path, own = class_path(type(homotopy)), {**parameters(homotopy), **made_with}
+    point = _entry_point(path)
+    dist = None if point is None else point.dist
     return attributes | {
         "title": title or f"Paths of {type(homotopy).__name__}",
         "homotopy": path,
         "homotopy_entry_point": point.name if point is not None else "",
-        "homotopy_distribution": _distribution(path),
-        "parameters": json.dumps({name: readable(value) for name, value in own.items()} if fields is None else fields),
+        "homotopy_distribution": "" if dist is None else f"{dist.name} {dist.version}",
+        "parameters": json.dumps({name: described(value, inline) for name, value in own.items()}),
         **tracer.path.labels.attributes(),
-        "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
+        "settings": json.dumps({name: described(getattr(tracer.settings, name), inline) for name in OPTIONS}),
         "references": "\n\n".join(tracer.references),
     }
+
+
+HEAD = struct.Struct("<QQI")
+"""Sequence, length and CRC-32 of the body."""
+
+OPTIONS = tuple(attrs.fields_dict(Settings))
+"""The options of `continuation.Tracer` that determine a path."""
+
+_INLINE_BYTES = 1 << 16
+
+
+@frozen(eq=False)
+class Checkpoint:
+    """A point after `rows` rows, from which a path continues exactly.
+
+    `counts`, `seconds`: work so far. `run`: options, homotopy, index in a sweep.
+    """
+
+    sequence: int
+    path: int
+    rows: int
+    state: State
+    counts: Mapping[str, int]
+    seconds: float
+    run: Mapping[str, Any]
+
+
+def major(version: str) -> str:
+    """Part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
+    first, second, *_ = (*version.split("."), "")
+    return first if first != "0" else f"0.{second}"
+
+
+def _fetched(raw: bytes) -> Callable[[Any], Any]:
+    made: list[np.ndarray[Any, Any]] = []
+
+    def fetch(place: Any) -> Any:
+        # Numbers follow the description's order.
+        if place["number"] == len(made):
+            offset = sum(array.nbytes for array in made)
+            made.append(numbers(raw[offset:], place["dtype"], place["shape"]).copy())
+        return made[place["number"]]
+
+    return fetch
+
+
+def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
+    """The first bytes as an array; `ValueError` if it is not numeric or longer."""
+    kind = np.dtype(dtype)
+    count = math.prod(shape)
+    if kind.kind not in "fiubc" or min(shape, default=0) < 0 or count * kind.itemsize > len(raw):
+        raise ValueError(f"no array of {dtype!r:.20} of shape {shape!r:.60} in {len(raw)} bytes")
+    return np.frombuffer(raw, kind, count).reshape(shape, order=order)
+
+
+def describe_run(tracer: Tracer, member: int | None, first: bool = False) -> dict[str, Any]:
+    """Options and homotopy as JSON, or why they are "unstorable".
+
+    `first`: the problem group describes the homotopy.
+    """
+    values = {name: getattr(tracer.settings, name) for name in OPTIONS}
+    own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
+    if own:
+        # A new tracer adds the homotopy's events again.
+        begin = 0 if own[0] in watched[:1] else 1
+        values["events"] = watched[begin + len(own) :]
+    options = {name: described(value, _whole) for name, value in values.items()}
+    homotopy = {"problem": True} if first else described(tracer.homotopy, _whole)
+    return {"options": options, "homotopy": homotopy, "member": member}
+
+
+def _whole(name: str, array: Any) -> Any:
+    if array.nbytes > _INLINE_BYTES:
+        raise UnstorableError(f"{name} is an array of {array.nbytes} bytes in a homotopy that is not the file's first")
+    lying = order(array)
+    raw = array.tobytes(lying).hex()
+    return {"dtype": array.dtype.str, "shape": list(array.shape), "order": lying, "hex": raw}
+
+
+def whole(place: Any) -> Any:
+    """The array, from JSON."""
+    return numbers(bytes.fromhex(place["hex"]), place["dtype"], place["shape"], place["order"]).copy("K")
+
+
+def pack(checkpoint: Checkpoint) -> bytes:
+    """Head, JSON, run, arrays."""
+    arrays: dict[int, np.ndarray[Any, Any]] = {}
+
+    def place(name: str, array: Any) -> Any:
+        arrays.setdefault(id(array), array)
+        number = list(arrays).index(id(array))
+        return {"number": number, "dtype": array.dtype.str, "shape": list(array.shape)}
+
+    tree = {
+        "version": __version__,
+        "path": checkpoint.path,
+        "rows": checkpoint.rows,
+        "counts": dict(checkpoint.counts),
+        "seconds": checkpoint.seconds,
+        "state": encode(checkpoint.state, place),
+    }
+    raw = b"".join(np.ascontiguousarray(array).tobytes() for array in arrays.values())
+    body = b"\n".join((json.dumps(tree).encode(), json.dumps(dict(checkpoint.run)).encode(), raw))
+    return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
+
+
+def unpack(raw: bytes) -> Checkpoint | None:
+    """The checkpoint; None if missing, torn or of another major version; creates no named object."""
+    try:
+        sequence, length, crc = HEAD.unpack_from(raw)
+        body = raw[HEAD.size : HEAD.size + length]
+        if not length or len(body) < length or zlib.crc32(body) != crc:
+            return None
+        head, ran, arrays = body.split(b"\n", 2)
+        tree, run = json.loads(head), dict(json.loads(ran))
+        if major(str(tree["version"])) != major(__version__):
+            return None
+        state = decode(tree["state"], _fetched(arrays), hint=State)
+        counts = {str(name): int(value) for name, value in tree["counts"].items()}
+        path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])
+    except (struct.error, UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return None
+    sensible = _consistent(state) and path >= 0 and rows > 0
+    return Checkpoint(sequence, path, rows, state, counts, seconds, run) if sensible else None
+
+
+def _consistent(state: State) -> bool:
+    knots = (*state.history, state.origin)
+    vectors = [state.weights, *state.anchor, state.origin_weights, *(v for k in knots for v in (k.u, k.tangent))]
+    return bool(state.history) and all(v.dtype == float and v.shape == (vectors[0].size,) for v in vectors)

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.rows import from_columns, record_of, row_columns
+from continuation.archive.provenance import Checkpoint, unpack
+from continuation.archive.rows import (
+    ROWS_AT_ONCE,
+    Table,
+    dataframe,
+    dataset,
+    from_columns,
+    kept_whole,
+    record_of,
+    row_columns,
+)
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES, OBSERVED
-from continuation.archive.tables import ROWS_AT_ONCE, Table, dataframe, dataset, kept_whole
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
 from continuation.counts import Counts
@@ -44,8 +52,8 @@ class Archive(Sequence[Path]):
         False if the file is growing or its writer was killed.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
-        self.contents = contents = Contents(file, limit=limit)
+    def __init__(self, contents: Contents) -> None:
+        self.contents = contents
         self.file, self.layout, self.closed_by_writer = contents.file, contents.layout, contents.closed_by_writer
         # A snapshot; the growing file may be opened anew.
         self.points, self._ended = contents.table("point"), contents.table("path")
@@ -65,8 +73,10 @@ class Archive(Sequence[Path]):
         """The path table, with a row for an unfinished path."""
         if len(self) == self._ended.size:
             return self._ended
-        rest = self.rows(self._ended.size)
-        row = row_columns(self._unended(rest.stop - rest.start), self.layout)
+        number, rows = self._ended.size, self.rows(self._ended.size)
+        # What it has cost is told at its end.
+        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
+        row = row_columns({**row, "path": number, "member": number, "n_points": rows.stop - rows.start}, self.layout)
         columns = {name: np.concatenate((self._ended[name], row[name])) for name in self._ended}
         return Table.of(self.layout, "path", columns)
 
@@ -82,13 +92,8 @@ class Archive(Sequence[Path]):
     def __len__(self) -> int:
         return len(self._first_rows) - 1
 
-    @overload
-    def __getitem__(self, index: int) -> Path: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Path]: ...
-
-    def __getitem__(self, index: int | slice) -> Path | list[Path]:
+    def __getitem__(self, index: Any) -> Any:
+        """A path, or the list of a slice."""
         if isinstance(index, slice):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)
@@ -113,8 +118,7 @@ class Archive(Sequence[Path]):
             For another `keep`.
         """
         whole = kept_whole(keep)
-        if not isinstance(index, Integral):
-            raise complain(TypeError, "index", "an integer or a slice", index)
+        expect(isinstance(index, Integral), "index", "an integer or a slice", index, TypeError)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         return self.contents.guarded(partial(self._path, int(index) % len(self), whole))
@@ -195,10 +199,6 @@ class Archive(Sequence[Path]):
             valid += [found] if rows.start + found.rows <= rows.stop else []
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
 
-    def problem(self) -> tuple[str, Mapping[str, Any]]:
-        """Description (JSON) and arrays of the first homotopy."""
-        return self.contents.problem()
-
     def close(self) -> None:
         """Close the file: what was not read by then raises `ArchiveError`."""
         self.contents.close()
@@ -210,21 +210,6 @@ class Archive(Sequence[Path]):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
-
-    def _unended(self, rows: int) -> dict[str, Any]:
-        number = self._ended.size
-        member = int(self._ended["member"][-1]) + 1 if number else 0
-        # Counts of an older checkpoint are out of date.
-        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        row |= {"path": number, "member": member, "n_points": rows}
-        checkpoint = self.checkpoint()
-        if checkpoint is not None and checkpoint.path == number:
-            told = checkpoint.run.get("member")
-            row["member"] = number if told is None else int(told)
-            if self.contents.committed.checkpoint == checkpoint.sequence:
-                row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
-                row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
-        return row
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
@@ -243,11 +228,7 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
     ArchiveError
         If the file is missing, unreadable, foreign, truncated, damaged or of a newer schema.
     """
-    return Archive(file, limit=limit)
-
-
-_COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
-"""Step fields in every file."""
+    return Archive(Contents(file, limit=limit))
 
 
 class StoredSteps(Sequence[Step]):
@@ -258,12 +239,13 @@ class StoredSteps(Sequence[Step]):
 
     def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
         held = list(steps)
-        self._file, self._path, self._first = file, path, next(iter(held), None)
+        self._file, self._path, self._first = file, path, held[:1]
         self._last, self._count = (held, len(held)) if count is None else (held[-1:], count)
+        self._some: tuple[int, list[Step]] = 0, []
 
     def append(self, step: Step) -> None:
         """Add the next step."""
-        self._first = self._first or step
+        self._first = self._first or [step]
         self._last.append(step)
         self._count += 1
 
@@ -276,26 +258,27 @@ class StoredSteps(Sequence[Step]):
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
-            wanted = range(*index.indices(self._count))
-            first = min(wanted, default=0)
-            between = list(self._between(first, max(wanted, default=-1) + 1))
-            return [between[i - first] for i in wanted]
-        if not -self._count <= index < self._count:
-            raise IndexError(f"index: expected a step below {self._count}, found {index}")
-        index %= self._count
-        return self._first if not index and self._first else next(self._between(index, index + 1))
-
-    def __iter__(self) -> Iterator[Step]:
-        return self._between(0, self._count)
+            return [self[i] for i in range(*index.indices(self._count))]
+        at, begin = range(self._count)[index], self._count - len(self._last)
+        if at >= begin or not at:
+            return self._last[at - begin] if at >= begin else self._first[0]
+        first, steps = self._some
+        if not first <= at < first + len(steps):
+            with open_archive(self._file) as archive:
+                size = archive.points.at_once
+                # With the step before, for the segment.
+                first, before = at // size * size, max(at // size * size - 1, 0)
+                steps = _window(archive, self._path, before, min(first + size, begin))[0][first - before :]
+            self._some = first, steps
+        return steps[at - first]
 
     def __repr__(self) -> str:
-        held = {id(step) for step in (self._first, *self._last) if step is not None}
-        return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
+        return f"<{self._count} steps in {self._file}>"
 
     def column(self, name: str) -> Any:
         """All steps' ``u``, ``tangent`` or ``arclength`` as an array."""
-        fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
-        if not fields or not begin:
+        fields, begin = {"u": ("y", "parameter"), "arclength": ("arclength",)}.get(name), self._count - len(self._last)
+        if fields is None or not begin:
             return np.array([getattr(step, name) for step in self])
         with open_archive(self._file) as archive:
             # Making steps takes 14 times as long.
@@ -304,17 +287,6 @@ class StoredSteps(Sequence[Step]):
             found = [archive.points.some(field, rows)[steps] for field in fields]
         stored = found[0] if len(found) == 1 else np.column_stack(found)
         return np.concatenate((stored, [getattr(step, name) for step in self._last]))
-
-    def _between(self, start: int, stop: int) -> Iterator[Step]:
-        begin = self._count - len(self._last)
-        while start < min(stop, begin):
-            # One more row, for the segment.
-            before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
-            with open_archive(self._file) as archive:
-                steps, _ = _window(archive, self._path, before, end)
-            yield from steps[start - before :]
-            start = end
-        yield from self._last[start - begin : max(stop - begin, 0)]
 
 
 def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:

@@ -1,24 +1,32 @@
-"""`resume`: continue an interrupted path exactly."""
+"""`resume`: continue an interrupted path exactly; `add_proof`, `recheck`: proofs, in the group `/certificate`."""
 
 from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
-from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
+import h5py
+import numpy as np
+
+from continuation.archive.atomic import ArchiveError, as_file, beside, new_file, own, publish, short
+from continuation.archive.codec import UnknownError, decode, registry
+from continuation.archive.contents import FAULTS
 from continuation.archive.growing import check_homotopy, copy, share_of
-from continuation.archive.provenance import process
+from continuation.archive.hdf5 import StructureError, member, read_arrays, write_arrays
+from continuation.archive.provenance import OPTIONS, Checkpoint, pack, process, whole
 from continuation.archive.reader import Archive, open_archive
+from continuation.archive.rows import kept_whole
 from continuation.archive.store import Store
-from continuation.archive.tables import kept_whole
-from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
+from continuation.certificate.cells import COLUMNS, Cells
+from continuation.certificate.certifying import recheck as checked_again
+from continuation.certificate.proof import Gap, Proof
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
@@ -91,9 +99,7 @@ def resume(
     with ExitStack() as stack:
         source = stack.enter_context(open_archive(name))
         if archive is None:
-            stack.enter_context(closing(own(target, source.contents.descriptor, source.attributes.get("process"))))
-        elif not source.closed_by_writer and is_held(name):
-            raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
+            stack.enter_context(closing(own(target, source.contents.descriptor)))
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
@@ -167,7 +173,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
     tree: Any = checkpoint.run["homotopy"]
     fetch: Callable[[Any], Any] = whole
     if isinstance(tree, dict) and tree.get("problem"):
-        described, arrays = source.problem()
+        described, arrays = source.contents.problem()
         tree, fetch = source.contents.guarded(lambda: json.loads(described)), arrays.__getitem__
     return _made(source, "the homotopy", tree, fetch, known, "homotopy= or --homotopy")
 
@@ -197,4 +203,110 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
-    return copy([share], target, what=what, more=more, checkpoints=slot_of(checkpoint), replace=replace, grows=True)
+    return copy([share], target, what=what, more=more, checkpoint=pack(checkpoint), replace=replace, grows=True)
+
+
+GROUP = "certificate"
+
+
+def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
+    """Store or replace a proof in a closed archive.
+
+    Parameters
+    ----------
+    file : path
+        Replaced by a copy.
+    proof : Proof
+    path : int
+        Number of the proved path.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read or replaced, or lacks that path.
+    """
+    name = File(os.path.realpath(as_file("file", file)))
+    with (
+        open_archive(name) as source,
+        closing(own(name, source.contents.descriptor)),
+    ):
+        number = range(len(source))[path]
+        with beside(name) as part:
+            shutil.copyfile(name, part)
+            with h5py.File(part, "r+") as copy:
+                group = copy.require_group(GROUP)
+                if str(number) in group:
+                    del group[str(number)]
+                made = group.create_group(str(number))
+                made.attrs["summary"] = str(proof)[:1000]
+                columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in COLUMNS}
+                write_arrays(
+                    made, {name: values.astype("i8" if name == "slabs" else "f8") for name, values in columns.items()}
+                )
+            publish(part, name, replace=True)
+
+
+def read_cells(archive: Archive, path: int) -> Cells | None:
+    """Cells of a stored proof, or None."""
+    try:
+        root = archive.contents.root
+        if GROUP not in set(root) or str(path) not in set(member(root, GROUP)):
+            return None
+        columns = read_arrays(member(root, f"{GROUP}/{path}"), archive.contents.allowance)
+        _check(columns)
+        return Cells(**columns)
+    except FAULTS as error:
+        raise ArchiveError(
+            f"{archive.contents.file}: the certificate of path {path} is damaged ({short(error)})"
+        ) from None
+
+
+def _check(columns: dict[str, Any]) -> None:
+    # Cells may be wider than the path (`certifying.SupportsWrittenOut`).
+    count, width = columns["begin"].shape
+    shapes = dict.fromkeys(COLUMNS, (count, width)) | {"slabs": (count,), "place": (count, 2)}
+    kinds = dict.fromkeys(COLUMNS, "f") | {"slabs": "i"}
+    for name, values in ((name, columns[name]) for name in COLUMNS):
+        if values.shape != shapes[name] or values.dtype.kind != kinds[name] or not np.isfinite(values).all():
+            raise StructureError(f"{name} is of another shape, or holds numbers that are not finite")
+    # Our files hold fewer slabs; more take long to check.
+    if not all(1 <= slabs <= 64 for slabs in columns["slabs"]):
+        raise StructureError("slabs are not from 1 to 64")
+
+
+def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:
+    """Check every condition of an archive's proofs again.
+
+    Parameters
+    ----------
+    file : path
+    homotopy : Homotopy, optional
+        Needed if the file cannot rebuild it.
+    trust : sequence of class or function
+        As for `resume`.
+
+    Returns
+    -------
+    list of Proof
+        One for each path; without a certificate it is one gap.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read, a certificate is damaged, or the homotopy cannot be made.
+    """
+    with open_archive(file) as source:
+        if homotopy is None:
+            checkpoint = source.checkpoint()
+            if checkpoint is None:
+                raise ArchiveError(f"{source.file}: says nothing of its homotopy; pass homotopy=")
+            homotopy = stored_homotopy(source, checkpoint, registry(trust))
+        out = []
+        for number in range(len(source)):
+            path, cells = source.path(number), read_cells(source, number)
+            if cells is None:
+                span = float(path.arclength[0]), float(path.arclength[-1])
+                out.append(Proof.empty(path.u.shape[1], Gap(*span, "the file holds no certificate")))
+            else:
+                out.append(checked_again(cells, path, homotopy))
+        return out

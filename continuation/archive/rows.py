@@ -1,35 +1,36 @@
-"""Conversion between paths and rows of the two tables."""
+"""The two tables of an archive, with columns read on demand; paths as their rows, and back."""
 
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import zip_longest
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import groupby, zip_longest
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.archive.provenance import class_path, scalars
+from continuation.archive.atomic import ArchiveError
+from continuation.archive.codec import class_path
+from continuation.archive.provenance import scalars
 from continuation.archive.schema import (
     ACCEPTED,
-    CONTROLLER_STATE,
+    COMPONENT,
     COUNT_NAMES,
+    EVENT_NAME,
     KINK_PART,
-    KINKS,
+    LATER,
     LOCATED,
-    NO_EVENT,
     OBSERVED,
-    ORIGINS,
     PARAMETER,
-    TANGENTS,
+    Column,
     Layout,
     text,
 )
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
-from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.segment import hermite
 
@@ -52,14 +53,14 @@ class Row:
     switch: int = -1
 
 
-def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[Row]:
+def rows_at(step: Step, events: Sequence[LocatedEvent]) -> list[Row]:
     """Rows of a step and its events; an event at the step shares its row, a kink adds switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
     rows = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
     rows.append(Row(step, last, ACCEPTED, step.tangent))
-    if last is not None and layout.more >= KINKS:
+    if last is not None and last.switches:
         nothing, rays = np.full_like(last.u, _NAN), () if last.rays is None else last.rays
         for switch, ray in zip_longest(last.switches, rays):
             tangent = nothing if ray is None else ray
@@ -67,31 +68,20 @@ def rows_at(step: Step, events: Sequence[LocatedEvent], layout: Layout) -> list[
     return rows
 
 
-def rows_of(path: Path, layout: Layout) -> list[Row]:
+def rows_of(path: Path) -> list[Row]:
     """Steps and events in path order."""
-    rows, begin = list[Row](), 0
-    for step in path.steps:
-        end = bisect_right(path.events, step.index, begin, key=lambda event: event.step)
-        rows += rows_at(step, path.events[begin:end], layout)
-        begin = end
-    return rows
+    events = {step: [*found] for step, found in groupby(path.events, attrgetter("step"))}
+    return [row for step in path.steps for row in rows_at(step, events.get(step.index, ()))]
 
 
 def layout_of(
-    homotopy: Any,
-    unknowns: int,
-    observed: Iterable[str],
-    controller: Sequence[float],
-    tangents: bool = False,
-    pieces: bool = False,
-    early: Iterable[Record] = (),
+    homotopy: Any, unknowns: int, observed: Iterable[str], controller: Sequence[float], early: Iterable[Record] = ()
 ) -> Layout:
     """The layout of a new file; `early` are rows without points."""
-    held = KINKS if pieces or isinstance(homotopy, SupportsPieces) else TANGENTS if tangents else frozenset()
     said = {PARAMETER + name for name in scalars(homotopy)}
     said |= {name for row in early for name in row if name.startswith(PARAMETER)}
-    more = ORIGINS | held | said | {OBSERVED + name for name in observed}
-    return Layout(unknowns, max(len(controller), CONTROLLER_STATE), more)
+    layout = Layout(unknowns, more=LATER | said | {OBSERVED + name for name in observed})
+    return evolve(layout, controller=max(len(controller), layout.controller))
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
@@ -100,18 +90,16 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
     block: dict[str, Any] = {
         "path_index": np.full(len(rows), path, dtype="i4"),
         "role": np.array([row.role for row in rows], dtype="i1"),
-        "event_index": np.array([NO_EVENT if e is None else number(e.name) for e in events], dtype="i2"),
+        "event_index": np.array([-1 if e is None else number(e.name) for e in events], dtype="i2"),
+        "switch": np.array([row.switch for row in rows], dtype="i4"),
         "event_monitor": np.array([_NAN if e is None else e.monitor for e in events]),
         _SHARE: np.array([getattr(point, "share", _NAN) for point in points]),
         **_split("parameter", "y", [point.u for point in points]),
+        **_split("tangent_parameter", "tangent_y", [row.tangent for row in rows]),
     }
     block |= {name: np.array([getattr(point, name, _NAN) for point in points], dtype="f8") for name in _FLOATS}
     block |= {name: np.array([getattr(p, name, -1) for p in points], dtype=kind) for name, kind in _INTEGERS.items()}
     block["orientation"][block["role"] == KINK_PART] = 0
-    if layout.more >= TANGENTS:
-        block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
-    if layout.more >= KINKS:
-        block["switch"] = np.array([row.switch for row in rows], dtype="i4")
     for name in layout.own(OBSERVED):
         block[OBSERVED + name] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
     return block
@@ -127,8 +115,10 @@ def from_columns(
 ) -> tuple[list[Step], list[LocatedEvent]]:
     """Steps, numbered from `first`, and events of one path."""
     points = np.column_stack((block["y"], block["parameter"]))
-    held = "tangent_y" in block
-    tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"])) if held else np.full_like(points, _NAN)
+    tangents = np.full_like(points, _NAN)
+    if "tangent_y" in block:
+        tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"]))
+    held = not np.isnan(tangents[block["role"] == ACCEPTED]).any()
     steps: list[Step] = []
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
@@ -139,7 +129,7 @@ def from_columns(
         at = dict(zip(fields, [column[i] for column in columns]))
         seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
         number, role, monitor, share = (at.pop(name) for name in ("event_index", "role", "event_monitor", _SHARE))
-        if number != NO_EVENT:
+        if number >= 0:
             shared = {name: at[name] for name in ("kind", "arclength", "residual_norm", "orientation")}
             events.append(
                 LocatedEvent(names[number], u=u, tangent=v, monitor=monitor, step=index, observed=seen, **shared)
@@ -185,7 +175,7 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
         **{PARAMETER + name: value for name, value in scalars(homotopy).items()},
-        "homotopy": "" if homotopy is None else class_path(homotopy),
+        "homotopy": "" if homotopy is None else class_path(type(homotopy)),
         "source": "",
     }
 
@@ -196,3 +186,141 @@ def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
     known = [column for column in layout.columns("path") if column.name in cells]
     own = {c.name: text(cells[c.name], c.length) if c.length else cells[c.name] for c in known}
     return layout.filled({c.name: np.array([own[c.name]], dtype=c.storage) for c in known}, "path", 1)
+
+
+Fetch = Callable[[Column, slice], np.ndarray[Any, Any]]
+Block = dict[str, Any]
+"""Rows of a table, by column."""
+
+ROWS_AT_ONCE, BYTES_AT_ONCE = 4096, 1 << 22
+"""Rows and bytes of one read: short reads cost more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
+
+
+class Table(Mapping[str, "np.ndarray[Any, Any]"]):
+    """Columns by name, read on demand and cached.
+
+    Attributes
+    ----------
+    columns : dict of str to Column
+    size : int
+        Number of rows.
+    at_once : int
+        Least number of rows in one read.
+    """
+
+    def __init__(self, layout: Layout, table: str, rows: int, fetch: Fetch) -> None:
+        self.columns = {column.name: column for column in layout.columns(table)}
+        self.size, self._fetch = rows, fetch
+        self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes(table), 1), ROWS_AT_ONCE)
+        self._read: dict[str, tuple[int, np.ndarray[Any, Any]]] = {}
+
+    @classmethod
+    def of(cls, layout: Layout, table: str, columns: Mapping[str, Any]) -> Table:
+        """A table in memory.
+
+        Parameters
+        ----------
+        layout : Layout
+        table : str
+            "point" or "path".
+        columns : mapping of str to ndarray
+        """
+        return cls(layout, table, len(next(iter(columns.values()))), partial(_part, columns))
+
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
+        if name not in self.columns:
+            raise KeyError(f"column: expected one of {', '.join(self.columns)}, found {name!r}")
+        return self.some(name, slice(0, self.size))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
+        """All columns of some rows.
+
+        Parameters
+        ----------
+        rows : slice
+
+        Returns
+        -------
+        dict of str to ndarray
+        """
+        return {name: self.some(name, rows) for name in self.columns}
+
+    def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
+        """Rows of one column, with further rows read ahead.
+
+        Parameters
+        ----------
+        name : str
+        rows : slice
+
+        Returns
+        -------
+        ndarray
+        """
+        start, held = self._read.get(name, (0, None))
+        if held is None or not start <= rows.start <= rows.stop <= start + len(held):
+            start, stop = rows.start, max(rows.stop, min(rows.start + self.at_once, self.size))
+            try:
+                held = self._fetch(self.columns[name], slice(start, stop))
+            except ArchiveError:
+                # Rows beyond the request may be damaged.
+                held = self._fetch(self.columns[name], rows)
+            self._read[name] = start, held
+        return held[rows.start - start : rows.stop - start]
+
+
+def kept_whole(keep: str) -> bool:
+    """Whether `keep` is ``"all"``, not ``"ends"``."""
+    expect(keep in ("all", "ends"), "keep", '"all" or "ends"', keep)
+    return keep == "all"
+
+
+def joined(blocks: Sequence[Block]) -> Block:
+    """Blocks of rows, one after another."""
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _part(columns: Mapping[str, Any], column: Column, rows: slice) -> Any:
+    """Picklable, as shares of a sweep are sent."""
+    return columns[column.name][rows]
+
+
+def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:
+    """An `xarray.Dataset` like the file."""
+    import xarray
+
+    variables: dict[str, Any] = {
+        name: (column.dimensions, _text(table[name]), column.attributes)
+        for table in (points, paths)
+        for name, column in table.columns.items()
+    }
+    variables["event_name"] = (EVENT_NAME.dimensions, np.array(events), EVENT_NAME.attributes)
+    component = np.arange(unknowns, dtype=COMPONENT.storage)
+    coordinates = {"path": variables.pop("path"), "component": (COMPONENT.dimensions, component, COMPONENT.attributes)}
+    return xarray.Dataset(variables, coordinates, attributes)
+
+
+def flat(block: Mapping[str, Any]) -> dict[str, Any]:
+    """The columns, a matrix as one for each component."""
+    columns = {}
+    for name, values in block.items():
+        parts = {name: _text(values)} if values.ndim == 1 else {f"{name}_{i}": v for i, v in enumerate(values.T)}
+        columns.update(parts)
+    return columns
+
+
+def dataframe(points: Table) -> Any:
+    """A `pandas.DataFrame`, one row for each point."""
+    import pandas
+
+    return pandas.DataFrame(flat(points))
+
+
+def _text(values: Any) -> Any:
+    return np.char.decode(values, "utf-8", "replace") if values.dtype.kind == "S" else values

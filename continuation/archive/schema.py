@@ -12,25 +12,17 @@ import h5py
 import numpy as np
 from attrs import field, frozen
 
-from continuation.archive.checks import GROUP, RECORDS, STOP, blank
+from continuation.archive.checks import GROUP, PLACES, RECORDS, blank
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
 SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
-TEXT = 240
-"""Bytes of a path's message."""
-
-NAME = 64
-"""Bytes of an event's name."""
-
-ACCEPTED, LOCATED, KINK_PART = 0, 1, 2
+ROLES = ("accepted_step", "located_event", "kink_part")
 """Rows: accepted step, event between steps, part of the kink before."""
 
-NO_EVENT = -1
-CONTROLLER_STATE = 4
-"""Least number of controller cells."""
+ACCEPTED, LOCATED, KINK_PART = range(len(ROLES))
 
 
 @frozen
@@ -93,7 +85,7 @@ POINT_COLUMNS = (
         "i1",
         "1",
         "accepted step, or event located between two steps",
-        more=_flags(("accepted_step", "located_event", "kink_part"), (ACCEPTED, LOCATED, KINK_PART)),
+        more=_flags(ROLES),
     ),
     Column("event_index", "i2", "1", "number of the event in event_name; -1 where there is none"),
     Column("event_monitor", "f8", "1", "value of the event's monitor at the located point; NaN where there is none"),
@@ -103,17 +95,21 @@ POINT_COLUMNS = (
     Column("distance", "f8", "1", "length of the correction; NaN at located events"),
     Column("angle", "f8", "radian", "angle between this tangent and the one before; NaN at located events"),
     Column("parameter_share", "f8", "1", "the parameter's share of the tangent; NaN at located events"),
-)
-
-TANGENT_COLUMNS = (
     Column("tangent_y", "f8", "1", "unit tangent, components of the unknowns", ("point", "component")),
     Column("tangent_parameter", "f8", "1", "unit tangent, component of the parameter"),
-)
-
-KINK_COLUMNS = (
     Column("switch", "i4", "1", "number of a switching function that vanishes at the kink; -1 where there is none"),
 )
-"""For piecewise homotopies; `kink_part` rows have rays as tangents."""
+"""`kink_part` rows have rays as tangents."""
+
+MESSAGE = Column("message", "S240", "1", "how the path ended, in words", ("path",))
+
+SOURCE = Column(
+    "source",
+    "S160",
+    "1",
+    "identifier of the file that the path was written to, its number there, and the file's name then",
+    ("path",),
+)
 
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
@@ -125,7 +121,7 @@ PATH_COLUMNS = (
         ("path",),
         _flags(tuple(s.flag for s in Status), tuple(int(s) for s in Status)),
     ),
-    Column("message", f"S{TEXT}", "1", "how the path ended, in words", ("path",)),
+    MESSAGE,
     Column("member", "i8", "1", "index of the homotopy in its sweep; the number of the path outside of one", ("path",)),
     Column("seed", "i8", "1", "seed of the homotopy's random numbers; -1 where there are none", ("path",)),
     Column("n_points", "i8", "1", "rows of this path in the point table", ("path",)),
@@ -134,33 +130,19 @@ PATH_COLUMNS = (
     Column("end_error", "f8", "1", "error estimate of the end point; NaN where there is none", ("path",)),
     Column("winding_number", "i4", "1", "winding number of a singular end; 0 where there is none", ("path",)),
     Column("controller_state", "f8", "1", "state of the step controller at the end", ("path", "controller")),
-)
-
-ORIGIN_COLUMNS = (
     Column("homotopy", "S160", "1", "class of the homotopy", ("path",)),
-    Column(
-        "source",
-        "S160",
-        "1",
-        "identifier of the file that the path was written to, its number there, and the file's name then",
-        ("path",),
-    ),
+    SOURCE,
 )
-"""Origin of each path; older files lack it."""
 
-EVENT_NAME = Column("event_name", f"S{NAME}", "1", "name of the event", ("event",))
+LATER = frozenset({"tangent_y", "tangent_parameter", "switch", "homotopy", "source"})
+"""Columns that older files lack."""
+
+EVENT_NAME = Column("event_name", "S64", "1", "name of the event", ("event",))
 COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
 
 
-OPTIONAL = (*TANGENT_COLUMNS, *KINK_COLUMNS, *ORIGIN_COLUMNS)
 OBSERVED, PARAMETER = "observed_", "homotopy_"
 """Prefixes of scalars of points, and of parameters of paths."""
-
-
-TANGENTS, KINKS, ORIGINS = (
-    frozenset(column.name for column in columns)
-    for columns in (TANGENT_COLUMNS, (*TANGENT_COLUMNS, *KINK_COLUMNS), ORIGIN_COLUMNS)
-)
 
 
 @frozen
@@ -168,8 +150,8 @@ class Layout:
     """Contents of a file: N, cells of `controller_state`, optional columns."""
 
     unknowns: int
-    controller: int = CONTROLLER_STATE
-    more: frozenset[str] = ORIGINS
+    controller: int = 4
+    more: frozenset[str] = LATER
 
     def columns(self, table: str) -> tuple[Column, ...]:
         """The columns of a table."""
@@ -209,26 +191,22 @@ def _row_bytes(layout: Layout, table: str) -> int:
 @lru_cache(maxsize=64)
 def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
     own = Layout(1, more=more).own
-    optional = [column for column in OPTIONAL if column.name in more]
     seen = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in own(OBSERVED)]
     said = [
         Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",)) for name in own(PARAMETER)
     ]
-    known = (*POINT_COLUMNS, *PATH_COLUMNS, *optional, *seen, *said)
-    return tuple(column for column in known if column.dimensions[0] == table)
+    known = (*POINT_COLUMNS, *PATH_COLUMNS, *seen, *said)
+    return tuple(c for c in known if c.dimensions[0] == table and (c.name not in LATER or c.name in more))
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
     """Raise `ValueError` unless names have 1 to 100 printable bytes, no slash."""
     for name in names:
         plain = isinstance(name, str) and name.isprintable() and "/" not in name and name == name.strip()
-        if not plain or not 1 <= len(name.encode()) <= _COLUMN_NAME:
-            wanted = f"names of 1 to {_COLUMN_NAME} bytes, of printable characters without a slash"
+        # netCDF allows 256 bytes, prefix included.
+        if not plain or not 1 <= len(name.encode()) <= 100:
+            wanted = "names of 1 to 100 bytes, of printable characters without a slash"
             raise ValueError(f"{prefix}: expected {wanted}, found {name!r:.60}")
-
-
-_COLUMN_NAME = 100
-"""netCDF allows 256 bytes, prefix included."""
 
 
 def text(value: str, length: int) -> bytes:
@@ -237,38 +215,36 @@ def text(value: str, length: int) -> bytes:
     return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()
 
 
-SLOTS = 2
 RESUME = "resume"
 LIBVER = ("v110", "v110")
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
-_CHUNKS = {"point": 64, "path": 8, "event": 16}
 _CHUNK_BYTES = 1 << 13
 """Bytes of a chunk, which its first row allocates: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
 
 @lru_cache(maxsize=16)
-def empty(layout: Layout, compression: int) -> bytes:
-    """The bytes of a file without rows; `compression` is gzip's level."""
+def empty(layout: Layout, compressed: bool) -> bytes:
+    """The bytes of a file without rows."""
     made = BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
-        _build(file, layout, compression)
+        _build(file, layout, compressed)
     return made.getvalue()
 
 
-def _build(file: Any, layout: Layout, compression: int) -> None:
-    filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
+def _build(file: Any, layout: Layout, compressed: bool) -> None:
+    filters = {"compression": "gzip", "shuffle": True} if compressed else {}
 
-    def grows(name: str, dtype: Any, chunk: int, width: tuple[int, ...] = (), **more: Any) -> Any:
+    def grows(name: str, dtype: Any, table: str, width: tuple[int, ...] = (), **more: Any) -> Any:
         fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
-        chunks = (min(chunk, 1 << (fitting.bit_length() - 1)), *width)
+        chunks = (min(64 if table == "point" else 8, 1 << (fitting.bit_length() - 1)), *width)
         return file.create_dataset(name, (0, *width), dtype, maxshape=(None, *width), chunks=chunks, **more)
 
     # netCDF dimensions without and with variables.
     for name in ("point", "event"):
-        grows(name, ">f4", _CHUNKS[name]).make_scale(_NO_VARIABLE.format(0))
+        grows(name, ">f4", name).make_scale(_NO_VARIABLE.format(0))
     file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))
-    grows("path", "i8", _CHUNKS["path"]).make_scale("path")
+    grows("path", "i8", "path").make_scale("path")
     component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.storage))
     component.attrs.update(COMPONENT.attributes)
     component.make_scale("component")
@@ -276,16 +252,16 @@ def _build(file: Any, layout: Layout, compression: int) -> None:
         if column.name not in file:
             dtype = h5py.string_dtype("utf-8", column.length) if column.length else column.storage
             own = {} if column.length else filters
-            made = grows(column.name, dtype, _CHUNKS[column.dimensions[0]], layout.width(column), **own)
+            made = grows(column.name, dtype, column.dimensions[0], layout.width(column), **own)
             for axis, dimension in enumerate(column.dimensions):
                 made.dims[axis].attach_scale(file[dimension])
         file[column.name].attrs.update(column.attributes)
     for name, what in (("points", "rows of the point table"), ("paths", "rows of the path table")):
         counter = file.create_dataset(f"committed_{name}", (), "i8")
         counter.attrs.update({"units": "1", "long_name": f"valid {what}"})
-    for table, chunk in (("point", 16), ("path", _CHUNKS["path"])):
-        grows(f"{GROUP}/{table}", "u4", chunk, (STOP + len(layout.columns(table)),))
-    grows(f"{GROUP}/event", "u4", _CHUNKS["event"])
+    for table in ("point", "path"):
+        grows(f"{GROUP}/{table}", "u4", GROUP, (2 + len(layout.columns(table)),))
+    grows(f"{GROUP}/event", "u4", GROUP)
     file[GROUP].create_dataset(RECORDS, data=blank())
-    slots = file.create_dataset(f"{RESUME}/slots", (SLOTS, 0), "u1", maxshape=(SLOTS, None), chunks=(1, 1 << 12))
+    slots = file.create_dataset(f"{RESUME}/slots", (PLACES, 0), "u1", maxshape=(PLACES, None), chunks=(1, 1 << 12))
     slots.attrs["long_name"] = "two alternating checkpoints: sequence u8, length u8, CRC-32 u4, JSON, JSON, arrays"

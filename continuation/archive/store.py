@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import weakref
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from functools import lru_cache
 from io import BytesIO
 from pathlib import Path as File
@@ -20,11 +19,10 @@ import numpy as np
 from h5py import h5d, h5s, h5t
 
 from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, publish, short
-from continuation.archive.checkpoint import HEAD
-from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
-from continuation.archive.codec import set_attributes, write_problem
-from continuation.archive.hdf5 import HEAD_BYTES, stated_length
-from continuation.archive.schema import EVENT_NAME, LIBVER, NAME, RESUME, SLOTS, Layout, empty, text
+from continuation.archive.checks import GROUP, PLACES, RECORD, RECORDS, Committed, digest, of_attributes, seal
+from continuation.archive.hdf5 import write_problem
+from continuation.archive.provenance import HEAD
+from continuation.archive.schema import EVENT_NAME, LIBVER, RESUME, Layout, empty, text
 
 _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
@@ -39,8 +37,7 @@ def put(
 ) -> Store:
     """Make and fill a new file beside `target`, then rename it.
 
-    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open; otherwise it is synced
-    first.
+    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open.
     """
     if not replace:
         check_new(target)
@@ -50,7 +47,7 @@ def put(
             if fill is not None:
                 fill(store)
             if not grows:
-                store.close(sync=True)
+                store.close()
             publish(store.file, target, replace=replace)
         except BaseException:
             store.close()
@@ -65,7 +62,7 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 class Store:
     """A file being written, locked until closed.
 
-    `problem`: result of `problem_data`. `compression`: gzip's level. `durable`: wait for the disk at each commit.
+    `problem`: result of `problem_data`. `compressed`: by gzip. `durable`: wait for the disk at each commit.
     """
 
     def __init__(
@@ -75,49 +72,40 @@ class Store:
         attributes: Mapping[str, Any],
         problem: tuple[str, Mapping[str, Any]] | None = None,
         *,
-        compression: int = 0,
+        compressed: bool = False,
         durable: bool = False,
     ) -> None:
         self.file, self.layout, self.durable = part, layout, durable
         self.identifier, self.events = str(attributes.get("identifier", "")), list[str]()
         # Valid now or with the next commit.
         self.committed = Committed(sequence=1)
-        self._abandoned, self._process = False, os.getpid()
+        self.abandoned = False
         # HDF5 ends the process if writing fails while it closes a file.
-        made = BytesIO(empty(layout, compression))
+        made = BytesIO(empty(layout, compressed))
         with h5py.File(made, "r+", libver=LIBVER) as new:
-            set_attributes(new, attributes)
+            new.attrs.update(attributes)
             if problem is not None:
                 write_problem(new, *problem)
-            set_attributes(new[GROUP], {"attributes": np.uint32(of_attributes(attributes))})
+            new[GROUP].attrs.update({"attributes": np.uint32(of_attributes(attributes))})
         with part.open("xb") as file:
             file.write(made.getbuffer())
-            if durable:
-                file.flush()
-                os.fsync(file.fileno())
-        self._lock = Lock(part)
-        try:
-            # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
-            self._h5 = h5py.File(part, "r+", libver=LIBVER, **({} if compression else {"rdcc_nbytes": 0}))
-        except BaseException:
-            self._lock.close()
-            raise
+        # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
+        self._h5 = h5py.File(part, "r+", libver=LIBVER, rdcc_nbytes=0)
         _LIVE.add(self)
         columns = [column.name for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME)]
         own = [f"{GROUP}/point", f"{GROUP}/path", f"{GROUP}/event", _RECORDS, _SLOTS]
         names = {*columns, *own, "point", "event", "committed_points", "committed_paths"}
         # This opens again all that is open: datasets opened before would take twice as long.
         self._h5.swmr_mode = True
+        self._lock = Lock(part)
         # h5py's objects cost several times as much.
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
 
-    def commit(
-        self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
-    ) -> None:
-        """Write rows and checkpoints (by slot), then make them valid; repetition is harmless."""
-        if not self.ours:
-            raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
-        before, raw = self.committed, dict(checkpoints or {})
+    def commit(self, points: Block | None = None, paths: Block | None = None, checkpoint: bytes | None = None) -> None:
+        """Write rows and a checkpoint, then make them valid; repetition is harmless."""
+        if self.abandoned:
+            raise ArchiveError(f"{self.file}: is not this process's to write: it was forked from the writer")
+        before = self.committed
         after = Committed(
             before.sequence + 1,
             before.points + _rows(points),
@@ -125,7 +113,7 @@ class Store:
             before.point_blocks + bool(points),
             before.path_blocks + bool(paths),
             len(self.events),
-            max([before.checkpoint, *(HEAD.unpack_from(slot)[0] for slot in raw.values())]),
+            HEAD.unpack_from(checkpoint)[0] if checkpoint else before.checkpoint,
         )
         try:
             for block, start, table, number in (
@@ -137,11 +125,11 @@ class Store:
                     self._put(self._data[f"{GROUP}/{table}"], number, seal(block, start)[None])
             if points:
                 self._data["point"].set_extent((after.points,))
-            for slot, written in raw.items():
+            if checkpoint:
                 slots = self._data[_SLOTS]
-                if slots.shape[1] < len(written):
-                    slots.set_extent((SLOTS, 2 * len(written)))
-                _write(slots, slots.shape, (slot, 0), np.frombuffer(written, "u1")[None])
+                if slots.shape[1] < len(checkpoint):
+                    slots.set_extent((PLACES, 2 * len(checkpoint)))
+                _write(slots, slots.shape, (after.checkpoint % PLACES, 0), np.frombuffer(checkpoint, "u1")[None])
             self._record(after, 0)
             self._flush()
             # After an interrupt the next commit continues here.
@@ -156,16 +144,12 @@ class Store:
             raise ArchiveError(f"{self.file}: {reason}") from error
 
     def _record(self, committed: Committed, first: int) -> None:
-        _write(
-            self._data[_RECORDS],
-            (2 * PLACES, RECORD_BYTES),
-            (first + committed.sequence % PLACES, 0),
-            committed.pack()[None],
-        )
+        place = first + committed.sequence % PLACES
+        _write(self._data[_RECORDS], (2 * PLACES, RECORD.size), (place, 0), committed.pack()[None])
 
     def name_event(self, name: str) -> int:
         """The number of an event name, which is added if it is new."""
-        name = text(name, NAME).decode()
+        name = text(name, EVENT_NAME.length).decode()
         if name not in self.events:
             count, stored = len(self.events), np.array([name.encode()], dtype=EVENT_NAME.storage)
             self._data["event"].set_extent((count + 1,))
@@ -185,41 +169,23 @@ class Store:
         if self.durable:
             os.fsync(self._h5.id.get_vfd_handle())
 
-    def close(self, *, sync: bool = False) -> None:
-        """Close the file, idempotently; `sync` waits for the disk."""
+    def close(self) -> None:
+        """Close the file, idempotently."""
         try:
             self._h5.close()
-            if sync:
-                os.fsync(self._lock.descriptor)
         except (OSError, RuntimeError):
-            # An abandoned file may fail.
-            if not self._abandoned:
+            if not self.abandoned:
                 raise
         finally:
             self._lock.close()
 
-    @property
-    def ours(self) -> bool:
-        """Whether this process opened it."""
-        return self._process == os.getpid()
-
-    def abandon(self, *, ends: bool = True) -> None:
-        """Discard HDF5's pending writes: one that fails during close ends the process.
-
-        `ends`: leave the file as a kill would; a forked child leaves it alone.
-        """
-        if not self._h5:
-            return
-        descriptor = self._h5.id.get_vfd_handle()
-        with suppress(OSError), self.file.open("rb") as head:
-            # Zeros fill the length that the file states.
-            stated = stated_length(head.read(HEAD_BYTES))
-            if ends and stated > os.fstat(descriptor).st_size:
-                os.truncate(self.file, stated)
-        nowhere = os.open(os.devnull, os.O_RDWR)
-        os.dup2(nowhere, descriptor, inheritable=False)
-        os.close(nowhere)
-        self._abandoned = True
+    def abandon(self) -> None:
+        """Discard HDF5's pending writes: one that fails during close ends the process."""
+        if self._h5:
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            os.dup2(nowhere, self._h5.id.get_vfd_handle(), inheritable=False)
+            os.close(nowhere)
+            self.abandoned = True
 
 
 _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
@@ -228,7 +194,7 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 def _in_child() -> None:
     """A forked child must not write to inherited stores, or keep their locks."""
     for store in list(_LIVE):
-        store.abandon(ends=False)
+        store.abandon()
         store._lock.close()
 
 

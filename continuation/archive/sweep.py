@@ -34,8 +34,9 @@ from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
 from continuation.archive.store import Store, put
 from continuation.archive.transfer import gather
-from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import LocatedEvent, Path, Step
+from continuation.arguments.checks import expect, instance_with, is_number
+from continuation.linear.threads import one_thread
+from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
@@ -59,24 +60,6 @@ class Task:
     archived: bool
     options: Options
     stop: Event | None = None
-
-
-@frozen(eq=False)
-class Stopping:
-    """An observer that ends paths in threads, which Ctrl-C does not reach."""
-
-    stop: Event
-
-    def step(self, tracer: Tracer, step: Step) -> None:
-        """Raise KeyboardInterrupt if the sweep was interrupted."""
-        if self.stop.is_set():
-            raise KeyboardInterrupt
-
-    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """Do nothing."""
-
-    def end(self, tracer: Tracer) -> None:
-        """Do nothing."""
 
 
 def trace_many(
@@ -123,14 +106,13 @@ def trace_many(
         After Ctrl-C, with finished paths archived.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
-    if timeout is not None and not (is_number(timeout) and timeout > 0):
-        raise complain(ValueError, "timeout", "a positive number of seconds", timeout)
-    if not isinstance(homotopies, Iterable):
-        raise complain(TypeError, "homotopies", "several, as in a list", homotopies)
+    positive = timeout is None or (is_number(timeout) and timeout > 0)
+    expect(positive, "timeout", "a positive number of seconds", timeout)
+    expect(isinstance(homotopies, Iterable), "homotopies", "several, as in a list", homotopies, TypeError)
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if progress is not None and not callable(progress):
-        raise complain(TypeError, "progress", "a function of (done, total)", progress)
+    called = progress is None or callable(progress)
+    expect(called, "progress", "a function of (done, total)", progress, TypeError)
     many = list(homotopies)
     for homotopy in many:
         instance_with("homotopies", homotopy, ("start", "residual"), "homotopies only")
@@ -186,8 +168,6 @@ class _Kept:
     token: str = field(factory=partial(secrets.token_hex, 4))
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
-    numbers: list[int] = field(factory=list)
-    """Numbers of paths in the parts, in order of arrival."""
 
     def add(self, number: int, found: Result) -> None:
         """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
@@ -201,22 +181,17 @@ class _Kept:
         else:
             assert self.target is not None
             append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
-            self.numbers.append(number)
         if _status(found) is Status.INTERRUPTED:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
         """Make the archive from its parts."""
-        files, stores = [store.file for store in self.parts.values()], [*self.parts.values()]
-        if self.target is None or not files:
-            return
-        if len(files) == 1 and self.numbers == sorted(self.numbers):
-            put(self.target, lambda part: stores[0])
-        else:
-            self.stack.close()
+        self.stack.close()
+        files = [store.file for store in self.parts.values()]
+        if self.target is not None and files:
             gather(files, self.target)
         for file in files:
-            file.unlink(missing_ok=True)
+            file.unlink()
 
     def _part(self, share: Share, task: Task) -> Store:
         assert self.target is not None
@@ -238,17 +213,16 @@ def _status(found: Path | Share) -> Status:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all tasks; repeat those lost with a worker, each in its own process."""
-    lost: dict[int, BaseException] = {}
-    again = set[int]()
+    """Submit all tasks; those lost with a worker once more."""
+    lost = list[int]()
     for task in tasks:
         try:
             futures[executor.submit(traced, task)] = task.number
-        except BrokenExecutor as error:
-            lost[task.number] = error
-    pool = isinstance(executor, ProcessPoolExecutor)
+        except BrokenExecutor:
+            lost.append(task.number)
     while futures:
-        ended = wait(futures, timeout=timeout if pool else None, return_when=FIRST_COMPLETED).done
+        limit = timeout if isinstance(executor, ProcessPoolExecutor) else None
+        ended = wait(futures, timeout=limit, return_when=FIRST_COMPLETED).done
         if not ended:
             # Idle workers start the next task, so all running ones have timed out.
             _end_processes(executor)
@@ -256,31 +230,32 @@ def _spread(
         while ended:
             # Dask repeats lost tasks while their future is held.
             future = ended.pop()
-            number = futures.pop(future)
-            raised = CancelledError() if future.cancelled() else future.exception()
-            if isinstance(raised, BrokenExecutor):
-                lost[number] = raised
-            elif isinstance(raised, Exception) and number not in again and not pool:
-                # `traced` returns what a homotopy raises: this is the executor's, as when dask loses a result.
-                again.add(number)
-                futures[executor.submit(traced, tasks[number])] = number
+            number, raised = futures.pop(future), CancelledError() if future.cancelled() else future.exception()
+            # `traced` returns what a homotopy raises: this is the executor's.
+            if isinstance(raised, Exception):
+                lost.append(number)
             else:
                 yield number, future.result() if raised is None else raised
             del future
     for number in sorted(lost):
-        yield number, _alone(executor, tasks[number], timeout) if pool else lost[number]
+        yield number, _again(executor, tasks[number], timeout)
 
 
-def _alone(executor: Executor, task: Task, timeout: float | None) -> Result:
-    alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
+def _again(executor: Executor, task: Task, timeout: float | None) -> Result:
+    """Trace once more, instead of in a pool in a process of its own."""
+    pool = isinstance(executor, ProcessPoolExecutor)
+    own = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None)) if pool else executor
     try:
-        future = alone.submit(traced, task)
-        if not wait([future], timeout=timeout).done:
+        future = own.submit(traced, task)
+        if not wait([future], timeout=timeout if pool else None).done:
             return TimeoutError(f"took longer than {timeout or 0:g} s")
         return future.exception() or future.result()
+    except Exception as error:
+        return error
     finally:
-        _end_processes(alone)
-        alone.shutdown()
+        if pool:
+            _end_processes(own)
+            own.shutdown()
 
 
 def _end_processes(executor: Executor | None) -> None:
@@ -290,24 +265,24 @@ def _end_processes(executor: Executor | None) -> None:
             process.join()
 
 
+@one_thread
 def traced(task: Task) -> Path | Share:
     """Trace a homotopy, whatever it raises."""
-    path, controller = Path(), tuple[float, ...]()
+    path, tracer = Path(), None
     try:
-        observers = () if task.stop is None else (Stopping(task.stop),)
-        tracer = Tracer(task.homotopy, observers=observers, **task.options)
+        tracer = Tracer(task.homotopy, **task.options)
         path = tracer.path
-        try:
-            tracer.run()
-        finally:
-            controller = () if tracer.state is None else tracer.state.controller
-    except Interrupted:
+        for _ in tracer:
+            # Ctrl-C does not reach threads.
+            if task.stop is not None and task.stop.is_set():
+                raise KeyboardInterrupt
+    except KeyboardInterrupt:
         path.status = Status.INTERRUPTED
     except _ITS_OWN as error:
         if path.status in (Status.TRACING, Status.ABANDONED):
             path.status = Status.RAISED
         path.message = sentence(error)
-    return _sent(path, task, controller)
+    return _sent(path, task, () if tracer is None or tracer.state is None else tracer.state.controller)
 
 
 def _sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
 from itertools import groupby, pairwise, starmap
-from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
@@ -18,15 +17,13 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
-from continuation.archive.checkpoint import slot_of
 from continuation.archive.contents import TABLES, Contents
-from continuation.archive.growing import Share, copy, leading, share_of, sourced
-from continuation.archive.provenance import process
+from continuation.archive.growing import Share, copy, leading, share_of
+from continuation.archive.provenance import pack, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.rows import record_of, row_columns
-from continuation.archive.schema import TEXT, text
-from continuation.archive.tables import ROWS_AT_ONCE, Table, flat
-from continuation.arguments.checks import complain
+from continuation.archive.rows import ROWS_AT_ONCE, Table, flat, record_of, row_columns
+from continuation.archive.schema import MESSAGE, text
+from continuation.arguments.checks import expect
 from continuation.path import Path
 from continuation.status import Kind, Status
 
@@ -49,11 +46,10 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
     ArchiveError
         If a file is no archive, numbers of unknowns differ, files share a path, or `target` exists.
     """
-    if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
-        raise complain(TypeError, "files", "names of archives, in a list", files)
+    several = isinstance(files, Iterable) and not isinstance(files, (str, bytes, PathLike))
+    expect(several, "files", "names of archives, in a list", files, TypeError)
     files = list(files)
-    if not files:
-        raise ValueError("files: expected at least one archive, found none")
+    expect(files, "files", "at least one archive", files)
     whole = new_file("target", target)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
@@ -67,7 +63,7 @@ def merge(files: Iterable[str | PathLike[str]], target: str | PathLike[str]) -> 
 def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
     known: dict[bytes, str] = {}
     for archive, share in zip(archives, shares):
-        for k, source in enumerate(share.paths["source"]):
+        for k, source in enumerate(share.paths.get("source", ())):
             # Without the name, since files may be renamed.
             key = b" ".join(source.split(b" ", 2)[:2])
             if key in known:
@@ -82,12 +78,8 @@ def gather(files: Sequence[File], target: File) -> None:
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
         runs = [[*run] for _, run in groupby(enumerate(places), lambda at: (at[1][1], at[1][2] - at[0]))]
         shares = [share_of(archives[run[0][1][1]], run[0][1][2], run[-1][1][2] + 1) for run in runs]
-        head, made = leading(shares), []
-        for run, share in zip(runs, shares):
-            # Parts are no source: they are deleted.
-            share.paths["source"][:] = b""
-            whole = sourced(share, str(head.attributes["identifier"]), target.name, first=run[0][0])
-            made.append(_of_size(whole, head.layout.unknowns, target))
+        unknowns = leading(shares).layout.unknowns
+        made = [_of_size(share, unknowns, target) for share in shares]
         copy(made, target, what=f"a sweep of {len(places)} paths", more=process())
 
 
@@ -97,22 +89,20 @@ def _of_size(share: Share, unknowns: int, target: File) -> Share:
         return share
     reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
     paths, had = dict(share.paths), share.paths["n_points"] > 0
-    for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
+    for name, value in {"status": int(Status.RAISED), "message": text(reason, MESSAGE.length), "n_points": 0}.items():
         paths[name] = np.where(had, np.array(value, paths[name].dtype), paths[name])
     return evolve(share, paths=paths, rows=slice(0, 0))
 
 
-def export(file: str | PathLike[str], target: str | PathLike[str], *, compression: int = 4) -> list[File]:
+def export(file: str | PathLike[str], target: str | PathLike[str]) -> list[File]:
     """Write an archive in another format.
 
-    The suffix decides: ``.nc``, ``.nc4``, ``.h5`` for netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
+    The suffix decides: ``.nc``, ``.nc4``, ``.h5`` for compressed netCDF-4; ``.csv``, ``.csv.gz`` for two tables,
     ``name.csv`` (points) and ``name.paths.csv``.
 
     Parameters
     ----------
     file, target : path
-    compression : int
-        Level of gzip for netCDF-4, 0 (none) to 9.
 
     Returns
     -------
@@ -121,17 +111,15 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     Raises
     ------
     ValueError
-        For another suffix or level.
+        For another suffix.
     ArchiveError
         If `file` is no archive or a target exists.
     """
-    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
-        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
     name = as_file("target", target)
     with open_archive(file) as archive:
         if name.suffix in (".nc", ".nc4", ".h5"):
             check_new(name)
-            copy([share_of(archive)], name, what=f"exported from {archive.file.name}", compression=compression)
+            copy([share_of(archive)], name, what=f"exported from {archive.file.name}", compressed=True)
             return [name]
         for suffix in (".csv", ".csv.gz"):
             if name.name.endswith(suffix):
@@ -143,22 +131,19 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
     opened: Any = gzip.open if points.suffix == ".gz" else open
-    with beside(points) as first, beside(paths) as second:
-        for part, table in ((first, archive.points), (second, archive.paths)):
+    for target, table in ((points, archive.points), (paths, archive.paths)):
+        with beside(target) as part:
             with opened(part, "xt", encoding="utf-8", newline="") as out:
                 writer = csv.writer(out)
                 for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
                     columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
                     writer.writerows([[*columns]] if not start else [])
                     writer.writerows(zip(*(values.tolist() for values in columns.values())))
-            with part.open("rb") as written:
-                os.fsync(written.fileno())
-        publish(second, paths)
-        publish(first, points)
+            publish(part, target)
     return [points, paths]
 
 
-def recover(file: str | PathLike[str], *, force: bool = False) -> File:
+def recover(file: str | PathLike[str]) -> File:
     """Replace a killed writer's file by its committed rows.
 
     An unfinished path becomes INTERRUPTED and can be resumed. Sound, closed files stay. In a damaged file, each path
@@ -167,8 +152,6 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     Parameters
     ----------
     file : path
-    force : bool
-        Ignore a live writer, which would continue in the old file.
 
     Returns
     -------
@@ -181,35 +164,34 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
         If the file is no archive, read-only, being written, or its structure is damaged.
     """
     name = as_file("file", file)
-    with ExitStack() as stack:
-        contents = stack.enter_context(closing(Contents(name, salvage=True)))
+    real = File(os.path.realpath(name))
+    with closing(Contents(name, salvage=True)) as contents:
         sound = {table: contents.sound(table) for table in TABLES}
-        dropped, slots = int(np.sum(~sound["point"])) + contents.cut_off[0], dict[int, bytes]()
-        damaged = bool(dropped or np.sum(~sound["path"]) + contents.cut_off[1])
-        if damaged or contents.flaws:
-            shares = _salvaged(contents, sound)
-            flaws = "; ".join(contents.flaws) or "damaged"
-            what = f"recovered: {flaws}; {dropped} points were not what was written"
-        else:
-            archive = stack.enter_context(open_archive(name))
-            if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
-                return name
-            shares, what = [share_of(archive)], "recovered after its writer was killed"
-            _interrupted(shares[0].paths, shares[0].paths["status"] == int(Status.TRACING), "Its writer was killed.")
-            slots = slot_of(archive.checkpoint())
-        real = File(os.path.realpath(name))
-        stack.enter_context(closing(own(real, contents.descriptor, contents.attributes.get("process"), force=force)))
-        if damaged and len(shares) == 1:
-            raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
+        lost = {table: contents.stated.rows(table) - int(sound[table].sum()) for table in TABLES}
+        shares, checkpoint, damaged = [], None, any(lost.values())
         if damaged:
-            _keep_aside(real)
-        copy(shares, real, what=what, checkpoints=slots, replace=True)
+            shares = _salvaged(contents, sound)
+            contents.flaws.append(f"{lost['point']} points were not what was written")
+        else:
+            archive = Archive(contents)
+            growing = archive.paths["status"] == int(Status.TRACING)
+            if contents.closed_by_writer and not contents.flaws and not growing.any():
+                return name
+            shares, checkpoint = [share_of(archive)], archive.checkpoint()
+            _interrupted(shares[0].paths, growing, "Its writer was killed.")
+        with closing(own(real, contents.descriptor)):
+            if damaged and len(shares) == 1:
+                raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
+            if damaged:
+                publish(real, real.with_name(f"{real.name}.damaged"))
+            packed = None if checkpoint is None else pack(checkpoint)
+            copy(shares, real, what="; ".join(("recovered", *contents.flaws)), checkpoint=packed, replace=True)
     return name
 
 
 def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
     paths["status"][which] = int(Status.INTERRUPTED)
-    paths["message"][which] = text(f"{Status.INTERRUPTED} {why}", TEXT)
+    paths["message"][which] = text(f"{Status.INTERRUPTED} {why}", MESSAGE.length)
 
 
 def _salvaged(contents: Contents, sound: Mapping[str, Any]) -> list[Share]:
@@ -238,11 +220,3 @@ def _runs(points: Table, sound: Any) -> Iterator[tuple[int, slice]]:
             # The end of a path alone is useless.
             if kinds[first] == Kind.START:
                 yield int(paths[first]), slice(rows.start + first, rows.start + last)
-
-
-def _keep_aside(file: File) -> None:
-    aside = file.with_name(f"{file.name}.damaged")
-    try:
-        os.link(file, aside)
-    except OSError as error:
-        raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None

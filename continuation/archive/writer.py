@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from functools import partial
@@ -16,15 +15,24 @@ from typing import Any
 from attrs import define, field, frozen
 
 from continuation.archive.atomic import ArchiveError, new_file
-from continuation.archive.checkpoint import Checkpoint, describe_run, slot_of
 from continuation.archive.codec import problem_data
-from continuation.archive.provenance import root_attributes
+from continuation.archive.provenance import Checkpoint, describe_run, pack, root_attributes
 from continuation.archive.reader import StoredSteps
-from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
+from continuation.archive.rows import (
+    Record,
+    Row,
+    counted,
+    joined,
+    kept_whole,
+    layout_of,
+    record_of,
+    row_columns,
+    rows_at,
+    to_columns,
+)
 from continuation.archive.schema import COUNT_NAMES, check_names
 from continuation.archive.store import Store, put
-from continuation.archive.tables import joined, kept_whole
-from continuation.arguments.checks import complain, integer, number
+from continuation.arguments.checks import expect, integer, number
 from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from continuation.step.state import State
@@ -51,7 +59,7 @@ class OpenPath:
     number: int
     first: int
     seconds: float = 0.0
-    run: bytes | None = None
+    run: Mapping[str, Any] = field(factory=dict)
     last: Mark | None = None
     resume: Mark | None = None
     skipped: Row | None = None
@@ -69,8 +77,6 @@ class PathLog:
         Must not exist; the first point creates it.
     durable : bool
         Wait for the disk at each commit, to survive power cuts.
-    tangents : bool
-        Store unit tangents for dense output, at twice the size; piecewise homotopies always store them.
     title : str
     parameters : mapping, optional
         Parameters for `continuation resume` that the homotopies' attributes lack.
@@ -102,10 +108,10 @@ class PathLog:
     _many = _closed = False
     _store: Store | None = None
     _open: OpenPath | None = None
-    _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
+    _limits, _whole, _save_every, _durable = Limits(), True, 1, False
     _about: tuple[str, Mapping[str, Any]] = ("", {})
-    _known: tuple[Any, Any] = (None, None)
-    """The file's first homotopy and its description."""
+    _first: Any = None
+    """The homotopy that the file's problem group describes."""
     _commit_at = 0.0
 
     def __init__(
@@ -113,20 +119,18 @@ class PathLog:
         file: str | PathLike[str],
         *,
         durable: bool = False,
-        tangents: bool = True,
         title: str = "",
         parameters: Mapping[str, Any] | None = None,
         limits: Limits | None = None,
         keep: str = "all",
         save_every: int = 1,
     ) -> None:
-        if not isinstance(limits, Limits | None):
-            raise complain(TypeError, "limits", "Limits(...)", limits)
-        if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
-            raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
+        expect(isinstance(limits, Limits | None), "limits", "Limits(...)", limits, TypeError)
+        fine = isinstance(save_every, Integral) and (save_every == 1 or (save_every > 1 and keep == "all"))
+        expect(fine, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
         self._whole, self.file = kept_whole(keep), new_file("file", file)
         self._limits, self._save_every = limits or Limits(), int(save_every)
-        self._durable, self._tangents, self._about = durable, tangents, (title, dict(parameters or {}))
+        self._durable, self._about = durable, (title, dict(parameters or {}))
         self._rows, self._ended = (0, []), {}
 
     @classmethod
@@ -144,14 +148,10 @@ class PathLog:
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._ended = store.file, store, (points, []), {}
-        log._whole, log._known, log.member = (
-            whole,
-            (tracer.homotopy, checkpoint.run["homotopy"]),
-            checkpoint.run["member"],
-        )
+        log._whole, log.member = whole, checkpoint.run["member"]
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
-        log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, None, mark, mark)
+        log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, checkpoint.run, mark, mark)
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
 
@@ -166,7 +166,7 @@ class PathLog:
             stored: Any = StoredSteps(self.file, path.number, tracer.path.steps)
             tracer.path.steps = stored
         events = [*takewhile(lambda e: e.step == step.index, reversed(tracer.path.events))]
-        found_rows = rows_at(step, events[::-1], store.layout)
+        found_rows = rows_at(step, events[::-1])
         path.skipped = found_rows.pop() if step.kind == Kind.REGULAR and step.index % self._save_every else None
         self._rows[1].extend(found_rows)
         if path.skipped is not None:
@@ -187,7 +187,7 @@ class PathLog:
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits, and closes the file without ``with``."""
-        if self._open is not None and (self._closed or (self._store is not None and not self._store.ours)):
+        if self._open is not None and (self._closed or (self._store is not None and self._store.abandoned)):
             # The disk is full, or this process is a forked child.
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
@@ -211,7 +211,7 @@ class PathLog:
             return
         store = self._store or (self._make(None, 1, ()) if self._ended else None)
         if store is not None:
-            if (self._rows[1] or self._ended) and store.ours:
+            if (self._rows[1] or self._ended) and not store.abandoned:
                 self._commit()
             store.close()
         self._closed = True
@@ -230,9 +230,7 @@ class PathLog:
         if path is None:
             if self._closed:
                 raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
-            number = max(self._ended, default=-1) + 1
-            if self._store is not None:
-                number = max(number, self._store.committed.paths)
+            number = max([*self._ended, (self._store.committed.paths if self._store else 0) - 1]) + 1
             self._open = path = OpenPath(tracer, number, self._rows[0])
             self._commit_at = time.monotonic() + self._limits.seconds
         if path.tracer is not tracer:
@@ -243,34 +241,28 @@ class PathLog:
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
-        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, early=self._ended.values())
-        problem = problem_data(homotopy)
-        self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
+        layout = layout_of(homotopy, unknowns, observed, state, self._ended.values())
+        self._first, problem = homotopy, problem_data(homotopy)
         attributes = root_attributes(tracer, *self._about)
         make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
         self._store = store = put(self.file, make, grows=True)
-        for event in tracer.settings.events if tracer is not None else ():
-            store.name_event(event.name)
-        store.commit()
         return store
 
     def _commit(self) -> None:
         store, path = self._store, self._open
         assert store is not None
-        points, checkpoints = None, dict[int, bytes]()
+        points = checkpoint = None
         # The commit that Ctrl-C interrupted may be complete.
         start = store.committed.points
         rows = self._rows[1][start - self._rows[0] :]
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
-            if path.run is None:
-                homotopy, described = self._known
-                known = described if homotopy is path.tracer.homotopy else None
-                path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
+            first = self._first is path.tracer.homotopy
+            path.run = path.run or describe_run(path.tracer, self.member, first)
             (state, counts, held), seconds = path.resume, path.seconds + path.tracer.seconds
             named, sequence = dict(zip(COUNT_NAMES, counts)), store.committed.checkpoint + 1
-            checkpoints = slot_of(Checkpoint(sequence, path.number, held, state, named, seconds, {}), path.run)
+            checkpoint = pack(Checkpoint(sequence, path.number, held, state, named, seconds, path.run))
         ended = [
             row_columns({**row, "source": f"{store.identifier} {number} {self.file.name}"}, store.layout)
             for number, row in self._ended.items()
@@ -278,7 +270,7 @@ class PathLog:
         ]
         paths = joined(ended) if ended else None
         try:
-            store.commit(points, paths, checkpoints)
+            store.commit(points, paths, checkpoint)
         except ArchiveError:
             self._closed = True
             store.close()

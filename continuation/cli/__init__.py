@@ -20,12 +20,6 @@ __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError",
 INTERRUPTED = 130
 """The shell's status after Ctrl-C."""
 
-DOOR = (
-    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
-    "parameter_name", "names", "units",
-)  # fmt: skip
-"""Names that begin a complaint about a homotopy."""
-
 
 def register(subparsers: Subparsers) -> None:
     """Add every command, the engine's own last.
@@ -122,9 +116,8 @@ def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, st
         return BAD_INPUT, text
     blamed = getattr(arguments, arguments.plugin, None) if arguments.plugin else None
     if blamed is None or not isinstance(error, Exception):
-        leaves = "a plug-in wanted to end the process: " if isinstance(error, SystemExit) else ""
-        return BAD_INPUT, f"{leaves}{_told(error)}"
-    if isinstance(error, TypeError | ValueError) and first in DOOR:
+        return BAD_INPUT, _told(error)
+    if isinstance(error, TypeError | ValueError) and complaint.startswith(" expected "):
         return BAD_INPUT, f"{blamed}: {error}"
     return FAILURE, f"{blamed}: {_told(error)}"
 

@@ -12,7 +12,6 @@ from continuation.cli.parser import (
     SUCCESS,
     Subparsers,
     UsageError,
-    above_zero,
     add_command,
     argument,
     positive,
@@ -43,13 +42,7 @@ def register(subparsers: Subparsers) -> None:
         argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default"),
         argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object"),
         argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE"),
-        # The second as in `trace`.
-        *(
-            argument(name, dest="steps", type=positive, metavar="N", help="a new budget: accepted steps")
-            for name in ("--steps", "--budget-steps")
-        ),
-        argument("--budget-seconds", dest="seconds", type=above_zero, metavar="S", help="wall-clock time"),
-        argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations"),
+        argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps"),
         trust,
         argument("--progress", action="store_true", help="show the progress on stderr"),
         names={"new": "--archive", "homotopy": "FILE"}, plugin="homotopy",
@@ -62,15 +55,13 @@ def register(subparsers: Subparsers) -> None:
     add_command(
         subparsers, _recover, "recover",
         argument("file", metavar="FILE", help="replaced by a copy of all that was committed"),
-        argument("--force", action="store_true", help="even if its writer seems to be alive"),
         help="make whole what a killed writer left",
     )  # fmt: skip
     add_command(
         subparsers, _export, "export",
         argument("file", metavar="FILE", help="an archive"),
         argument("target", metavar="TARGET", help="a new .nc file, or .csv or .csv.gz for two tables"),
-        argument("--compression", type=int, default=4, metavar="LEVEL", help="of gzip, 0 to 9 (default: 4)"),
-        names={"new": "TARGET", "target": "TARGET", "compression": "--compression"},
+        names={"new": "TARGET", "target": "TARGET"},
         help="write an archive as netCDF-4 or as tables of text",
     )  # fmt: skip
     add_command(
@@ -95,9 +86,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     from continuation.budget import Budget
     from continuation.step.progress import Progress
 
-    limits = {name: getattr(arguments, name) for name in ("steps", "seconds", "factorizations")}
-    limits = {name: limit for name, limit in limits.items() if limit}
-    options: Options = {"budget": Budget(**limits)} if limits else {}
+    options: Options = {"budget": Budget(steps=arguments.steps)} if arguments.steps else {}
     homotopy = None
     if arguments.homotopy is not None:
         with open_archive(arguments.file) as archive:
@@ -120,7 +109,7 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 
 def _named(path: str) -> Any:
-    from continuation.archive.trust import registry
+    from continuation.archive.codec import registry
 
     try:
         trusted = plug_in(path)
@@ -144,7 +133,7 @@ def _recheck(arguments: argparse.Namespace) -> int:
 def _recover(arguments: argparse.Namespace) -> int:
     from continuation.archive import open_archive, recover
 
-    file = recover(arguments.file, force=arguments.force)
+    file = recover(arguments.file)
     with open_archive(file) as archive:
         print(f"{file}: {len(archive)} paths, {archive.points.size} points")
     return SUCCESS
@@ -153,7 +142,7 @@ def _recover(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     from continuation.archive import export
 
-    print(*export(arguments.file, arguments.target, compression=arguments.compression), sep="\n")
+    print(*export(arguments.file, arguments.target), sep="\n")
     return SUCCESS
 
 

@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import sys
-from functools import partial
-from itertools import chain
-from typing import TYPE_CHECKING
 
 from continuation.arguments import plugins
 from continuation.cli.making import plug_in
 from continuation.cli.parser import SUCCESS, Subparsers, add_command, argument, new_folder
-
-if TYPE_CHECKING:
-    from continuation.chart import Row
-
-DEFAULT_OUTPUT = "continuation-chart"
-EVERY = "all"
 
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
     parser = add_command(
         subparsers, run, "chart",
-        argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}; or module:function of your own"),
+        argument("name", metavar="NAME", nargs="?", help="a study; or module:function of your own"),
         argument("--compare", action="store_true", help="outside solvers too, where they are installed"),
-        argument("--output", metavar="DIR", default=DEFAULT_OUTPUT,
-                 help=f"where the files go (default: {DEFAULT_OUTPUT})"),
+        argument("--output", metavar="DIR", default="continuation-chart",
+                 help="where the files go (default: continuation-chart)"),
         help="speed against accuracy: run a ready study",
         description="Run a study, print its table, and write results (JSON) and pictures. Without a "
         "name, list the studies.",
@@ -41,23 +31,16 @@ def run(arguments: argparse.Namespace) -> int:
     from continuation.chart import run as run_study
     from continuation.chart.run import report, tables
 
-    names = list(plugins.available(plugins.STUDIES))
     if arguments.name is None:
-        print("\n".join(names))
+        print("\n".join(plugins.available(plugins.STUDIES)))
         return SUCCESS
-    chosen = names if arguments.name == EVERY else [arguments.name]
-    makers = [plug_in(name, plugins.STUDIES) for name in chosen]
+    make = plug_in(arguments.name, plugins.STUDIES)
     folder = new_folder("--output", arguments.output)
-    for study in chain.from_iterable(make(arguments.size, arguments.compare) for make in makers):
-        results = run_study(study, partial(_watch, study.name) if sys.stderr.isatty() else None)
+    for study in make(arguments.size, arguments.compare):
+        results = run_study(study)
         for title, table in tables(results).items():
             print(f"\n{results.title}: {title}\n{table.text()}")
         for note in study.notes:
             print(f"\n{results.title}: {note}")
         print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
     return SUCCESS
-
-
-def _watch(name: str, done: int, whole: int, row: Row) -> None:
-    end = "\n" if done == whole else ""
-    print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)

@@ -14,8 +14,6 @@ from continuation.cli.parser import SUCCESS, Subparsers, UsageError, add_command
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
-DOTS_PER_INCH = 150
-
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
@@ -68,8 +66,6 @@ def check_picture(option: str, file: str) -> None:
         TemporaryFile(dir=path.parent).close()
     except OSError as error:
         raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
-    except ImportError as error:
-        raise UsageError(option, f"{error}, found none") from error
 
 
 def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
@@ -86,7 +82,7 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     if path is not None:
         plot_steps(path, figure.add_subplot(grid[1]))
     picture = BytesIO()
-    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=150)
     # A full disk must not destroy the old file.
     with beside(Path(file)) as part:
         part.write_bytes(picture.getvalue())
@@ -97,12 +93,10 @@ def _draw(path: Any, arguments: argparse.Namespace, axes: Any) -> None:
     from continuation.plot import plot_bifurcation, plot_components
 
     chosen = arguments.components
-    if not arguments.diagram:
-        plot_components(path, axes, arguments.against, components=chosen)
-    elif chosen is None or len(chosen) == 1:
+    if arguments.diagram:
         plot_bifurcation(path, axes, None if chosen is None else chosen[0])
     else:
-        raise UsageError("--components", f"expected one component for --diagram, found {len(chosen)}")
+        plot_components(path, axes, arguments.against, components=chosen)
 
 
 def _numbers(text: str) -> list[int]:

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
 PRESETS = ("fast", "default", "conservative", "series")
 
-MOST_PRINTED = 10
-"""Unknowns printed without --json."""
-
 
 def register(subparsers: Subparsers) -> None:
     """Add the commands."""
@@ -56,7 +53,6 @@ def register(subparsers: Subparsers) -> None:
         argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000"),
         argument("--budget-seconds", metavar="S", type=above_zero, help="wall-clock time; default: no limit"),
         argument("--json", action="store_true", help="print everything as one JSON object"),
-        argument("--cite", action="store_true", help="print BibTeX for what the run used as well"),
         names={"new": "--archive", "old": "--archive"}, plugin="name",
         help="follow the path of a homotopy by its name",
         description="Exit status: 0 if the path ended at its target, at an event or closed, 1 if not, 2 bad input.",
@@ -76,8 +72,7 @@ def _list(arguments: argparse.Namespace) -> int:
         described = plugins.describe(
             plug_in(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
         )
-        print(_entry(arguments.name, described, known.get(arguments.name)))
-        print("".join(f"\n{entry}\n" for entry in described.references), end="")
+        print("\n\n".join((_entry(arguments.name, described, known.get(arguments.name)), *described.references)))
         return SUCCESS
     broken = []
     for name, plugin in known.items():
@@ -130,11 +125,6 @@ def _trace(arguments: argparse.Namespace) -> int:
     )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
-    if arguments.cite:
-        from continuation.citation import cite
-
-        # Keep stdout for the JSON object.
-        print(f"\n{cite(path)}", file=sys.stderr if arguments.json else sys.stdout)
     if arguments.plot is not None:
         from continuation.cli.figures import save
         from continuation.plot import plot_components
@@ -152,11 +142,9 @@ def _as_text(title: str, path: Path) -> Iterator[str]:
     counts = ", ".join(f"{value} {name}" for name, value in path.counts.as_dict().items())
     yield f"work       {counts}; {path.seconds:.2g} s"
     if path.steps:
-        y = path.endpoint.y
-        shown = ", ".join(f"{value:.12g}" for value in y[:MOST_PRINTED])
-        more = f", ... ({y.size - MOST_PRINTED} more; --json prints all)" if y.size > MOST_PRINTED else ""
+        # Ten unknowns; --json prints all.
         yield f"end        lam = {path.endpoint.lam:.12g}"
-        yield f"           y = {shown}{more}"
+        yield f"           y = {', '.join(f'{value:.12g}' for value in path.endpoint.y[:10])}"
 
 
 def _as_json(title: str, path: Path) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import os
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NoReturn, Protocol, TextIO, TypeVar
+from typing import Any, NoReturn, TextIO, TypeAlias, TypeVar
 
 T = TypeVar("T")
 
@@ -28,19 +28,10 @@ Argument = tuple[tuple[str, ...], dict[str, Any]]
 
 
 class UsageError(ValueError):
-    """A bad argument: the command prints one line and ends with status 2.
-
-    Attributes
-    ----------
-    argument : str
-        As typed: ``FILE``, ``--x0``.
-    complaint : str
-    """
+    """A bad argument, as typed (``FILE``, ``--x0``): the command prints one line and ends with status 2."""
 
     def __init__(self, argument: str, complaint: object) -> None:
-        self.argument = argument
-        self.complaint = " ".join(str(complaint).split())
-        super().__init__(f"{self.argument}: {self.complaint}")
+        super().__init__(f"{argument}: {' '.join(str(complaint).split())}")
 
 
 class Parser(argparse.ArgumentParser):
@@ -51,19 +42,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {message.removeprefix('argument ')}\n")
 
 
-class Subparsers(Protocol):
-    """The `add_parser` of argparse."""
-
-    def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """Add a command's parser.
-
-        Parameters
-        ----------
-        name : str
-        **options
-            As for argparse.
-        """
-        ...
+Subparsers: TypeAlias = "argparse._SubParsersAction[Any]"
 
 
 def argument(*names: str, **options: Any) -> Argument:
@@ -81,7 +60,7 @@ def add_command(
     **options: Any,
 ) -> argparse.ArgumentParser:
     """Add a command; `plugin`: the argument that names foreign code, whose exceptions are reported of it."""
-    parser = subparsers.add_parser(name, **options)
+    parser: argparse.ArgumentParser = subparsers.add_parser(name, **options)
     for typed, about in arguments:
         parser.add_argument(*typed, **about)
     parser.set_defaults(run=run, names=names or {}, plugin=plugin)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
@@ -19,7 +19,6 @@ from continuation.diagrams.branches import Diagram
 from continuation.diagrams.search import BranchSearch
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.box import is_boundless
-from continuation.homotopy import SupportsPieces
 from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.stability import Stability
@@ -131,9 +130,9 @@ def diagram(
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)
-    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces), keep)
+    log = None if file is None else Growing(file, "A diagram", keep)
     search = BranchSearch(homotopy, asked, executor, float(step), branches, generations, log)
-    with nullcontext() if log is None else log:
+    with nullcontext() if log is None else closing(log):
         try:
             search.run([None, *starts], [float(lam) for lam in deflate])
         except KeyboardInterrupt as interrupt:

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from continuation.archive import resume
-from continuation.archive.codec import problem_data
-from continuation.archive.trust import decode, registry
+from continuation.archive.codec import decode, problem_data, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import SIX_DIGITS, Array
 from continuation.auditing import audit

@@ -34,7 +34,7 @@ PATHS = {column.name: column.storage for column in PATH_COLUMNS}
 def subjects(folder: Path) -> list[Path]:
     """Archives of each kind: closed, left by a kill, of many paths, merged and compressed."""
     closed, killed, many, packed = (folder / name for name in ("closed.h5", "killed.h5", "many.h5", "packed.nc"))
-    trace(HOMOTOPY, archive=PathLog(closed, limits=Limits(rows=7), tangents=True), budget=Budget(steps=60), **OPTIONS)
+    trace(HOMOTOPY, archive=PathLog(closed, limits=Limits(rows=7)), budget=Budget(steps=60), **OPTIONS)
     left_by_a_kill(killed, 60, 7, **OPTIONS)
     with PathLog(many, limits=Limits(rows=16)) as log:
         for steps in (5, 30, 1, 12):
@@ -76,7 +76,7 @@ def damaged(whole: bytes, kind: str, generator: random.Random) -> bytes:
 def content(file: Path) -> dict[str, object]:
     """The whole content of an archive, for comparison."""
     with open_archive(file) as archive:
-        text, arrays = archive.problem()
+        text, arrays = archive.contents.problem()
         tables = {"points": archive.points, "paths": archive.paths, "problem": arrays}
         return {
             "attributes": {name: np.asarray(value).tobytes() for name, value in archive.attributes.items()},

@@ -1,47 +1,23 @@
 """Accidents: quotas that are full, names that no file can hold, two at work on one file, links and modes."""
 
 import os
-import resource
 import signal
 
 import numpy as np
 import pytest
 
 from continuation import Tracer, trace
-from continuation.archive import ArchiveError, export, merge, open_archive, recover, resume
+from continuation.archive import ArchiveError, export, merge, recover, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
 from ...util import in_child, refused
-from .util import killed, logged, observer, read
+from .util import killed, logged, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.02))}
-REFUSED = 7 << 8
-"""The status of a child that has an ArchiveError of one line."""
-
-
 @pytest.fixture
 def file(tmp_path):
     return killed(tmp_path / "run.h5", HOMOTOPY, 30, **OPTIONS)
-
-
-@pytest.mark.parametrize(("limit", "least"), [(1_000, 0), (50_000, 0), (90_000, 0), (150_000, 0), (330_000, 900)])
-def test_a_limit_while_tracing(tmp_path, limit, least):
-    options, file = {"controller": Fixed(bounds=Bounds(initial=0.002))}, tmp_path / "run.h5"
-    whole = trace(HOMOTOPY, **options)
-
-    def work():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-        trace(HOMOTOPY, archive=logged(file, 20), **options)
-
-    assert in_child(work) == REFUSED
-    if file.exists():
-        recover(file)
-        found = [path.u for path in open_archive(file)]
-        rows = np.concatenate([whole.u[:0], *found])
-        assert len(rows) >= least
-        assert np.array_equal(rows, whole.u[: len(rows)])
 
 
 class Observing:
@@ -70,21 +46,6 @@ def test_names_that_no_file_can_hold_are_refused(tmp_path, name):
 def test_other_names_come_back(tmp_path, name):
     trace(Observing(name), archive=tmp_path / "run.h5")
     assert read(tmp_path / "run.h5").steps[1].observed == {name: 3.0}
-
-
-def test_one_writer_at_a_time(file):
-    """Two resumes at once: the second is refused, whatever number its process has, and the first goes on."""
-    path, complaints = trace(HOMOTOPY, **OPTIONS), []
-
-    def second(tracer, step):
-        for work in (resume, recover) if step.index in (40, 60) else ():
-            complaints.append(in_child(lambda work=work: work(file)))
-            with pytest.raises(ArchiveError, match="seems to be alive"):
-                work(file)
-
-    assert np.array_equal(resume(file, observers=(observer(step=second),)).u, path.u)
-    assert complaints == 4 * [REFUSED]
-    assert np.array_equal(read(file).u, path.u)
 
 
 def test_a_child_does_not_keep_the_lock(tmp_path):
@@ -118,16 +79,6 @@ def test_modes_links_and_other_files_are_left_alone(tmp_path, file):
     assert file.stat().st_mode & 0o777 == 0o640
     assert len(read(file)) == len(trace(HOMOTOPY, **OPTIONS))
     assert {name.read_bytes() for name in others} == {b"precious"}
-
-
-def test_what_a_kill_left_beside_is_removed_by_the_next(tmp_path):
-    left, fresh = (tmp_path / f".run.h5.0123456{k}.part" for k in range(2))
-    for part in (left, fresh):
-        part.write_bytes(b"half a copy")
-    os.utime(left, (0, 0))
-    trace(HOMOTOPY, archive=tmp_path / "run.h5")
-    assert not left.exists()
-    assert fresh.exists(), "it may be another writer's, of this very second"
 
 
 @pytest.mark.parametrize(

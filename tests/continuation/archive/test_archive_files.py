@@ -46,8 +46,8 @@ class Nowhere(Circle):
 
 
 FILES = {
-    "nothing": (lambda file: None, "there is no such file"),
-    "a directory": (lambda file: file.mkdir(), "is a directory"),
+    "nothing": (lambda file: None, r"cannot be read \(No such file or directory\)"),
+    "a directory": (lambda file: file.mkdir(), "is no regular file"),
     "no bytes": (lambda file: file.touch(), "is empty"),
     "text": (lambda file: file.write_bytes(b"a,b\n1,2\n"), "is not an HDF5 file"),
     "a signature": (lambda file: file.write_bytes(b"\x89HDF\r\n\x1a\n"), "truncated"),

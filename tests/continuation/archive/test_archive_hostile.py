@@ -22,7 +22,7 @@ from .util import OPERATIONS, logged, outcome, read
 @pytest.fixture(scope="module")
 def base(tmp_path_factory):
     file = tmp_path_factory.mktemp("base") / "base.h5"
-    trace(ExponentialCosine(3), archive=logged(file, tangents=True), budget=Budget(steps=12))
+    trace(ExponentialCosine(3), archive=logged(file), budget=Budget(steps=12))
     return file
 
 
@@ -153,14 +153,19 @@ def test_a_closed_archive_says_that_it_is_closed(base):
     assert len(archive.points["arclength"]) == 14
     archive.close()
     archive.close()
-    for asked in (lambda: archive.points["y"], lambda: archive.path(0), archive.problem, lambda: archive.status(0)):
+    for asked in (
+        lambda: archive.points["y"],
+        lambda: archive.path(0),
+        archive.contents.problem,
+        lambda: archive.status(0),
+    ):
         with pytest.raises(ArchiveError, match=r"base.h5: the archive was closed; open it again"):
             asked()
     assert repr(archive) == f"<Archive {base}, closed>"
 
 
 def test_what_is_compressed_has_a_limit(tmp_path, base):
-    export(base, tmp_path / "run.nc", compression=9)
+    export(base, tmp_path / "run.nc")
     with pytest.raises(ArchiveError, match="more than the limit of 100; say limit="):
         open_archive(tmp_path / "run.nc", limit=100)
     with open_archive(tmp_path / "run.nc", limit=10**6) as archive:

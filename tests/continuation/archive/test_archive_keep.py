@@ -41,15 +41,14 @@ def test_it_can_be_read_while_it_grows(tmp_path):
 
 
 @pytest.mark.parametrize("keep", ["ends", "all"])
-@pytest.mark.parametrize("tangents", [False, True])
-def test_resume_from_it(tmp_path, keep, tangents):
+def test_resume_from_it(tmp_path, keep):
     path = trace(FreudensteinRoth(), **OPTIONS)
-    log = logged(tmp_path / "run.h5", 3, keep="ends", tangents=tangents)
+    log = logged(tmp_path / "run.h5", 3, keep="ends")
     trace(FreudensteinRoth(), archive=log, budget=Budget(steps=len(path) // 2), **OPTIONS)
     found = resume(tmp_path / "run.h5", budget=Budget(), keep=keep)
     assert isinstance(found.steps, list) == (keep == "all")
     assert_same(found, path)
-    if tangents and keep == "ends":
+    if keep == "ends":
         middle = path.arclength[7:9].mean()
         assert np.array_equal(found(middle), read(tmp_path / "run.h5")(middle))
 
@@ -105,5 +104,5 @@ def test_an_archive_that_is_gone_says_so(tmp_path):
     found = trace(HOMOTOPY, archive=PathLog(tmp_path / "run.h5", keep="ends"), **OPTIONS)
     (tmp_path / "run.h5").unlink()
     assert found.endpoint.index == len(found) - 1
-    with pytest.raises(ArchiveError, match="there is no such file"):
+    with pytest.raises(ArchiveError, match="No such file"):
         _ = found.u

@@ -94,13 +94,6 @@ def test_the_caller_may_allow_more(changed):
     assert len(open_archive(file, limit=1 << 29)) == 1
 
 
-def test_the_same_thing_read_again_counts_once(small):
-    with open_archive(small, limit=1 << 20) as archive:
-        for _ in range(100):
-            archive.path(0)
-            archive.problem()
-
-
 # -- files that are cut off -----------------------------------------------------------------------------------
 
 

@@ -62,7 +62,7 @@ def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_
     file = Path(shutil.copy(old / "budget.h5", tmp_path))
     again = resume(file, archive=tmp_path / "more.h5", budget=Budget())
     assert again.endpoint.lam == trace(Cusp()).endpoint.lam
-    monkeypatch.setattr("continuation.archive.checkpoint.__version__", "1.0.0")
+    monkeypatch.setattr("continuation.archive.provenance.__version__", "1.0.0")
     said = r"no state that version .* resumes .*major version.*trace\(homotopy, start=open_archive\(.*\[0\]\)$"
     with pytest.raises(ArchiveError, match=said):
         resume(file, budget=Budget())

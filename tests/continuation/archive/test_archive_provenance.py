@@ -41,13 +41,6 @@ class Plain(Line):
         self.slope, self.label, self.table, self._hidden = slope, "steel", np.arange(3.0), 7.0
 
 
-class Slotted(Line):
-    __slots__ = ("slope",)
-
-    def __init__(self, slope=2.0):
-        self.slope = slope
-
-
 @dataclasses.dataclass
 class Data(Line):
     slope: float = 2.0
@@ -60,7 +53,7 @@ class Frozen(Line):
     end: float | None = None
 
 
-KINDS = [Plain, Slotted, Data, Frozen]
+KINDS = [Plain, Data, Frozen]
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Budget, Monitor, Status, TargetValue, Tracer, from_functions, trace
+from continuation import Budget, Monitor, Status, TargetValue, Tracer, trace
 from continuation.archive import ArchiveError, PathLog, open_archive, recover, resume
-from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
+from continuation.archive.provenance import Checkpoint, describe_run, pack, unpack
 from continuation.metric import Relative
 from problems.bifurcation import Circle, ExponentialCosine, FreudensteinRoth
 
@@ -132,18 +132,6 @@ def test_the_last_of_many_paths(tmp_path):
         assert_same(archive.path(0), first)
         assert_same(archive.path(1), found)
         assert archive.paths["member"].tolist() == [0, 17]
-
-
-def _line(y, lam):
-    return y - 3.0 * lam
-
-
-def test_a_homotopy_of_functions_is_stored_by_name_and_arrays(tmp_path):
-    homotopy = from_functions(_line, start=(np.array([0.3, 0.6]), 0.1), target=1.0)
-    interrupted(tmp_path / "run.h5", homotopy, 1)
-    with pytest.raises(ArchiveError, match=r"_line is a function, which is not trusted: pass it in trust="):
-        resume(tmp_path / "run.h5")
-    assert_same(resume(tmp_path / "run.h5", trust=[_line]), trace(homotopy))
 
 
 class Stateful:

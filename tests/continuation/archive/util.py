@@ -26,7 +26,7 @@ OPERATIONS = {
     "open": lambda file: repr(open_archive(file)),
     "read": lambda file: [path.u for path in open_archive(file)],
     "columns": lambda file: dict(open_archive(file).points),
-    "problem": lambda file: open_archive(file).problem(),
+    "problem": lambda file: open_archive(file).contents.problem(),
     "checkpoint": lambda file: open_archive(file).checkpoint(),
     "describe": lambda file: describe(open_archive(file)),
     "table": lambda file: open_archive(file)._repr_html_(),

@@ -1,7 +1,5 @@
 """``continuation trace`` and ``check``: any homotopy by its name, from a shell."""
 
-import json
-
 import pytest
 
 from continuation.archive import open_archive
@@ -28,15 +26,6 @@ def test_a_homotopy_without_target_is_asked_for_none(run):
     assert status == FAILURE
     end = next(line for line in out.splitlines() if line.startswith("end"))
     assert float(end.split("=")[1]) < -1.0
-
-
-def test_cite_prints_bibtex(run):
-    status, out, _ = run("trace", "circle", "--cite")
-    assert status == SUCCESS
-    assert "@software{continuation" in out
-    status, out, err = run("trace", "circle", "--cite", "--json")
-    json.loads(out)
-    assert "@software{continuation" in err
 
 
 def test_check_says_what_is_wrong_with_a_homotopy_of_the_working_directory(run, own):

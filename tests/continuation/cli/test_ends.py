@@ -86,14 +86,14 @@ def test_one_line(run, command):
 @pytest.mark.parametrize("command", WITH_ARCHIVES)
 def test_a_disk_that_fails(folder, command, reads):
     """Behind so many reads."""
-    before, real, left = Path("ok.h5").read_bytes(), os.preadv, iter(range(reads))
+    before, real, left = Path("ok.h5").read_bytes(), os.pread, iter(range(reads))
 
-    def preadv(*arguments):
+    def pread(*arguments):
         if next(left, None) is None:
             raise OSError(errno.EIO, os.strerror(errno.EIO))
         return real(*arguments)
 
-    status, said = forked(folder, WITH_ARCHIVES[command], lambda: setattr(os, "preadv", preadv))
+    status, said = forked(folder, WITH_ARCHIVES[command], lambda: setattr(os, "pread", pread))
     assert (status, said.count("\n")) == (2, 1), said
     assert "Input/output error" in said
     # What the disk does not read is not what the file lacks: nothing is taken for damaged.

@@ -30,17 +30,6 @@ def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
     assert "can be resumed" not in page
 
 
-def test_options_given_again_hold_over_those_of_the_file(run, own):
-    run("trace", f"{own}:Own", "slope=3", "--archive", "run.h5", "--budget-steps", 2)
-    for words, said in (
-        (("slope=5", "--homotopy", f"{own}:Own", "--steps", 50), "expected the archive's residual"),
-        (("slope=5",), "continuation: KEY=VALUE: expected no options without --homotopy\n"),
-    ):
-        status, _, err = run("resume", "run.h5", *words)
-        assert status == BAD_INPUT
-        assert said in err
-
-
 @pytest.mark.parametrize(
     ("name", "line"),
     [
@@ -56,13 +45,6 @@ def test_what_is_wrong_with_a_plug_in_is_one_line(run, own, name, line):
     assert line in err
     assert err.count("\n") == 1
     assert err.startswith(f"continuation: {own}:{name}: ")
-
-
-def test_its_own_exception_on_the_way_keeps_the_path(run, own):
-    status, out, _ = run("trace", f"{own}:Table")
-    assert status == FAILURE
-    assert "status     RAISED" in out
-    assert "ValueError: the table ends (own_for_shell.py, line 36)" in out
 
 
 def test_a_picture_that_cannot_be_written_is_told_before_the_work(run, tmp_path, monkeypatch):
