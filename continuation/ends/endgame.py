@@ -84,7 +84,8 @@ class Endgame:
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            tracked = self._track(here, _guess(taken, self.target, lam, best), lam)
+            last = taken[-1]
+            tracked = self._track(here, last.u + (lam - last.u[-1]) * last.slope, lam)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
@@ -190,18 +191,6 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
         raise EvaluationError("the samples of the endgame overflow")
     least = min(end.length for end in known)
     return next(end for end in known if end.length <= EQUALLY_GOOD * least)
-
-
-def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
-    if best is None:
-        last = taken[-1]
-        guess: Array = last.u + (lam - last.u[-1]) * last.slope
-        return guess
-    recent = taken[-3:]
-    gap = recent[0].u[-1] - target
-    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
-    guess[-1] = lam
-    return guess
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
