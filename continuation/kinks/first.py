@@ -46,14 +46,8 @@ def first_zero(
         places = np.linspace(0.0, 1.0, MONITOR_PLACES)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        near = np.abs(grid[[0, -1]]) <= SIX_DIGITS * np.abs(grid).max(axis=0)
-        if not (_suspects(grid) | near[1]).any():
+        if not (_suspects(grid) | (np.abs(grid[-1]) <= SIX_DIGITS * np.abs(grid).max(axis=0))).any():
             return None
-        # Signs of nearly vanishing switches need points accurate to round-off.
-        a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
-        if a is not arc.a or b is not arc.b:
-            arc = cubic_between(a, b, arc.border)
-            grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
         # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
         noise = TIED * fine
