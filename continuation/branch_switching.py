@@ -8,6 +8,7 @@ import numpy as np
 
 from continuation.arguments.checks import expect, is_number
 from continuation.arrays import Array
+from continuation.contraction import HALVING
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.errors import EvaluationError
@@ -20,9 +21,9 @@ from continuation.point.linearization import linearize
 from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
-SHORTER, TRIALS = 0.25, 16
-"""Factor and number of trial steps: an unknown that stands still along the path has no known size on the other
-branch."""
+TRIALS = 32
+"""Number of trial steps, each half of the last: an unknown that stands still along the path has no known size on the
+other branch."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""
@@ -136,7 +137,7 @@ def _start(
     evaluator: Evaluator, u: Array, away: Array, onward: Array, weights: Array, step: float
 ) -> tuple[Array, Array]:
     border, failed = weights * away, ""
-    for h in step * SHORTER ** np.arange(TRIALS):
+    for h in step * HALVING ** np.arange(TRIALS):
         guess = u + h * away
         try:
             near = linearize(evaluator, guess, weights, border)

@@ -14,9 +14,11 @@ from attrs import frozen
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
+from continuation.ends.divergence import DECADE
 from continuation.ends.landing import regular
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
+from continuation.events.locate import THREE_DIGITS
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize, relinearize
@@ -31,15 +33,9 @@ ULPS = 8.0, -1021.0
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
-SAMPLE_TOLERANCE = 1e-3
-"""Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
-
 AMPLIFICATION = 0.3, 10.0
 """The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
 weights at t = 0."""
-
-EQUALLY_GOOD = 10.0
-"""Factor of the best error within which the smallest winding number wins: multiples fit later."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
@@ -84,7 +80,8 @@ class Endgame:
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            tracked = self._track(here, _guess(taken, self.target, lam, best), lam)
+            last = taken[-1]
+            tracked = self._track(here, last.u + (lam - last.u[-1]) * last.slope, lam)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
@@ -127,7 +124,8 @@ class Endgame:
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
-        fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
+        # The extrapolation multiplies the samples' errors.
+        fine = Tolerance(relative=THREE_DIGITS * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
         if not correction.converged or (max_step is not None and not max_step(here.u, correction.u - here.u) > 1.0):
             return None
@@ -189,19 +187,8 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
     if not known:
         raise EvaluationError("the samples of the endgame overflow")
     least = min(end.length for end in known)
-    return next(end for end in known if end.length <= EQUALLY_GOOD * least)
-
-
-def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
-    if best is None:
-        last = taken[-1]
-        guess: Array = last.u + (lam - last.u[-1]) * last.slope
-        return guess
-    recent = taken[-3:]
-    gap = recent[0].u[-1] - target
-    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
-    guess[-1] = lam
-    return guess
+    # Multiples of the winding number fit later.
+    return next(end for end in known if end.length <= DECADE * least)
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:

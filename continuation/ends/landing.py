@@ -96,9 +96,6 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before == 0.0 or not may_vanish(gap, arc, before, after):
         return None
     if before * after > 0.0:
-        # Asymptotes come within 1e-250; then minima are noise.
-        if max(abs(before), abs(after)) <= solver.noise_by_component(arc.a)[-1]:
-            return None
         ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
         if ends[0] * ends[1] < 0.0 and before * ends[0] < 0.0:
             # A fold on the target, to round-off, is the end; a path that crosses the target just before the fold ends

@@ -72,13 +72,11 @@ class Target:
     target: float | None
 
     @property
-    def expects_singular_end(self) -> bool:
-        """Whether the endgame precedes landing, as H' may lose rank on the boundary."""
-        return self.solver.max_step is not None
+    def interior(self) -> bool:
+        """Whether the path stays inside a domain.
 
-    @property
-    def may_turn_back(self) -> bool:
-        """Whether the start's parameter is an end, beyond which the homotopy has no meaning."""
+        H' may lose rank on its boundary, where the target mostly lies; beyond the start's parameter H has no meaning.
+        """
         return self.solver.max_step is not None
 
     # Before a step
@@ -91,7 +89,7 @@ class Target:
             return False
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
-        failed = state.last_failed_landing == point.lam or self.expects_singular_end
+        failed = state.last_failed_landing == point.lam or self.interior
         return near and failed and abs(gap) <= RETRY_ENDGAME * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
@@ -109,7 +107,7 @@ class Target:
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
-            if self.may_turn_back:
+            if self.interior:
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, EndsAt.START_PARAMETER))
         for value, kind, at in ends:
             point = arc.b if landed else crossing(self.solver, arc, value)

@@ -159,16 +159,8 @@ def from_residual(
     if pattern is None and y.size >= SPARSE_FROM:
         pattern = _looked_for(residual, u)
     products = products or exact(residual, u, sizes(u) * generic_vector(u.size))
-    if products is not None:
-        return _said(Derivative(residual, products, pattern, said))
-    if pattern is None:
-        return _said(Derivative(residual, by_differences(residual, u), None, said))
-    groups = np.append(pattern.groups, pattern.count)
-    return _said(Derivative(residual, by_differences(residual, u, groups), pattern, said))
-
-
-def _said(derivative: Derivative) -> Derivative:
-    pattern = derivative.pattern
-    groups = "" if pattern is None else f" in {pattern.count} groups of columns"
-    derivative.notes.add(f"H' by {derivative.products.name}{groups}")
-    return derivative
+    if products is None:
+        groups = None if pattern is None else np.append(pattern.groups, pattern.count)
+        products = by_differences(residual, u, groups)
+    said.add(f"H' by {products.name}" + ("" if pattern is None else f" in {pattern.count} groups of columns"))
+    return Derivative(residual, products, pattern, said)

@@ -36,8 +36,8 @@ from continuation.linear.silence import Silence, silent
 POINT_ULPS = 4.0
 """Round-off of a point, in ulps."""
 
-DERIVATIVES_KEPT = 4
-"""Derivatives kept, for step ends and crossings."""
+DERIVATIVES_KEPT = 2
+"""Derivatives kept: of both ends of an arc."""
 
 
 @frozen(eq=False, slots=False)
@@ -104,8 +104,7 @@ class Evaluator:
         self.bindings += 1
         self.followed = True  # by jets
         self._checked = False
-        self._kept: dict[bytes, Matrix] = {}
-        self._products: dict[bytes, Callable[[Array], Array]] = {}
+        self._kept: dict[bytes, tuple[Matrix, Array]] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Callable[[Array, float], tuple[Matrix, Array]] | None = None
@@ -231,29 +230,18 @@ class Evaluator:
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
         if self._bordered is not None:
             return None
-        place = u.tobytes()
-        if place not in self._products:
-            # Two are kept: an arc's end is needed again.
-            self._products = dict([*self._products.items()][-1:])
-            self._products[place] = self._product(u)
-        return self._products[place]
-
-    def _product(self, u: Array) -> Callable[[Array], Array]:
-        self.counts.jacobians += 1
-        H_y, H_lam = self._evaluated(u)
-        column = np.asarray(H_lam, dtype=float)
-        if isinstance(H_y, np.ndarray):
-            # One product takes a third of the time of two.
-            whole = np.empty((u.size - 1, u.size))
-            whole[:, :-1] = H_y
-            whole[:, -1] = column
-            return whole.dot
+        H_y, column = self._evaluated(u)
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
+        """H_y and H_lam, new or kept."""
+        place = u.tobytes()
+        if place in self._kept:
+            return self._kept[place]
         if not silent():
             with Silence():
                 return self._evaluated(u)
+        self.counts.jacobians += 1
         try:
             answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
@@ -264,31 +252,27 @@ class Evaluator:
         while len(self._kept) >= DERIVATIVES_KEPT:
             del self._kept[next(iter(self._kept))]
         # Plug-ins may reuse their arrays.
-        self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
-        return answer
+        H_y = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
+        self._kept[place] = H_y, np.array(answer[1], dtype=float)
+        return self._kept[place]
 
     def matrix(self, u: Array) -> Matrix:
-        """H_y at u, kept or evaluated."""
-        known = self._kept.get(u.tobytes())
-        if known is None:
-            self.counts.jacobians += 1
-            known, _ = self._evaluated(u)
-        return known
+        """H_y at u."""
+        return self._evaluated(u)[0]
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
         """Factor [[H_y, H_lam], [border']] at u, or raise EvaluationError."""
-        self.counts.jacobians += 1
         self.counts.factorizations += 1
         # Factorisations may keep views; correctors move points in place.
         u, dense = u.copy(), False
         try:
             if self._bordered is not None:
+                self.counts.jacobians += 1
                 with Silence():
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
-                H_y, H_lam = self._evaluated(u)
-                column = np.asarray(H_lam, float)
+                H_y, column = self._evaluated(u)
                 dense = isinstance(H_y, np.ndarray)
                 if not (dense or finite(column)):
                     raise NotFiniteError("the derivative is not finite")

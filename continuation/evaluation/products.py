@@ -9,14 +9,14 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import EPS, ROOT_OF_ROUND_OFF, Array
+from continuation.arrays import EPS, ROOT_OF_ROUND_OFF, SIX_DIGITS, Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 from continuation.evaluation.pattern import generic
 
 Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
 
-AGREEMENT = 1e-3
+AGREEMENT = float(np.sqrt(SIX_DIGITS))
 """Largest error of differences, relative to their terms."""
 
 

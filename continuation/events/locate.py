@@ -16,7 +16,7 @@ import numpy as np
 from attrs import evolve, frozen
 from scipy.optimize import brentq, minimize_scalar
 
-from continuation.arrays import SIX_DIGITS, Array, largest
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.arc import Arc
@@ -27,8 +27,9 @@ from continuation.point.segment import CUBIC, Segment, hermite
 Function = Callable[[Array, Array], float]
 """A function of point and tangent, continuous along the path."""
 
-JUMP = 1e-3
-"""A bracket that closes on a larger value, relative to its first ones, holds a jump."""
+THREE_DIGITS = math.sqrt(SIX_DIGITS)
+"""Those of a model: the step of its difference quotient, in parts; a bracket that closes on a larger value, relative to
+its first ones, holds a jump."""
 
 MONITOR_PLACES = 17
 """Samples of the model; a cubic turns at most twice."""
@@ -40,12 +41,8 @@ model badly, as a determinant beside a fold, cost 256 divisions of an arc."""
 DIVISIONS = 8
 """Most divisions of an arc."""
 
-PASSES, NEARLY_ZERO = 60, 1e-10
-"""PASSES: every other one bisects, down to round-off. NEARLY_ZERO: relative value that is accepted if a pass did
-not halve it where the slope is at least half the chord's, so that the zero is simple; else if two did not."""
-
-SLOPE = 1e-3
-"""Step of the difference quotient, in parts: three digits, as the model has."""
+PASSES = 60
+"""Every other one bisects, down to round-off."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
@@ -166,7 +163,7 @@ def zeros(
         elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * direction <= 0:
             guess, slope = zero_between(model, low, high), math.nan
             if guess is not None:
-                slope = (model(guess + SLOPE * (high - low)) - model(guess)) / (SLOPE * (high - low))
+                slope = (model(guess + THREE_DIGITS * (high - low)) - model(guess)) / (THREE_DIGITS * (high - low))
             enough = solver.noise(part.a) / arc.length
             found = root(partial(value, part, known), (low, part.ga), (high, part.gb), enough, guess, slope)
             if found is not None:
@@ -207,11 +204,13 @@ def root(
         elif not slope * chord > 0.0:
             slope = chord
         step = -now[1] / slope if slope else math.inf
-        small = abs(best[1]) <= NEARLY_ZERO * scale and stalled > (abs(slope) < HALVING * abs(chord))
+        # Half of the digits are enough if a pass did not halve the value where the slope is at least half the chord's,
+        # so that the zero is simple; else if two did not.
+        small = abs(best[1]) <= ROOT_OF_ROUND_OFF * scale and stalled > (abs(slope) < HALVING * abs(chord))
         if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
             break
         last, t = now, t + step
-    return None if abs(best[1]) > JUMP * scale and b[0] - a[0] > enough else best[0]
+    return None if abs(best[1]) > THREE_DIGITS * scale and b[0] - a[0] > enough else best[0]
 
 
 def on_value(solver: PathSolver, point: Linearization, component: int, value: float) -> Linearization:

@@ -14,6 +14,7 @@ from attrs import frozen
 
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.evaluation.evaluator import Evaluator
+from continuation.events.locate import THREE_DIGITS
 from continuation.events.singularity import ScaledDerivative, scales
 from continuation.linear.nullspace import BORDERS, Bordered, kernels
 from continuation.linear.refine import BACKWARD_ERROR
@@ -28,9 +29,6 @@ STEPS, LAST_INCREMENT = 30, 1e-13
 
 STARTS = 600
 """Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
-
-SAME_ZERO = 1e-3
-"""Nearer zeros, relative to the sphere, are one."""
 
 NOISE = 1e-11
 """Round-off of a direction, relative to its largest component."""
@@ -175,7 +173,7 @@ def _spread(count: int, m: int, seed: int) -> Array:
 
 
 def _add(found: list[Array], a: Array) -> None:
-    if not any(np.linalg.norm(a - other) < SAME_ZERO * np.linalg.norm(a) for other in found):
+    if not any(np.linalg.norm(a - other) < THREE_DIGITS * np.linalg.norm(a) for other in found):
         found.append(a)
 
 

@@ -25,12 +25,6 @@ POLISHING = Contraction(iterations=15, ratio=np.inf)
 SECOND = 1e-5
 """Step, in extents, of central differences of H': ten digits."""
 
-DISTINCT_DIRECTIONS = 1e-9
-"""Least relative discriminant of two directions: the digits of SECOND."""
-
-HALTED = 1e-9
-"""At a simple branch point increments fall below this."""
-
 
 @frozen(eq=False)
 class SimpleBranchPoint:
@@ -162,10 +156,10 @@ def branch_point_near(
             if here.weak and kernels(scaled.at(u))[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
-            if newton.size > HALTED:
+            if newton.size > ROOT_OF_ROUND_OFF:
                 # At a regular zero one more increment is round-off; at a multiple one branches touch, or more cross.
                 newton.run(increment, measure, lambda size: True)
-                if newton.size > HALTED:
+                if newton.size > ROOT_OF_ROUND_OFF:
                     return None
                 u = newton.x[:-1]
                 here = at(u)
@@ -189,7 +183,8 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     rows = [scaled.second(u, here.left[0][:, 0], w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
-    if not discriminant > DISTINCT_DIRECTIONS * (b * b + abs(a * c)):
+    # SECOND's digits.
+    if not discriminant > SECOND * SECOND * (b * b + abs(a * c)):
         return None
     root = np.sqrt(discriminant)
     q = -(b + (root if b >= 0 else -root))

@@ -46,14 +46,8 @@ def first_zero(
         places = np.linspace(0.0, 1.0, MONITOR_PLACES)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        near = np.abs(grid[[0, -1]]) <= SIX_DIGITS * np.abs(grid).max(axis=0)
-        if not (_suspects(grid) | near[1]).any():
+        if not (_suspects(grid) | (np.abs(grid[-1]) <= SIX_DIGITS * np.abs(grid).max(axis=0))).any():
             return None
-        # Signs of nearly vanishing switches need points accurate to round-off.
-        a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
-        if a is not arc.a or b is not arc.b:
-            arc = cubic_between(a, b, arc.border)
-            grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
         # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
         noise = TIED * fine
@@ -72,15 +66,12 @@ def first_zero(
 
 
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
-    """Whether the way from a path point to u stays on its piece, to half of the digits."""
+    """Whether u lies on the piece of a path point, to half of the digits."""
     try:
-        way = np.linspace(0.0, 1.0, MONITOR_PLACES)
-        values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
+        here, there = pieces.values(point.u), np.array(signs) * pieces.values(u)
     except SwitchError:
         return False
-    return not _suspects(
-        np.where(np.abs(values) <= ROOT_OF_ROUND_OFF * np.abs(values).max(axis=0), 0.0, values)[:-1]
-    ).any()
+    return bool((there >= -ROOT_OF_ROUND_OFF * np.abs(here)).all())
 
 
 def _suspects(grid: Array) -> NDArray[np.bool_]:

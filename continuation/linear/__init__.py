@@ -6,7 +6,6 @@ Structured H_y are factored alone and bordered by elimination; near a fold the w
 from continuation.linear.banded import Banded
 from continuation.linear.dispatch import factor_bordered
 from continuation.linear.operator import Operator
-from continuation.linear.superlu import permutation_sign
 from continuation.linear.system import BorderedSystem, SingularError
 
-__all__ = ["Banded", "BorderedSystem", "Operator", "SingularError", "factor_bordered", "permutation_sign"]
+__all__ = ["Banded", "BorderedSystem", "Operator", "SingularError", "factor_bordered"]

@@ -9,13 +9,10 @@ from attrs import field, frozen
 from attrs.converters import optional
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import ROOT_OF_ROUND_OFF, Array, Matrix
 from continuation.linear.elimination import eliminated
 from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
-
-LARGEST_RESIDUAL = 1e-4
-"""Largest residual relative to the right-hand side: that of condition number 1e12."""
 
 RESTART = 100
 CYCLES = 20
@@ -78,8 +75,8 @@ class Krylov:
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
             left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
-        # A singular operator yields z of size 1 / eps with a residual of round-off.
-        if not (accurate and left <= LARGEST_RESIDUAL):
+        # A singular operator yields z of size 1 / eps with a residual of round-off; this is that of condition 1e12.
+        if not (accurate and left <= np.sqrt(ROOT_OF_ROUND_OFF)):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
                 f"after {CYCLES} cycles of {min(RESTART, len(rhs))} steps. Give H_y a (better) preconditioner."

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from continuation import Monitor, Status, trace
-from continuation.evaluation.pieces import Pieces
 from continuation.linear import factor_bordered
 
 OFF = Monitor(lambda u, v: float(np.abs(u).max()) - 50.0, "off", terminal=1)
@@ -67,15 +66,3 @@ def test_pieces_that_are_not_there_are_left_out(kind):
     (kink,) = path.kinks
     assert (kink.switches, len(kink.rays)) == ((0, 1, 2), 2)
     assert max(abs(largest.residual(ray[:1], ray[1])[0]) for ray in kink.rays) < 1e-14
-
-
-@attrs.frozen
-class Smooth:
-    def switches(self, y, lam):
-        return np.array([np.exp(y[0]) - lam])
-
-
-@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
-def test_switches_along_a_direction_in_any_unit_are_as_accurate(unit):
-    found = Pieces(Smooth()).along(np.array([0.7, 0.2]), unit * np.array([0.6, -0.8]))
-    np.testing.assert_allclose(found / unit, [0.6 * np.exp(0.7) + 0.8], rtol=1e-15)
