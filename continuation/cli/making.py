@@ -24,7 +24,7 @@ def homotopy_of(
 ) -> tuple[Any, Mapping[str, Any]]:
     """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults."""
     factory = plug_in(name, group)
-    written = {option.name: option.annotation for option in plugins.options(factory)}
+    written = {name: option.annotation for name, option in plugins.options(factory).items()}
     values = {key: value for key, value in (known or {}).items() if key in written}
     typed: set[str] = set()
     for text in texts:
@@ -34,7 +34,7 @@ def homotopy_of(
         if key in typed:
             raise UsageError(key, "expected one value, found two")
         typed.add(key)
-        values[key] = value if written.get(key, "").startswith("str") else _literal(value)
+        values[key] = value if str(written.get(key)).startswith(("str", "<class 'str'")) else _literal(value)
     try:
         return plugins.called(name, factory, values), values
     except (TypeError, ValueError) as error:

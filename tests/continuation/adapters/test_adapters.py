@@ -72,12 +72,6 @@ def by_jax(residual, start, **more):
     return continuation.from_jax(residual, start, **more)
 
 
-def test_products_of_jax_serve_an_operator():
-    path = trace(by_jax(layers, ([0.0, 0.0], 0.0), target=1.0, jacobian="operator"))
-    assert path.success
-    assert {step.orientation for step in path.steps} == {0}
-
-
 def test_the_sparse_derivative_of_jax_is_banded_where_it_is():
     pytest.importorskip("jax")
 
@@ -138,7 +132,7 @@ REFUSED = {
     "jax, one number": (lambda: by_jax(lambda y, lam: lam, ([0.0, 1.0], 0.0)), ROUNDED),
     "jax, no kind": (
         lambda: by_jax(layers, ([0.0], 0.0), jacobian="full"),
-        "jacobian: expected one of dense, sparse, operator, found 'full'",
+        "jacobian: expected one of dense, sparse, found 'full'",
     ),
     "jax, no function": (lambda: by_jax(None, ([0.0], 0.0)), "residual: expected a function"),
     "casadi, no function": (lambda: by_casadi(function=len), r"function: expected a casadi.Function"),
