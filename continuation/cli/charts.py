@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
-from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from continuation.arguments import plugins
 from continuation.cli.making import plug_in
 from continuation.cli.parser import SUCCESS, Subparsers, add_command, argument, new_folder
-
-if TYPE_CHECKING:
-    from continuation.chart import Row
 
 DEFAULT_OUTPUT = "continuation-chart"
 EVERY = "all"
@@ -49,15 +43,8 @@ def run(arguments: argparse.Namespace) -> int:
     makers = [plug_in(name, plugins.STUDIES) for name in chosen]
     folder = new_folder("--output", arguments.output)
     for study in chain.from_iterable(make(arguments.size, arguments.compare) for make in makers):
-        results = run_study(study, partial(_watch, study.name) if sys.stderr.isatty() else None)
+        results = run_study(study)
         for title, table in tables(results).items():
             print(f"\n{results.title}: {title}\n{table.text()}")
-        for note in study.notes:
-            print(f"\n{results.title}: {note}")
         print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
     return SUCCESS
-
-
-def _watch(name: str, done: int, whole: int, row: Row) -> None:
-    end = "\n" if done == whole else ""
-    print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)

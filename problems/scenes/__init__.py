@@ -7,7 +7,6 @@ from problems.scenes.scene import (
     Kind,
     NotNegative,
     Numbers,
-    Point,
     Positive,
     Rival,
     Scene,
@@ -21,6 +20,6 @@ from problems.scenes.scene import (
 )
 
 __all__ = [
-    "Finite", "Kind", "NotNegative", "Numbers", "Picture", "Point", "Positive", "Rival", "Scene", "Seed", "Unknown",
+    "Finite", "Kind", "NotNegative", "Numbers", "Picture", "Positive", "Rival", "Scene", "Seed", "Unknown",
     "at_least", "available", "error", "find", "make", "mark", "order", "picture", "solve", "with_parameters",
 ]  # fmt: skip

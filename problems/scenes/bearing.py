@@ -14,7 +14,7 @@ from continuation.arguments.checks import FRACTION
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
+from problems.scenes.rivals import LEMKE, QUADRATIC
 from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
@@ -90,7 +90,7 @@ def Bearing(
     return Scene(
         units={"film breaks at": "degrees", "largest pressure": "Pa", "load": "N/m"},
         unknowns=(Unknown("pressures", n, "where the film is, and what it bears"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, LEMKE, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, *QUADRATIC),
     )  # fmt: skip
 
 

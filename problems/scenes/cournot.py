@@ -10,7 +10,7 @@ import numpy as np
 from continuation.arguments.checks import POSITIVE
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
+from problems.scenes.rivals import QUADRATIC
 from problems.scenes.scene import Kind, Numbers, Positive, Quantities, Scene, Unknown, with_parameters
 
 
@@ -62,5 +62,5 @@ def Cournot(
         unknowns=(Unknown("quantities", n, "who sells how much"),),
         # Negative marginal profits.
         problem=lambda: MixedLCP(A, cost - intercept, np.zeros(n), np.full(n, capacity)),
-        answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
+from problems.scenes.rivals import QUADRATIC
 from problems.scenes.scene import NotNegative, Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
 
 
@@ -65,5 +65,5 @@ def Denoising(
     return Scene(
         units={"signal": "", "jumps": ""},
         unknowns=(Unknown("forces between neighbours", n, "where the signal jumps"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

@@ -9,8 +9,8 @@ import scipy.sparse as sp
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
+from problems.scenes.pictures import mark, picture
+from problems.scenes.rivals import QUADRATIC
 from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
 
 
@@ -44,18 +44,16 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
         fit = _pooled(data)
         return {"fit": fit, "steps": 1.0 + float((np.diff(fit) > 0.0).sum())}
 
-    def drawn(solution: Any) -> Picture:
-        return picture(
-            mark("plot", data, ".", color="0.6", label="measured"),
-            mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
-            xlabel="sample", ylabel="response",
-        )  # fmt: skip
-
     return Scene(
         units={"fit": "", "steps": ""},
         unknowns=(Unknown("forces between neighbours", n, "which samples are pooled"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact,
+        picture=lambda solution: picture(
+            mark("plot", data, ".", color="0.6", label="measured"),
+            mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
+            xlabel="sample", ylabel="response",
+        ),
+        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), *QUADRATIC),
     )  # fmt: skip
 
 

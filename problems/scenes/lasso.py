@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from math import inf, nan
+from math import inf
 from typing import Annotated, Any
 
 import numpy as np
@@ -79,14 +79,6 @@ def Lasso(
         t = t * samples
         return {"coefficients": np.array([np.interp(-penalty, -t, row) for row in b]), "first enters at": float(t[0])}
 
-    def descent(scene: Any) -> Quantities:
-        if not penalty:
-            return {"first enters at": nan}
-        model = import_module("sklearn.linear_model").Lasso(
-            alpha=penalty / samples, fit_intercept=False, tol=1e-12, max_iter=100_000
-        )
-        return {"coefficients": model.fit(X, y).coef_}
-
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
         # Splitting signs would make the problem singular.
@@ -94,5 +86,5 @@ def Lasso(
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),
         answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("lars_path (sklearn)", "sklearn", lars), Rival("Lasso (sklearn)", "sklearn", descent)),
+        rivals=(Rival("lars_path (sklearn)", "sklearn", lars),),
     )  # fmt: skip

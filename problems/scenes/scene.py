@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial, wraps
-from importlib import import_module
+from importlib.util import find_spec
 from inspect import signature
 from typing import Annotated, Any, ParamSpec, get_type_hints
 
@@ -13,13 +13,12 @@ import numpy as np
 from attrs import asdict, evolve, field, frozen, make_class
 
 from continuation.arguments.checks import FINITE, NOT_NEGATIVE, POSITIVE_FINITE, Validator, integer
-from continuation.arrays import Array
 from continuation.tracing import trace
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.search.solver import solve as solve_problem
 from problems.options import finite_vector
-from problems.scenes.pictures import Picture
+from problems.scenes.pictures import Picture, draw
 
 Quantities = Mapping[str, Any]
 
@@ -63,19 +62,8 @@ class Rival:
 
     @property
     def installed(self) -> bool:
-        """Whether the required module imports."""
-        try:
-            return not self.module or bool(import_module(self.module))
-        except ImportError:
-            return False
-
-
-@frozen
-class Point:
-    """A vector as a solution for `Scene.answer`."""
-
-    x: Array
-    success: bool = True
+        """Whether the required module is there."""
+        return not self.module or find_spec(self.module) is not None
 
 
 @frozen(eq=False)
@@ -119,7 +107,7 @@ class Scene:
             Result of `solve`.
         axes : matplotlib Axes
         """
-        self.picture(solution).on(axes)
+        draw(self.picture(solution), axes)
 
 
 @frozen

@@ -52,9 +52,6 @@ def SnapThrough(
     unit, top = stiffness * (rise / span) ** 3, 2.0 / (3.0 * sqrt(3.0))
     asked = load * 2.0 / (3.0 * sqrt(3.0))
 
-    def problem() -> NormalMap:
-        return NormalMap(_lack, _slope, x0=np.ones(1), lam0=0.0, lower=stop, upper=np.inf, target=1.1 * max(asked, top))
-
     def named(fold: float, kink: float, force: float) -> Quantities:
         return {"snap load": unit * fold, "load at touch": unit * kink, "force on stop": unit * max(force, 0.0)}
 
@@ -83,5 +80,8 @@ def SnapThrough(
     return Scene(
         units={"snap load": "N", "load at touch": "N", "force on stop": "N"},
         unknowns=(Unknown("height of the joint", 1, "where it is when it touches the stop"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn,
+        answer=answer, exact=exact, picture=drawn,
+        problem=lambda: NormalMap(
+            _lack, _slope, x0=np.ones(1), lam0=0.0, lower=stop, upper=np.inf, target=1.1 * max(asked, top)
+        ),
     )  # fmt: skip

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
+from problems.scenes.rivals import QUADRATIC
 from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
@@ -83,5 +83,5 @@ def Torsion(
     return Scene(
         units={"torque": "N m", "plastic part": ""},
         unknowns=(Unknown("stress function", size, "stresses are its slopes, the torque its volume"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

@@ -51,14 +51,6 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
         quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]
         return {"time": float(minutes @ loads) / cars, "quickest way": float(quickest), "loads": loads}
 
-    def exact() -> Quantities:
-        if side > 2:
-            return {}
-        fixed, each = (part[[0, 2]] + part[[3, 1]] for part in (empty, slope))
-        first = float(np.clip((fixed[1] - fixed[0] + each[1] * cars) / each.sum(), 0.0, cars))
-        time = fixed[0] + each[0] * first if first > 0.0 else fixed[1] + each[1] * cars
-        return {"time": time, "quickest way": time, "loads": np.array([first, cars - first, cars - first, first])}
-
     def drawn(solution: Any) -> Picture:
         found = answer(solution)
         (y0, x0), (y1, x1) = (np.divmod(ends, side) for ends in (begin, end))
@@ -78,5 +70,5 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),
         ),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+        problem=problem, answer=answer, picture=drawn, rivals=(PIQP, CLARABEL),
     )  # fmt: skip

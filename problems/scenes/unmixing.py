@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
+from problems.scenes.rivals import LEMKE, QUADRATIC
 from problems.scenes.scene import (
     NotNegative,
     Positive,
@@ -71,5 +71,5 @@ def Unmixing(
         problem=lambda: LCP(spectra.T @ spectra, -spectra.T @ measured),
         answer=answer, picture=drawn,
         exact=lambda: {} if noise else {"amounts": amounts, "misfit": 0.0},
-        rivals=(Rival("nnls (scipy)", "", lawson_hanson), GAUSS_SEIDEL, LEMKE, *QUADRATIC),
+        rivals=(Rival("nnls (scipy)", "", lawson_hanson), LEMKE, *QUADRATIC),
     )  # fmt: skip
