@@ -20,7 +20,7 @@ from problems.lcp import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.reference import min_newton, modulus
 from problems.paper import EXAMPLES
-from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon, by_reference, by_tables
+from problems.scenes.rivals import Found, by_piqp, by_quantecon, by_reference, by_tables
 
 SOLVED_TO = 1e-6
 """Residual bound (`Certificate.solves`) for success."""
@@ -86,7 +86,6 @@ DIRECT = {
     "min-Newton": ("", by_reference(min_newton), lambda k, n: Counts(factorizations=k, solves=k, accepted=k)),
     "quantecon Lemke": ("quantecon", by_quantecon, pivots),
     "PIQP": ("piqp", by_piqp, interior),
-    "Clarabel": ("clarabel", by_clarabel, interior),
 }
 """Required module, solver, cost of iterations."""
 

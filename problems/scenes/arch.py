@@ -8,7 +8,7 @@ import numpy as np
 
 from problems.lcp.data.program import from_lp
 from problems.scenes.pictures import Mark, Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
+from problems.scenes.rivals import PIQP
 from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
@@ -83,5 +83,5 @@ def Arch(
             Unknown("rotations", 2 * (stones + 1), "at which joints hinges open, inside or outside"),
         ),
         problem=lambda: from_lp([0.0, 0.0, -1.0], G, h / unit),
-        answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+        answer=answer, exact=exact, picture=drawn, rivals=(PIQP,),
     )  # fmt: skip

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from continuation.arguments.checks import number
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import BFGS, CLARABEL, PIQP
+from problems.scenes.rivals import BFGS, PIQP
 from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
@@ -66,5 +66,5 @@ def Membrane(
     return Scene(
         units={"contact radius": "", "force": "N"},
         unknowns=(Unknown("heights", n, "where the membrane hangs between ball and rim"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL, BFGS),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, BFGS),
     )  # fmt: skip

@@ -13,7 +13,7 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program, from_qp
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
+from problems.scenes.rivals import PIQP
 from problems.scenes.scene import Kind, NotNegative, Numbers, Quantities, Scene, Unknown, with_parameters
 
 
@@ -106,5 +106,5 @@ def Portfolio(
             Unknown("weights", n, "how much of each asset"),
             Unknown("multiplier of the budget", 1, "all money is invested"),
         ),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP,),
     )  # fmt: skip

@@ -85,21 +85,6 @@ def by_piqp(problem: Any) -> Found:
     return _arrived(solver.result.x, status == library.PIQP_SOLVED, status, solver.result.info.iter)
 
 
-def by_clarabel(problem: Any) -> Found:
-    """A conic interior-point method."""
-    P, c, B, b, G, h, lower, upper = program_of(problem)
-    library = import_module("clarabel")
-    settings = library.DefaultSettings()
-    settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = TOLERANCE
-    low, high, one = np.isfinite(lower), np.isfinite(upper), sp.eye_array(c.size, format="csr")
-    rows = sp.csc_matrix(sp.vstack([B, -G, -one[low], one[high]]))
-    sides = np.concatenate([b, -h, -lower[low], upper[high]])
-    cones = [library.ZeroConeT(b.size), library.NonnegativeConeT(sides.size - b.size)]
-    found = library.DefaultSolver(sp.csc_matrix(sp.triu(P)), c, rows, sides, cones, settings).solve()
-    return _arrived(found.x, str(found.status) == "Solved", found.status, found.iterations)
-
-
 def by_bfgs(problem: Any) -> Found:
     """Quasi-Newton, for bounds only."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
@@ -119,8 +104,7 @@ def by_bfgs(problem: Any) -> Found:
 LEMKE = of_problem("Lemke (quantecon)", "quantecon", by_quantecon)
 TABLES = of_problem("Lemke (tables, numpy)", "", by_tables)
 PIQP = of_problem("PIQP", "piqp", by_piqp)
-CLARABEL = of_problem("Clarabel", "clarabel", by_clarabel)
 BFGS = of_problem("L-BFGS-B (scipy)", "", by_bfgs)
 
-QUADRATIC = (PIQP, CLARABEL, BFGS)
+QUADRATIC = (PIQP, BFGS)
 """For symmetric problems with bounds only."""

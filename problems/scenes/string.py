@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import BFGS, CLARABEL, LEMKE, PIQP
+from problems.scenes.rivals import BFGS, LEMKE, PIQP
 from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
@@ -64,5 +64,5 @@ def String(
         units={"contact from": "m", "support force": "N", "floor force": "N"},
         unknowns=(Unknown("heights above the floor", n, "where the string hangs and where it lies"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(LEMKE, PIQP, CLARABEL, BFGS),
+        rivals=(LEMKE, PIQP, BFGS),
     )  # fmt: skip

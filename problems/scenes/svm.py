@@ -10,7 +10,7 @@ import numpy as np
 from continuation.arrays import Array
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
+from problems.scenes.rivals import PIQP
 from problems.scenes.scene import (
     NotNegative,
     Positive,
@@ -99,5 +99,5 @@ def SVM(
         unknowns=(Unknown("weights of points", samples, "which points decide"),
                   Unknown("offset", 1, "where the border is: the multiplier of balance")),
         problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("SVC (sklearn)", "sklearn", libsvm), PIQP, CLARABEL),
+        rivals=(Rival("SVC (sklearn)", "sklearn", libsvm), PIQP),
     )  # fmt: skip

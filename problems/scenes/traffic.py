@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
+from problems.scenes.rivals import PIQP
 from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
 
 
@@ -70,5 +70,5 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),
         ),
-        problem=problem, answer=answer, picture=drawn, rivals=(PIQP, CLARABEL),
+        problem=problem, answer=answer, picture=drawn, rivals=(PIQP,),
     )  # fmt: skip
