@@ -115,12 +115,10 @@ class Profile:
     work : str
         One of `WORK`.
     by : {"method", "problem"}
-    problems : sequence of str, optional
     """
 
     work: str
     by: str = "method"
-    problems: Sequence[str] | None = None
 
     def draw(self, results: Results) -> Figure:
         """Draw the figure.
@@ -132,12 +130,11 @@ class Profile:
         Raises
         ------
         ImportError, ValueError
-            Without matplotlib; for an unknown work, `by` or problem.
+            Without matplotlib; for an unknown work or `by`.
         """
         far = excess(results, next(iter(results.errors)), self.work)
         (by,) = some("by", [self.by], ["method", "problem"])
-        shown = set(some("problems", self.problems, results.problems))
-        runs = [(row, value) for row, value in zip(results.rows, far.tolist()) if row.problem in shown]
+        runs = [*zip(results.rows, far.tolist())]
         found = []
         for name in dict.fromkeys(getattr(row, by) for row, _ in runs):
             mine = [(row, value) for row, value in runs if getattr(row, by) == name]

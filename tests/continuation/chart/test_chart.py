@@ -77,7 +77,6 @@ def test_lines_are_named_in_the_order_of_their_ends(results):
         (chart.Lines("end_point", "seconds", ["none"]), "problems: expected some of"),
         (chart.Profile("none"), "work: expected some of"),
         (chart.Profile("seconds", "family"), "by: expected some of"),
-        (chart.Profile("seconds", problems=[]), "problems: expected some of"),
     ],
 )
 def test_what_is_not_there_is_not_drawn(results, picture, complaint):
