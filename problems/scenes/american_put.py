@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.outcome import Solution
@@ -23,7 +24,6 @@ from problems.scenes.scene import (
     Rival,
     Scene,
     Unknown,
-    at_least,
     with_parameters,
 )
 
@@ -49,7 +49,7 @@ class Exercise:
 @with_parameters
 def AmericanPut(
     spot: Positive = 100.0, strike: Positive = 100.0, rate: NotNegative = 0.05, volatility: Positive = 0.2,
-    maturity: Positive = 1.0, n: Annotated[int, at_least(10)] = 400, steps: Annotated[int, at_least(2)] = 100,
+    maturity: Positive = 1.0, n: Annotated[int, integer(10)] = 400, steps: Annotated[int, integer(2)] = 100,
     width: Positive = 5.0,
 ) -> Scene:  # fmt: skip
     """What is a put worth that may be exercised at any time, and below which price is it exercised?

@@ -13,7 +13,7 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.solutions import solutions
 from problems.options import real_array
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Kind, Quantities, Rival, Scene, Unknown, with_parameters
+from problems.scenes.scene import Quantities, Rival, Scene, Unknown, with_parameters
 
 
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
@@ -24,7 +24,7 @@ def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in matrix.tolist())
 
 
-Payoffs = Annotated[Any, Kind(convert=payoffs)]
+Payoffs = Annotated[Any, None, payoffs]
 
 
 def bimatrix(C: Array, D: Array) -> LCP:

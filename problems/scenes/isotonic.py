@@ -7,15 +7,16 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import mark, picture
 from problems.scenes.rivals import QUADRATIC
-from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, with_parameters
 
 
 @with_parameters
-def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
+def Isotonic(samples: Annotated[int, integer(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
     """Which rising curve is nearest to a noisy response?
 
     Parameters

@@ -8,12 +8,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, with_parameters
 
 
 def penalised(G: Array, c: Array) -> Path:
@@ -29,8 +30,8 @@ def penalised(G: Array, c: Array) -> Path:
 
 @with_parameters
 def Lasso(
-    samples: Annotated[int, at_least(1)] = 60, features: Annotated[int, at_least(1)] = 12,
-    relevant: Annotated[int, at_least(0)] = 4, noise: NotNegative = 0.5, penalty: NotNegative = 5.0, seed: Seed = 0,
+    samples: Annotated[int, integer(1)] = 60, features: Annotated[int, integer(1)] = 12,
+    relevant: Annotated[int, integer(0)] = 4, noise: NotNegative = 0.5, penalty: NotNegative = 5.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
     """Which features explain an observation, as the penalty on their coefficients falls?
 

@@ -12,9 +12,9 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Finite, Kind, NotNegative, Positive, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.scene import Finite, NotNegative, Positive, Quantities, Scene, Unknown, with_parameters
 
-Slope = Annotated[float, Kind(number("an angle between 0 and pi/2", lambda angle: 0.0 < angle < pi / 2))]
+Slope = Annotated[float, number("an angle between 0 and pi/2", lambda angle: 0.0 < angle < pi / 2)]
 
 
 @with_parameters

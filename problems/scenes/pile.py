@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from attrs import frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.solver import solve
@@ -17,7 +18,6 @@ from problems.scenes.scene import (
     NotNegative,
     Positive,
     Scene,
-    at_least,
     with_parameters,
 )
 
@@ -38,9 +38,9 @@ class Fall:
 
 @with_parameters
 def Pile(
-    boxes: Annotated[int, at_least(1)] = 4, gap: NotNegative = 0.05, side: Positive = 1.0, mass: Positive = 1.0,
+    boxes: Annotated[int, integer(1)] = 4, gap: NotNegative = 0.05, side: Positive = 1.0, mass: Positive = 1.0,
     friction: NotNegative = 0.5, speed: Finite = 1.0, gravity: Positive = 9.81, step: Positive = 0.01,
-    steps: Annotated[int, at_least(1)] = 60,
+    steps: Annotated[int, integer(1)] = 60,
 ) -> Scene:  # fmt: skip
     """Where do boxes that fall on each other come to rest?
 

@@ -7,16 +7,17 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Regulator(
     distance: Finite = 3.0, limit: Positive = 1.0, mass: Positive = 1.0, step: Positive = 0.5,
-    weight: Positive = 0.1, horizon: Annotated[int, at_least(1)] = 12,
+    weight: Positive = 0.1, horizon: Annotated[int, integer(1)] = 12,
 ) -> Scene:  # fmt: skip
     """Which limited force best brings a cart to rest from each distance?
 

@@ -11,7 +11,7 @@ from continuation.arguments.checks import number
 from continuation.arrays import Array
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 
 def _lack(x: Any, lam: Any) -> Any:
@@ -26,7 +26,7 @@ def _slope(x: Array, lam: float) -> tuple[Array, Array]:
 @with_parameters
 def SnapThrough(
     rise: Positive = 0.05, span: Positive = 1.0, stiffness: Positive = 1e6,
-    stop: Annotated[float, Kind(number("a number between -1 and 0", lambda s: -1.0 < s < 0.0))] = -0.3,
+    stop: Annotated[float, number("a number between -1 and 0", lambda s: -1.0 < s < 0.0)] = -0.3,
     load: Positive = 1.5,
 ) -> Scene:  # fmt: skip
     """When do two shallow bars snap through onto a stop, and what does the stop bear?

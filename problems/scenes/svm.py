@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
@@ -19,7 +20,6 @@ from problems.scenes.scene import (
     Scene,
     Seed,
     Unknown,
-    at_least,
     with_parameters,
 )
 
@@ -34,7 +34,7 @@ def clouds(samples: int, distance: float, seed: int) -> tuple[Array, Array]:
 
 @with_parameters
 def SVM(
-    samples: Annotated[int, at_least(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
+    samples: Annotated[int, integer(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
     seed: Seed = 0,
 ) -> Scene:  # fmt: skip
     """Which line separates two clouds of points with the widest margin, at a price on errors?

@@ -8,14 +8,15 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import PIQP
-from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, with_parameters
 
 
 @with_parameters
-def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
+def Traffic(side: Annotated[int, integer(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
     """Which ways do drivers take across a grid of streets whose times grow with their loads?
 
     The multipliers of Beckmann's program are times to the goal.
