@@ -33,20 +33,15 @@ def pictures(charts):
     presets, scenes = charts["engine-presets"], charts["scenes"]
     both = ("seconds", "factorizations")
     # Of the README: two paths, ours and theirs.
-    taken = [method for method in OURS_AND_THEIRS if method in presets.methods]
-    headline = chart.Lines("end_point", "seconds", shown(presets), taken)
-    yield "headline", headline, evolve(presets, title="Error at the end of the path against time")
+    rows = [row for row in presets.rows if row.method in OURS_AND_THEIRS]
+    headline = evolve(presets, rows=rows, title="Error at the end of the path against time")
+    yield "headline", chart.Lines("end_point", "seconds", shown(presets)), headline
     yield "presets", chart.Lines("end_point", both, shown(presets)), presets
-    yield "steps", chart.Lines("curve_distance", "factorizations"), charts["engine-steps"]
     yield "lcp-paper", chart.Profile("factorizations"), charts["lcp-paper"]
     yield "robustness", chart.Profile("factorizations"), charts["robustness"]
     yield "scaling-curves", chart.Lines("n", both), charts["scaling-curves"]
     yield "scaling-lcp", chart.Lines("n", both), charts["scaling-lcp"]
-    yield "scenes", chart.Dumbbell("answer", "seconds"), scenes
-    names = sorted(scenes.problems)
-    for k in range(4):
-        part = names[k * len(names) // 4 : (k + 1) * len(names) // 4]
-        yield f"scenes-{k + 1}", chart.Dumbbell("answer", "seconds", part, every=True), evolve(scenes, title="")
+    yield "scenes", chart.Profile("seconds", by="problem"), scenes
 
 
 TABLES = {"": chart.summary, "solved": chart.solved}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from continuation.chart import Answer, Failure, Method, Problem, Results, Row, Rung, Study, run, tolerances
+from continuation.chart import Answer, Method, Problem, Results, Row, Study, run
 from continuation.chart.table import Cell, Table
 from continuation.counts import Counts
 from problems.charts.lcp import DIRECT, RESIDUAL, direct, path
@@ -13,10 +13,10 @@ from problems.literal import run_literally
 from problems.paper import Example
 
 
-def _literal(problem: Problem, rung: Rung) -> Answer:
+def _literal(problem: Problem, rung: float) -> Answer:
     x0, z = problem.options["x0"], problem.options["z"]
     done = run_literally(problem.subject, x0, z, z)
-    failure = Failure.NONE if done.solved else Failure.WRONG_END if done.claims_solution else Failure.STOPPED
+    failure = "" if done.solved else "wrong end" if done.claims_solution else "stopped"
     observed = {"natural_residual": done.residual}
     return Answer(Counts(accepted=done.iterations), observed=observed, failure=failure, message=done.ended_by)
 
@@ -41,8 +41,8 @@ def compare(examples: Iterable[Example], names: Sequence[str]) -> Results:
             name="methods",
             problems=problems,
             methods=[METHODS[name] for name in names],
-            ladder=tolerances(1e-6),
-            errors=[RESIDUAL],
+            ladder=(1e-6,),
+            errors=RESIDUAL,
             repeats=0,
         )
     )
@@ -55,7 +55,7 @@ def matrix(results: Results) -> str:
 
 
 _SHORT = {
-    Failure.WRONG_END: "stat.", "diverged": "div.", Failure.STOPPED: "-", "step too small": "small",
+    "wrong end": "stat.", "diverged": "div.", "stopped": "-", "step too small": "small",
     "turned back": "back", "singular start": "sing.",
 }  # fmt: skip
 

@@ -8,14 +8,13 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator
 
 from continuation.adapters.given import Adapted, library, started
 from continuation.arguments.checks import complain, expect
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.homotopy import TangentPoint
 
-KINDS = ("dense", "sparse", "operator")
+KINDS = ("dense", "sparse")
 
 
 def from_jax(
@@ -35,7 +34,7 @@ def from_jax(
     target : float or None
         As of `continuation.from_functions`.
     jacobian : str
-        "dense"; "sparse", by groups of columns that share no equation; or "operator", for GMRES.
+        "dense", or "sparse": by groups of columns that share no equation.
 
     Raises
     ------
@@ -71,16 +70,9 @@ def from_jax(
         full = np.asarray(whole(np.append(y, lam)))
         return full[:, :-1], full[:, -1]
 
-    def operator(y: Array, lam: float) -> tuple[Matrix, Array]:
-        def matvec(v: Array) -> Array:
-            return differential(y, lam, np.append(np.ravel(v), 0.0))
-
-        by_lam = differential(y, lam, np.append(np.zeros(y.size), 1.0))
-        return LinearOperator((y.size, y.size), matvec=matvec, dtype=float), by_lam
-
     more: dict[str, Any] = {"differential": differential}
-    if jacobian != "sparse":
-        more["jacobian"] = dense if jacobian == "dense" else operator
+    if jacobian == "dense":
+        more["jacobian"] = dense
     try:
         jax.eval_shape(series, u, np.zeros((2, u.size)))
         more["taylor"] = partial(_taylor, series)

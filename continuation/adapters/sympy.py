@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import cache, partial
-from math import factorial
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,6 @@ from continuation.adapters.given import Adapted, library, matrix_of, started
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.pattern import pattern_of
-from continuation.jets import Jet
-
-MODULES = ["scipy", "numpy"]
 
 
 def from_sympy(
@@ -24,7 +20,7 @@ def from_sympy(
 ) -> Adapted:  # fmt: skip
     """Make a homotopy of SymPy expressions, with a symbolic derivative; symbols are real.
 
-    SERIES uses `continuation.jets`, and symbolic derivatives of special functions.
+    SERIES uses `continuation.jets`; special functions have their series through points of the path.
 
     Parameters
     ----------
@@ -62,21 +58,8 @@ def from_sympy(
     places = [(i, place[s]) for i, one in enumerate(rows) for s in one.free_symbols if s != real[-1]]
     pattern = pattern_of([i for i, _ in places], [j for _, j in places], n)
     entries = [_slope(sp, rows[i], real[j]) for i, j in zip(pattern.rows, pattern.columns)]
-    expanded: dict[str, Any] = {}
-
-    def special(one: Any) -> bool:
-        beyond = one.func.__module__.startswith("sympy.functions.special")
-        return beyond and sum(bool(part.free_symbols) for part in one.args) == 1
-
-    def renamed(one: Any) -> Any:
-        name, x = f"series_{len(expanded)}", sp.Dummy(real=True)
-        argument = next(part for part in one.args if part.free_symbols)
-        expanded[name] = _by_derivatives(sp, one.xreplace({argument: x}), x)
-        return sp.Function(name)(argument)
-
-    values = [one.replace(special, renamed) for one in rows]
-    compiled = partial(sp.lambdify, real, modules=[expanded, *MODULES], cse=True)
-    value, slope = compiled(values), compiled([*entries, *(_slope(sp, one, real[-1]) for one in rows)])
+    compiled = partial(sp.lambdify, real, modules=["scipy", "numpy"], cse=True)
+    value, slope = compiled(rows), compiled([*entries, *(_slope(sp, one, real[-1]) for one in rows)])
 
     def residual(y: Any, lam: Any) -> Any:
         # 0 * lam makes constant equations arrays or jets.
@@ -89,22 +72,5 @@ def from_sympy(
     return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)
 
 
-def _slope(sp: Any, one: Any, x: Any, order: int = 1) -> Any:
-    return sp.diff(one, x, order).replace(sp.DiracDelta, lambda *_: sp.Integer(0))
-
-
-def _by_derivatives(sp: Any, one: Any, x: Any) -> Callable[[Any], Any]:
-    @cache
-    def derivative(k: int) -> Callable[[Any], Any]:
-        found: Callable[[Any], Any] = sp.lambdify(x, _slope(sp, one, x, k), modules=MODULES)
-        return found
-
-    def value(u: Any) -> Any:
-        if not isinstance(u, Jet):
-            return derivative(0)(u)
-        at, found = u.c[0], 0.0 * u
-        for k in range(u.order, -1, -1):
-            found = found * (u - at) + derivative(k)(at) / factorial(k)
-        return found
-
-    return value
+def _slope(sp: Any, one: Any, x: Any) -> Any:
+    return sp.diff(one, x).replace(sp.DiracDelta, lambda *_: sp.Integer(0))

@@ -85,7 +85,7 @@ def trace_many(
     archive : path, optional
         One file for all paths; until they are finished, ``name.sweep-xxxxxxxx.1.h5`` (by number of unknowns).
     progress : callable, optional
-        ``progress(done, total)``, such as `continuation.step.progress.SweepProgress`.
+        ``progress(done, total)``, called after each path.
     timeout : float, optional
         Seconds for each homotopy, enforced in process pools. (`Budget.seconds` acts only between steps.)
     **options

@@ -11,18 +11,18 @@ import numpy as np
 from attrs import Attribute
 from attrs.validators import and_
 
-_SHOWN = 200
-"""Characters of a value in a message."""
-
 Validator = Callable[[Any, "Attribute[Any]", Any], None]
 
 
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
     """The exception about an argument."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    found = " ".join(repr(value).split())
-    shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
-    return error(f"{name}: expected {expected}, found {shown}{kind}")
+    return error(f"{name}: expected {expected}, found {_shown(value)}{kind}")
+
+
+def _shown(value: Any) -> str:
+    """A value in one line of at most 200 characters."""
+    return " ".join(repr(value).split())[:200]
 
 
 def expect(fine: Any, name: str, expected: str, value: Any, error: type[Exception] = ValueError) -> None:
@@ -114,7 +114,7 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     except ValueError:
         array = np.array(None)
     if array.dtype.kind not in "fiu":
-        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
+        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else _shown(value)
         raise ValueError(f"{name}: expected real numbers, found {found}")
     with np.errstate(over="ignore"):
         # Too large longdoubles become infinite.

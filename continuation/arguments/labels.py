@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
@@ -35,35 +34,28 @@ class Labels:
         """The homotopy's labels; `TypeError` for a wrong type."""
         name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
         expect(isinstance(name, str | None), "parameter_name", "a text", name, TypeError)
-        listed = isinstance(names, Sequence) and not isinstance(names, str)
-        fine = names is None or (listed and all(isinstance(one, str) for one in names))
-        expect(fine, "names", "a list of texts, one an unknown", names, TypeError)
-        mapped = units is None or isinstance(units, Mapping)
-        fine = mapped and all(isinstance(one, str) for pair in (units or {}).items() for one in pair)
-        expect(fine, "units", "texts by the names of what they belong to", units, TypeError)
+        listed = not isinstance(names, str) and _are_texts(names, Sequence)
+        expect(listed, "names", "a list of texts, one an unknown", names, TypeError)
+        mapped = _are_texts(units, Mapping) and _are_texts([*(units or {}).values()], Sequence)
+        expect(mapped, "units", "texts by the names of what they belong to", units, TypeError)
         return cls(name or "", tuple(names or ()), dict(units or {}))
 
     def attributes(self) -> dict[str, str]:
         """Texts for an archive."""
         texts = (self.parameter_name, json.dumps(self.names), json.dumps(dict(self.units)))
-        said = (self.parameter_name, self.names, self.units)
-        return {name: text for name, text, one in zip(ATTRIBUTES, texts, said) if one}
+        return {name: text for name, text in zip(ATTRIBUTES, texts) if text not in ("", "[]", "{}")}
 
     @classmethod
     def from_attributes(cls, attributes: Mapping[str, Any]) -> Labels:
-        """Labels from an archive, without invalid ones."""
-        found: dict[str, Any] = {}
-        for name in ATTRIBUTES:
-            text = attributes.get(name)
-            if isinstance(text, str) and text:
-                with suppress(ValueError, RecursionError):
-                    found[name] = text if name == "parameter_name" else json.loads(text)
+        """Labels from an archive; none if one is invalid."""
         try:
-            said = cls.of(SimpleNamespace(**found))
-        except TypeError:
+            texts = {name: str(attributes[name]) for name in ATTRIBUTES if attributes.get(name)}
+            name = texts.pop(ATTRIBUTES[0], "")
+            said = cls.of(SimpleNamespace(parameter_name=name, **{key: json.loads(texts[key]) for key in texts}))
+        except (TypeError, ValueError, RecursionError):
             return cls()
-        texts = (said.parameter_name, *said.names, *said.units, *said.units.values())
-        return said if max(map(len, texts)) <= _LONGEST else cls()
+        shown = (said.parameter_name, *said.names, *said.units, *said.units.values())
+        return said if max(map(len, shown)) <= _LONGEST else cls()
 
     def parameter(self, symbol: str = "lam") -> str:
         """The parameter's label."""
@@ -81,7 +73,10 @@ class Labels:
         """The number of an unknown, -1 for the parameter."""
         if name in ("lam", self.parameter_name):
             return -1
-        if name in self.names:
-            return self.names.index(name)
         known = ", ".join(filter(None, ("lam", self.parameter_name, *self.names)))
-        raise ValueError(f"name: expected one of {known}, found {name!r}")
+        expect(name in self.names, "name", f"one of {known}", name)
+        return self.names.index(name)
+
+
+def _are_texts(given: Any, kind: Any) -> bool:
+    return given is None or (isinstance(given, kind) and all(isinstance(one, str) for one in given))

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import inspect
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from difflib import get_close_matches
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
-from attrs import NOTHING, frozen
+from attrs import frozen
 
 GROUP = "continuation.homotopies"
 SCENES = "continuation.scenes"
@@ -32,24 +33,6 @@ Factory = Callable[..., Any]
 
 class PluginError(LookupError):
     """A plug-in's name is unknown or ambiguous, or its import fails."""
-
-
-@frozen
-class Option:
-    """A parameter of a plug-in.
-
-    `default`: None if required, `attrs.NOTHING` if computed.
-    """
-
-    name: str
-    required: bool
-    default: Any
-    annotation: str
-
-    def __str__(self) -> str:
-        if self.required:
-            return self.name
-        return f"{self.name}={'(computed)' if self.default is NOTHING else repr(self.default)}"
 
 
 @frozen
@@ -72,7 +55,8 @@ class Plugin:
     @property
     def origin(self) -> str:
         """Distribution and object of each entry point."""
-        return " and ".join(f"{owner(point)} ({point.value})" for point in self.points)
+        owners = [f"{point.dist.name} {point.dist.version}" if point.dist else point.value for point in self.points]
+        return " and ".join(f"{owner} ({point.value})" for owner, point in zip(owners, self.points))
 
     def load(self) -> Factory:
         """Import the class or function.
@@ -87,17 +71,11 @@ class Plugin:
         (point,) = self.points
         try:
             factory: Factory = point.load()
+            inspect.signature(factory)
         except (Exception, SystemExit) as error:  # Imports may raise anything.
             who = f"{self.origin} " if point.value != self.name else ""
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {who}cannot be loaded: {reason}") from error
-        found = type(factory).__name__
-        if not callable(factory):
-            raise PluginError(f"{self.name}: expected a class or function that makes a {self.kind}, found {found}")
-        try:
-            inspect.signature(factory)
-        except (TypeError, ValueError):
-            raise PluginError(f"{self.name}: expected something with known parameters, found {factory!r:.80}") from None
         return factory
 
 
@@ -105,11 +83,11 @@ class Plugin:
 class Description:
     """A plug-in's description.
 
-    `summary`: first line of the docstring. `references`: BibTeX.
+    `summary`: first line of the docstring. `options`: as ``name=default``. `references`: BibTeX.
     """
 
     summary: str
-    options: tuple[Option, ...]
+    options: tuple[str, ...]
     problem_class: str
     references: tuple[str, ...]
 
@@ -122,8 +100,10 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
     group : str
         `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
     """
-    points = grouped(entry_points(group=group))
-    return {name: Plugin(name, tuple(points[name]), _KINDS[group]) for name in sorted(points)}
+    points: dict[str, dict[str, EntryPoint]] = defaultdict(dict)
+    for point in entry_points(group=group):
+        points[point.name].setdefault(point.value, point)
+    return {name: Plugin(name, tuple(points[name].values()), _KINDS[group]) for name in sorted(points)}
 
 
 def find(name: str, group: str = GROUP) -> Factory:
@@ -154,39 +134,29 @@ def describe(factory: Factory) -> Description:
     """The description; attributes come from the result of a function without arguments."""
     found = options(factory)
     source: Any = factory
-    if not isinstance(factory, type) and not any(option.required for option in found):
-        try:
+    if not isinstance(factory, type) and all(option.default is not option.empty for option in found.values()):
+        # A description must not fail.
+        with suppress(Exception):
             source = factory()
-        except Exception:  # A description must not fail.
-            source = factory
     references = getattr(source, "references", ())
     return Description(
         (inspect.getdoc(factory) or "").partition("\n")[0],
-        found,
+        tuple(map(_shown, found.values())),
         str(getattr(source, "problem_class", "")),
         tuple(references) if isinstance(references, (tuple, list)) else (),
     )
 
 
-def options(factory: Factory) -> tuple[Option, ...]:
+def options(factory: Factory) -> dict[str, inspect.Parameter]:
     """Named parameters."""
-    named = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-    return tuple(
-        Option(p.name, p.default is p.empty, None if p.default is p.empty else p.default, _written(p.annotation))
-        for p in inspect.signature(factory).parameters.values()
-        if p.kind in named
-    )
+    found = inspect.signature(factory).parameters.values()
+    return {one.name: one for one in found if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)}
 
 
-def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
-    """The homotopy of that name.
-
-    Raises
-    ------
-    PluginError, TypeError
-        As `find` and `called`.
-    """
-    return called(name, find(name), values)
+def _shown(option: inspect.Parameter) -> str:
+    """``name=default``; attrs computes some defaults."""
+    default = "" if option.default is option.empty else f"={option.default!r}"
+    return option.name + default.replace("=NOTHING", "=(computed)")
 
 
 def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None) -> Any:
@@ -205,34 +175,12 @@ def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None)
     TypeError
         If an option is unknown or missing.
     """
-    values = dict(values or {})
-    known = options(factory)
-    names = [option.name for option in known]
-    listed = ", ".join(map(str, known)) or "none"
+    values, known = dict(values or {}), options(factory)
+    listed = ", ".join(map(_shown, known.values())) or "none"
     for key in values:
-        if key not in names:
+        if key not in known:
             raise TypeError(f"{key}: expected an option of {name} ({listed}), found none of this name")
-    for option in known:
-        if option.required and option.name not in values:
-            raise TypeError(f"{option.name}: expected a value, since {name} has no default for it, found none")
+    for key, option in known.items():
+        if option.default is option.empty and key not in values:
+            raise TypeError(f"{key}: expected a value, since {name} has no default for it, found none")
     return factory(**values)
-
-
-def grouped(points: Iterable[EntryPoint]) -> dict[str, list[EntryPoint]]:
-    """Entry points by name, without duplicates."""
-    found: dict[str, list[EntryPoint]] = defaultdict(list)
-    for point in points:
-        if all(point.value != other.value for other in found[point.name]):
-            found[point.name].append(point)
-    return dict(found)
-
-
-def owner(point: EntryPoint) -> str:
-    """Distribution and version of an entry point, or its object."""
-    return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
-
-
-def _written(annotation: Any) -> str:
-    if annotation is inspect.Parameter.empty:
-        return ""
-    return annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))

@@ -7,17 +7,16 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 
-from continuation.arguments.checks import check_flag, expect, is_number
+from continuation.arguments.checks import expect, instance_with, is_number
 from continuation.arrays import Array
-from continuation.auditing.length import check_metric, metric_of
 from continuation.budget import Budget
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import Evaluator
-from continuation.metric import Metric, inner, norm
+from continuation.metric import Automatic, Metric, Weighted, inner, norm
 from continuation.path import LocatedEvent, Path, Step
 from continuation.path.path import require_path
 from continuation.point.arc import cubic_between
@@ -25,12 +24,10 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 from continuation.status import Status
+from continuation.step.options import PARTS
 from continuation.step.presets import CONSERVATIVE
 from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
-
-BEFORE = 0.1
-"""Share of the last step before a branch point at which a retrace begins: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
@@ -84,7 +81,6 @@ def audit(
     *,
     metric: Metric | None = None,
     tolerance: float | Tolerance = 1e-8,
-    backwards: bool = False,
 ) -> Audit:
     """Check that the tracer stayed on one path: a retrace with steps half as long must pass the same points.
 
@@ -99,8 +95,6 @@ def audit(
         As in the trace.
     tolerance : float or Tolerance
         As in the trace; points may differ by a thousand times as much.
-    backwards : bool
-        Retrace from end to start: jumps rarely occur both ways.
 
     Returns
     -------
@@ -112,27 +106,18 @@ def audit(
         If the path has no step.
     """
     require_path(path)
-    check_metric(metric)
-    check_flag("backwards", backwards)
+    if metric is not None:
+        instance_with("metric", metric, *PARTS["metric"])
     rule, tolerance = metric or metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
-    sign = 1.0
-    if backwards:
-        indices, sign = indices[::-1], -1.0
-    steps, crossings = [path.steps[k] for k in indices], path.branch_points
-    if backwards and crossings and crossings[-1].ends_step and crossings[-1].step == steps[0].index:
-        # Paths do not begin regularly at branch points.
-        s = steps[0].arclength + BEFORE * (steps[1].arclength - steps[0].arclength)
-        crossings = crossings[:-1]
-        steps[0] = evolve(steps[0], u=refine(homotopy, path, s, tolerance), tangent=steps[1].tangent)
-    knots = _knots(steps, path.kinks, sign, rule)
+    knots = _knots([path.steps[k] for k in indices], rule)
     tracer = Tracer(
         homotopy,
         preset=CONSERVATIVE,
         controller=Halved(np.array([knot.arclength for knot in knots])),
         metric=rule,
         tolerance=tolerance,
-        target=path.endpoint.lam if path.status is Status.REACHED_TARGET and not backwards else None,
+        target=path.endpoint.lam if path.status is Status.REACHED_TARGET else None,
         start=(knots[0].u, knots[0].tangent),
         budget=Budget(steps=20 * len(knots) + 100),
     )
@@ -142,7 +127,7 @@ def audit(
     words, same = [], True
     for name, found, stored in (
         ("turning points", tracer.path.turning_points, path.turning_points),
-        ("branch points", tracer.path.branch_points, crossings),
+        ("branch points", tracer.path.branch_points, path.branch_points),
     ):
         passed, expected = _passed(tracer, found, knots[-1], tolerance), len(stored)
         same = same and passed == expected
@@ -151,18 +136,24 @@ def audit(
     return Audit(same, sentence, None, tracer.path)
 
 
-def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
-    onward = {event.step: event.rays[1] for event in kinks if event.rays is not None and len(event.rays) > 1}
+def metric_of(homotopy: Any, path: Path) -> Metric:
+    """The homotopy's own metric, else that at the path's end."""
+    own: Metric | None = getattr(homotopy, "metric", None)
+    if own is not None:
+        return own
+    weights = path.steps[-1].weights
+    if weights is None:
+        extent = np.ptp(path.u, axis=0)
+        weights = Automatic().of_extent(np.where(extent > 0.0, extent, float(extent.max()) or 1.0))
+    return Weighted(weights[:-1], float(weights[-1]))
 
-    def tangent(step: Step) -> Array:
-        # A kink has two tangents: use the incoming one.
-        return -onward[step.index] if sign < 0.0 and step.index in onward else sign * step.tangent
 
-    knots = [Knot(0.0, steps[0].u, tangent(steps[0]))]
+def _knots(steps: list[Step], metric: Metric) -> list[Knot]:
+    knots = [Knot(0.0, steps[0].u, steps[0].tangent)]
     weights: Array | None = None
     for before, after in pairwise(steps):
         weights = metric.weights(before.u, before.tangent, weights)
-        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, tangent(after)))
+        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, after.tangent))
     return knots
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.auditing.length import metric_of
-from continuation.auditing.retrace import Halved
+from continuation.auditing.retrace import Halved, metric_of
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, cell_between, joined
 from continuation.certificate.closing import NEXT_TO_END, made

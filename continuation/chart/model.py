@@ -1,4 +1,4 @@
-"""Ladders, problems, methods and their answers."""
+"""Problems, methods and their answers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any, Unpack
 
 from attrs import Factory, field, frozen
 
-from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.homotopy import Homotopy, offers
@@ -15,54 +14,6 @@ from continuation.path import Path
 from continuation.step.options import Options, check_names
 from continuation.step.presets import CONSERVATIVE
 from continuation.tracing import trace
-
-
-@frozen
-class Rung:
-    """One value of the varied setting.
-
-    Attributes
-    ----------
-    name : str
-        An option of `continuation.trace`, or of the study's methods.
-    value : float
-        Positive.
-    """
-
-    name: str
-    value: float = field(validator=POSITIVE_FINITE)
-
-
-def tolerances(*values: float) -> tuple[Rung, ...]:
-    """Vary the tolerance.
-
-    Parameters
-    ----------
-    *values : float
-    """
-    return tuple(Rung("tolerance", value) for value in values)
-
-
-def longest_steps(*values: float) -> tuple[Rung, ...]:
-    """Vary the longest step.
-
-    Parameters
-    ----------
-    *values : float
-        Arclengths.
-    """
-    return tuple(Rung("max_step", value) for value in values)
-
-
-class Failure:
-    """Kinds of failure; empty on success."""
-
-    NONE = ""
-    JUMP = "jump"
-    WRONG_END = "wrong end"
-    EXCEPTION = "exception"
-    BUDGET = "budget"
-    STOPPED = "stopped"
 
 
 @frozen(eq=False)
@@ -148,14 +99,14 @@ class Answer:
     observed : mapping
         Scalars at the end.
     failure, message : str
-        One of `Failure`; reason.
+        Kind of failure, empty on success: "jump", "wrong end", "exception", "budget", "stopped"; reason.
     """
 
     counts: Counts
     path: Path | None = None
     end: Array | None = None
     observed: Mapping[str, float] = field(factory=dict)
-    failure: str = Failure.NONE
+    failure: str = ""
     message: str = ""
 
 
@@ -167,7 +118,7 @@ class Method:
     ----------
     name : str
     run : callable
-        Maps (problem, rung) to an Answer.
+        Maps (problem, rung) to an Answer; a rung is a tolerance, or another number that the study varies.
     applies : callable
         Whether it fits a problem.
     outside : bool
@@ -175,7 +126,7 @@ class Method:
     """
 
     name: str
-    run: Callable[[Problem, Rung], Answer]
+    run: Callable[[Problem, float], Answer]
     applies: Callable[[Problem], bool] = lambda problem: True
     outside: bool = False
 
@@ -196,9 +147,8 @@ def traced(name: str, **options: Unpack[Options]) -> Method:
     """
     check_names(options)
 
-    def run(problem: Problem, rung: Rung) -> Answer:
-        asked: dict[str, Any] = {**problem.options, **options, rung.name: rung.value}
-        return answer_of(trace(problem.subject, **asked))
+    def run(problem: Problem, rung: float) -> Answer:
+        return answer_of(trace(problem.subject, **{**problem.options, **options, "tolerance": rung}))
 
     return Method(name, run)
 

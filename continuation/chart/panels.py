@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from continuation.chart.results import ERROR_FLOOR, Results
+from continuation.chart.results import Results
 from continuation.plot.drawing import COLOURS, STYLES, require_matplotlib
 
 MARKERS = "os^DvPX<>p"
@@ -68,7 +68,6 @@ def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) 
     axes.set_ylim(0.6 - len(lines), 0.6)
     axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
     axes.tick_params(axis="y", length=0.0)
-    plain_ticks(axes.xaxis)
     gridded(axes)
     axes.grid(axis="y", visible=False)
     return figure, axes
@@ -79,24 +78,3 @@ def gridded(axes: Axes) -> None:
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
-
-
-def plain_ticks(axis: Any) -> None:
-    """Label 1, 2, 5 of each decade on short axes."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    low, high = axis.get_view_interval()
-    if high <= 300.0 * low:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high > 8.0 * low else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
-
-
-def to_round_off(axes: Axes) -> None:
-    """Let errors fall to the right."""
-    least, largest = axes.get_xlim()
-    axes.set_xlim(max(largest, 1e3 * least), least)
-    if least < 1e3 * ERROR_FLOOR:
-        axes.axvline(ERROR_FLOOR, color="0.7", linewidth=0.8, zorder=0)
-        where = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": "x-small", "color": "0.5"}
-        axes.annotate("round-off", (ERROR_FLOOR, 0.94), (-3, 0), textcoords="offset points", **where)

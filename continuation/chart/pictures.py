@@ -16,18 +16,13 @@ from continuation.chart.panels import (
     gridded,
     looks_of,
     panels,
-    plain_ticks,
     rows_of_marks,
-    to_round_off,
 )
-from continuation.chart.results import WORK, Results, Row, by_size, excess, some
+from continuation.chart.results import WORK, Results, Row, excess, some
 from continuation.plot.drawing import COLOURS
 
 Line = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
 """Name, style, points."""
-
-Rows = tuple[str, Sequence[Row], str]
-"""Name, runs, remark."""
 
 
 def _names(value: str | Sequence[str]) -> tuple[str, ...]:
@@ -45,14 +40,13 @@ class Lines:
     ----------
     across : str
         Error name, or ``"n"``.
-    work, problems, methods : sequence of str
-        Default: all problems and methods.
+    work, problems : sequence of str
+        Default: all problems.
     """
 
     across: str
     work: tuple[str, ...] = field(converter=_names)
     problems: Sequence[str] | None = None
-    methods: Sequence[str] | None = None
 
     def draw(self, results: Results) -> Figure:
         """Draw the figure.
@@ -69,7 +63,7 @@ class Lines:
         sizes = self.across == "n"
         some("work", self.work, WORK)
         some("error", [self.across], ["n", *results.errors])
-        looks = looks_of(results, some("methods", self.methods, results.methods))
+        looks = looks_of(results, results.methods)
         subjects = results.families if sizes else some("problems", self.problems, results.problems)
         cases = [(subject, work) for subject in subjects for work in self.work]
         columns = len(self.work) if len(self.work) > 1 else min(2, len(subjects))
@@ -85,7 +79,9 @@ class Lines:
 
     def _line(self, rows: Sequence[Row], method: str, work: str, look: dict[str, Any]) -> Line:
         if self.across == "n":
-            return method, look, by_size(rows, work)
+            solved = [row for row in rows if not row.failed]
+            sizes = {n: [row.work(work) for row in solved if row.n == n] for n in sorted({row.n for row in solved})}
+            return method, look, [(n, float(np.mean(found))) for n, found in sizes.items()]
         points = [point for row in rows if (point := row.placed(self.across, work)) is not None]
         failed = sum(row.failed for row in rows)
         return method + (f" ({failed} of {len(rows)} failed)" if failed else ""), look, points
@@ -103,10 +99,7 @@ class Lines:
         axes.set_yscale("log")
         axes.margins(x=0.06, y=0.08)
         if self.across != "n":
-            to_round_off(axes)
-        else:
-            plain_ticks(axes.xaxis)
-        plain_ticks(axes.yaxis)
+            axes.invert_xaxis()
         gridded(axes)
 
 
@@ -114,15 +107,18 @@ class Lines:
 class Profile:
     """A row for each method: the `excess` of every solved run, the median, and the percentage solved.
 
-    Methods that solve most stand above, quicker ones first. Outside methods are grey.
+    Methods that solve most stand above, quicker ones first. Outside methods are grey. With ``by="problem"`` each
+    problem has a row, ordered by the median of the methods that are not outside.
 
     Attributes
     ----------
     work : str
         One of `WORK`.
+    by : {"method", "problem"}
     """
 
     work: str
+    by: str = "method"
 
     def draw(self, results: Results) -> Figure:
         """Draw the figure.
@@ -134,107 +130,25 @@ class Profile:
         Raises
         ------
         ImportError, ValueError
-            Without matplotlib; for an unknown work.
+            Without matplotlib; for an unknown work or `by`.
         """
         far = excess(results, next(iter(results.errors)), self.work)
+        (by,) = some("by", [self.by], ["method", "problem"])
+        runs = [*zip(results.rows, far.tolist())]
         found = []
-        for method in results.methods:
-            runs = far[[row.method == method for row in results.rows]]
-            values = runs[np.isfinite(runs)]
-            share = values.size / runs.size
-            median = float(np.median(values)) if values.size else math.inf
-            colour = "0.45" if results.of(method=method)[0].outside else COLOURS[0]
-            marks: list[Mark] = [(value, {"marker": "o", "color": colour, "alpha": 0.35}) for value in values]
-            if marks:
-                marks.append((median, {"marker": "|", "color": colour, "markersize": 16, "markeredgewidth": 2.5}))
-            found.append((-share, median, (method, marks, f"{share:.0%} solved")))
+        for name in dict.fromkeys(getattr(row, by) for row, _ in runs):
+            mine = [(row, value) for row, value in runs if getattr(row, by) == name]
+            judged = [value for row, value in mine if by == "method" or not row.outside]
+            solved = [value for value in judged if np.isfinite(value)]
+            share, median = len(solved) / max(len(judged), 1), float(np.median(solved)) if solved else math.inf
+            marks: list[Mark] = [
+                (value, {"marker": "o", "color": "0.45" if row.outside else COLOURS[0], "alpha": 0.35})
+                for row, value in mine
+                if np.isfinite(value)
+            ]
+            if solved:
+                marks.append((median, {"marker": "|", "color": "0.2", "markersize": 16, "markeredgewidth": 2.5}))
+            found.append((-share, median, (name, marks, f"{share:.0%} solved")))
         figure, axes = rows_of_marks(results.title, [row for _, _, row in sorted(found, key=lambda each: each[:2])])
         axes.set_xlabel(f"{WORK[self.work]}, over the least of equally accurate runs; line: median")
         return figure
-
-
-ACCURACY = (
-    ("≤ 1e-12", 1e-12, "#08306b"),
-    ("1e-9", 1e-9, "#2171b5"),
-    ("1e-6", 1e-6, "#6baed6"),
-    ("1e-3", 1e-3, "#fdae6b"),
-    ("more", math.inf, "#d94801"),
-)
-"""Error classes of three digits (readers tell five colours apart)."""
-
-
-@frozen
-class Dumbbell:
-    """Best outside method, named in a remark, against ours, a row for each problem by ratio; colours show errors.
-
-    The best is the quickest without failure, on the last rung. With `every`, each method has a row, each rung a point.
-
-    Attributes
-    ----------
-    error, work : str
-    problems : sequence of str, optional
-    every : bool
-    """
-
-    error: str
-    work: str
-    problems: Sequence[str] | None = None
-    every: bool = False
-
-    def draw(self, results: Results) -> Figure:
-        """Draw the figure.
-
-        Parameters
-        ----------
-        results : Results
-
-        Raises
-        ------
-        ImportError, ValueError
-            Without matplotlib; for unknown names.
-        """
-        some("error", [self.error], results.errors)
-        some("work", [self.work], WORK)
-        problems = some("problems", self.problems, results.problems)
-        lines = (self._all_methods if self.every else self._best)(results, problems)
-        marked = [(name, [self._mark(row) for row in rows], said) for name, rows, said in lines]
-        figure, axes = rows_of_marks(results.title, marked)
-        axes.set_xlabel(WORK[self.work])
-        key = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *((name, "s", c) for name, _, c in ACCURACY)]
-        handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in key]
-        figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False, fontsize="small",
-                      handletextpad=0.1, columnspacing=1.2)  # fmt: skip
-        return figure
-
-    def _mark(self, row: Row) -> Mark:
-        colour = next(colour for _, most, colour in ACCURACY if not row.errors[self.error] > most)
-        look = {"color": colour, "markersize": 7, "markeredgecolor": "white"}
-        return row.work(self.work), {"marker": "o" if row.outside else "D", **look}
-
-    def _best(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        found = []
-        for problem in problems:
-            rows = [row for row in results.of(problem=problem) if not row.failed]
-            last = max((row.rung for row in rows), default=math.nan)
-            ranked = sorted((row for row in rows if row.rung == last), key=lambda row: row.work(self.work))
-            ours, best = ([row for row in ranked if row.outside is outside][:1] for outside in (False, True))
-            ratio, said = math.nan, "no rival" if ours else "ours failed"
-            if best and ours:
-                ratio = best[0].work(self.work) / ours[0].work(self.work)
-                much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
-                said = f"{much} {'quicker' if ratio >= 1.0 else 'slower'} than {best[0].method}"
-            found.append((math.inf if math.isnan(ratio) else -ratio, (problem, ours + best, said)))
-        return [line for _, line in sorted(found, key=lambda pair: pair[0])]
-
-    def _all_methods(self, results: Results, problems: Sequence[str]) -> list[Rows]:
-        lines: list[Rows] = []
-        for problem in problems:
-            whole = sorted(results.of(problem=problem), key=lambda row: (row.failed, row.work(self.work)))
-            head = f"{problem}:  "
-            for method in dict.fromkeys(row.method for row in whole):
-                rows = results.of(problem=problem, method=method)
-                said = ", ".join(dict.fromkeys(row.failure for row in rows if row.failed))
-                lines.append((head + method, [row for row in rows if not row.failed], said))
-                head = ""
-            lines.append(("", [], ""))
-        return lines[:-1]

@@ -25,8 +25,8 @@ class Row:
     Attributes
     ----------
     problem, family, method : str
-    n, turns : int
-        Size; turning points found.
+    n : int
+        Size.
     outside : bool
         See `Method`.
     rung, seconds : float
@@ -48,7 +48,6 @@ class Row:
     message: str
     errors: Mapping[str, float]
     counts: Counts
-    turns: int
     seconds: float
 
     @property
@@ -207,9 +206,3 @@ def excess(results: Results, error: str, work: str) -> Array:
         math.inf if point is None else point[1] / min(w for of, e, w in points if of == problem and e <= point[0])
         for problem, point in placed
     ])  # fmt: skip
-
-
-def by_size(rows: Sequence[Row], work: str) -> list[tuple[float, float]]:
-    """Pairs (n, mean work of successes), by n."""
-    sizes = sorted({row.n for row in rows if not row.failed})
-    return [(n, float(np.mean([row.work(work) for row in rows if row.n == n and not row.failed]))) for n in sizes]

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from pathlib import Path as File
 
 from continuation.archive.provenance import now, software
-from continuation.chart.model import Answer, Failure, Method, Problem, Rung
+from continuation.chart.model import Answer, Method, Problem
 from continuation.chart.results import Results, Row, write
 from continuation.chart.study import WRONG, Study, distance
-from continuation.chart.table import Table, failures, solved, summary
+from continuation.chart.table import Table, solved, summary
 from continuation.counts import Counts
 from continuation.linear.threads import one_thread
 from continuation.status import Status
 
-Watch = Callable[[int, int, Row], None]
-"""Called after each run with (done, total, row)."""
-
 
 @one_thread
-def run(study: Study, watch: Watch | None = None) -> Results:
+def run(study: Study) -> Results:
     """Run a study.
 
     The first run is judged; the time is the least processor time of later ones, with one BLAS thread by default.
@@ -30,35 +26,30 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     Parameters
     ----------
     study : Study
-    watch : callable, optional
-        See `Watch`.
     """
-    cases = [
-        (problem, method, rung)
+    rows = [
+        _row(study, problem, method, rung)
         for problem in study.problems
         for method in study.methods
         if method.applies(problem)
         for rung in study.ladder
     ]
-    rows: list[Row] = []
-    for case in cases:
-        rows.append(_row(study, *case))
-        if watch is not None:
-            watch(len(rows), len(cases), rows[-1])
     return Results(
         study=study.name,
         title=study.title,
-        ladder=study.ladder[0].name,
-        errors={error.name: error.label for error in study.errors},
+        ladder=study.varied,
+        errors=study.errors,
         work=study.work,
         rows=rows,
-        provenance={**software(), "created": now(), **({"notes": "; ".join(study.notes)} if study.notes else {})},
+        provenance={**software(), "created": now()},
     )
 
 
-def _row(study: Study, problem: Problem, method: Method, rung: Rung) -> Row:
+def _row(study: Study, problem: Problem, method: Method, rung: float) -> Row:
     answer, seconds = _timed(problem, method, rung)
     failure, message = verdict(problem, answer)
+    end = math.nan if answer.end is None else distance(answer.end, problem.truth.end)
+    known = {"end_point": end, **answer.observed}
     # The first run may compile.
     again = [_timed(problem, method, rung)[1] for _ in range(0 if failure else study.repeats)]
     return Row(
@@ -67,24 +58,23 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung) -> Row:
         n=problem.n,
         method=method.name,
         outside=method.outside,
-        rung=rung.value,
+        rung=rung,
         failure=failure,
         message=message,
-        errors={error.name: float(error.measure(problem, answer)) for error in study.errors},
+        errors={name: float(known.get(name, math.nan)) for name in study.errors},
         counts=answer.counts,
-        turns=0 if answer.path is None else len(answer.path.turning_points),
         seconds=min(again, default=seconds),
     )
 
 
-def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]:
+def _timed(problem: Problem, method: Method, rung: float) -> tuple[Answer, float]:
     # Processor time is then independent of other load.
     begin = time.process_time()
     try:
         answer = method.run(problem, rung)
     except Exception as error:  # Other methods still run.
         sentence = f"{type(error).__name__}: {error}"
-        answer = Answer(counts=Counts(), failure=Failure.EXCEPTION, message=sentence)
+        answer = Answer(counts=Counts(), failure="exception", message=sentence)
     return answer, time.process_time() - begin
 
 
@@ -96,19 +86,19 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
         return answer.failure, answer.message
     if path is not None and not path.success:
         ended = path.status.name.lower().replace("_", " ")
-        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else ended, path.message
+        return "budget" if path.status is Status.BUDGET_EXHAUSTED else ended, path.message
     if path is not None and truth.turns not in (None, len(path.turning_points)):
-        return Failure.JUMP, f"{len(path.turning_points)} turning points, the path has {truth.turns}"
+        return "jump", f"{len(path.turning_points)} turning points, the path has {truth.turns}"
     if truth.end is not None and answer.end is None:
-        return Failure.STOPPED, answer.message or "no end point"
+        return "stopped", answer.message or "no end point"
     right = truth.end is None or off <= WRONG
-    return (Failure.NONE, answer.message) if right else (Failure.WRONG_END, f"the end is {off:.1e} away")
+    return ("", answer.message) if right else ("wrong end", f"the end is {off:.1e} away")
 
 
 def tables(results: Results) -> dict[str, Table]:
     """Tables by title."""
-    found = {"Median excess": summary(results), "Families": solved(results), "Failures": failures(results)}
-    return {title: table for title, table in found.items() if len(table.head) > 2 and table.rows}
+    found = {"Median excess": summary(results)}
+    return {**found, "Families": solved(results)} if len(results.families) > 1 else found
 
 
 def report(study: Study, results: Results, folder: File) -> list[File]:

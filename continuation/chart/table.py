@@ -57,18 +57,6 @@ def _shown(cell: Cell) -> str:
     return "" if math.isnan(cell) else f"{cell:.3g}"
 
 
-def failures(results: Results) -> Table:
-    """One line per run that failed, with the reason.
-
-    Parameters
-    ----------
-    results : Results
-    """
-    rows = [row for row in results.rows if row.failed]
-    lines = [(row.problem, row.method, row.rung, row.failure, row.message) for row in rows]
-    return Table(("problem", "method", results.ladder, "failure", "reason"), lines)
-
-
 def summary(results: Results) -> Table:
     """Successes, failures, and median `excess` of successful runs for each method.
 

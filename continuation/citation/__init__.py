@@ -12,8 +12,6 @@ from continuation.homotopy import Homotopy, SupportsReferences, offers
 from continuation.status import Kind
 
 _KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
-_FIELD = re.compile(r"^\s*(author|year|title)\s*=\s*\{(.*)\},?\s*$", re.MULTILINE)
-_MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
 
 
 @runtime_checkable
@@ -82,18 +80,3 @@ def key(entry: str) -> str:
     """The citation key, or the entry itself."""
     found = _KEY.search(entry)
     return found.group(1) if found else entry
-
-
-def short(entry: str) -> str:
-    """Author, year and title in one line."""
-    fields = {name: _plain(value) for name, value in _FIELD.findall(entry)}
-    names = [name.partition(",")[0].strip() for name in fields.get("author", "").split(" and ")]
-    if len(names) > 1:
-        last = names.pop()
-        names = [", ".join(names) + (" et al." if last == "others" else f" and {last}")]
-    parts = [" ".join(filter(None, (names[0], fields.get("year", "")))), fields.get("title", "")]
-    return ", ".join(filter(None, parts)) or key(entry)
-
-
-def _plain(text: str) -> str:
-    return _MARKUP.sub("", text).strip()

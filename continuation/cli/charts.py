@@ -40,7 +40,5 @@ def run(arguments: argparse.Namespace) -> int:
         results = run_study(study)
         for title, table in tables(results).items():
             print(f"\n{results.title}: {title}\n{table.text()}")
-        for note in study.notes:
-            print(f"\n{results.title}: {note}")
         print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
     return SUCCESS

@@ -85,13 +85,13 @@ def _list(arguments: argparse.Namespace) -> int:
 
 
 def _entry(name: str, described: plugins.Description, plugin: plugins.Plugin | None) -> str:
-    from continuation.citation import short
+    from continuation.citation import key
 
     said = {
-        "options": ", ".join(map(str, described.options)) or "none",
+        "options": ", ".join(described.options) or "none",
         "a scene": f"continuation solve scene {name}" if plugin is not None and plugin.kind == "scene" else "",
         "for": described.problem_class,
-        "reference": "; ".join(map(short, described.references)),
+        "reference": ", ".join(map(key, described.references)),
         "from": name if plugin is None else plugin.origin,
     }
     lines = (f"{word}: {text}" for word, text in said.items() if text)

@@ -24,13 +24,17 @@ def homotopy_of(
 ) -> tuple[Any, Mapping[str, Any]]:
     """The homotopy or scene for NAME KEY=VALUE ..., and its options; `known` gives defaults."""
     factory = plug_in(name, group)
-    written = {option.name: option.annotation for option in plugins.options(factory)}
+    written = {name: option.annotation for name, option in plugins.options(factory).items()}
     values = {key: value for key, value in (known or {}).items() if key in written}
+    typed: set[str] = set()
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.isidentifier():
             raise UsageError("KEY=VALUE", f"expected an option like n=10, found {text!r}")
-        values[key] = value if written.get(key, "").startswith("str") else _literal(value)
+        if key in typed:
+            raise UsageError(key, "expected one value, found two")
+        typed.add(key)
+        values[key] = value if str(written.get(key)).startswith(("str", "<class 'str'")) else _literal(value)
     try:
         return plugins.called(name, factory, values), values
     except (TypeError, ValueError) as error:

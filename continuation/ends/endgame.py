@@ -97,7 +97,7 @@ class Endgame:
             best = end
         if best is None or best.length > self.solver.tolerance.relative:
             return None
-        return best if self._keeps_orientation(best, here) else None
+        return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None
 
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
         """Whether two samples lie on one branch, as far as known.
@@ -118,6 +118,13 @@ class Endgame:
         except EvaluationError:
             return True
         return at.orientation == last.orientation or not regular(self.solver, at, last)
+
+    def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
+        """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
+        residual_norm = self.solver.evaluator.residual_norm
+        residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
+        moved = residual_norm(np.append(taken[0].u[:-1], self.target))
+        return residual <= THREE_DIGITS * moved + DECADE * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, and its noise."""

@@ -29,7 +29,7 @@ class Step:
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
         Sum of circular arcs through two points with the angle between their tangents, in the step's metric: the curve's
-        length to fourth order in the angle (`continuation.arclength`: to 1e-9).
+        length to fourth order in the angle.
     step_length : float
         The predictor's step; 0 at the start.
     residual_norm : float

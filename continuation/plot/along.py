@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from continuation.plot.drawing import (
     COLOURS,
@@ -64,19 +65,15 @@ def plot_components(
     chosen, own = chosen_components(components, path.u[:, :-1]), path.labels
     usual = [own.with_unit(own.unknown(i)) if own.unknown(i) else f"$y_{{{i}}}$" for i in chosen]
     labels = usual if names is None else list(names)
-    if len(labels) != len(chosen):
-        raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
+    expect(len(labels) == len(chosen), "names", f"{len(chosen)}, one a component drawn", labels)
     parts = stable_parts(path)
     curves = [
         Drawing(path, s, u, u[:, i], [event.y[i] for event in path.events], label, k, parts)
         for k, (i, label) in enumerate(zip(chosen, labels))
     ]
     axes = draw(axes, [curves], against, legend)
-    unknowns = int(np.isfinite(path.u[:, :-1]).any(axis=0).sum())
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
-    elif legend and components is None and len(chosen) < unknowns:
-        axes.get_legend().set_title(f"{len(chosen)} of {unknowns}", prop={"size": "small"})
     return axes
 
 
@@ -104,7 +101,9 @@ def plot_profiles(
         Without matplotlib; for an empty path or wrong size of x.
     """
     check_path(path)
-    places = _places(path, x)
+    size = path.steps[0].y.size
+    places = np.arange(size, dtype=float) if x is None else np.asarray(x, dtype=float)
+    expect(places.shape == (size,), "x", f"{size} places, one an unknown", x)
     axes = axes_or_new(axes)
     ends = path.arclength[0], path.arclength[-1]
     for k, s in enumerate(np.linspace(*ends, min(profiles, MOST_COMPONENTS))):
@@ -113,46 +112,6 @@ def plot_profiles(
     axes.legend(title=path.labels.parameter(r"$\lambda$"), frameon=False, fontsize="small")
     axes.set_xlabel("number of the unknown" if x is None else "$x$")
     return tidy(axes)
-
-
-def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> Axes:
-    """Draw all unknowns as a heat map over arclength.
-
-    Parameters
-    ----------
-    path : Path
-    axes : matplotlib Axes, optional
-    x : array_like, shape (N,), optional
-        Positions; default: numbers of the unknowns.
-
-    Returns
-    -------
-    Axes
-
-    Raises
-    ------
-    ImportError, ValueError
-        Without matplotlib; for an empty path or wrong size of x.
-    """
-    check_path(path)
-    places = _places(path, x)
-    axes = axes_or_new(axes)
-    s, u = sampled(path)
-    filled = axes.pcolormesh(s, places, u[:, :-1].T, shading="nearest", cmap="viridis", rasterized=True)
-    axes.figure.colorbar(filled, ax=axes)
-    for event in path.turning_points:
-        axes.axvline(event.arclength, color="white", linewidth=0.8)
-    label_axis(axes, "arclength", [path])
-    axes.set_ylabel("number of the unknown" if x is None else "$x$")
-    return axes
-
-
-def _places(path: Drawn, x: Array | None) -> Array:
-    size = path.steps[0].y.size
-    places = np.arange(size, dtype=float) if x is None else np.asarray(x, dtype=float)
-    if places.shape != (size,):
-        raise ValueError(f"x: expected {size} places, one an unknown, found shape {places.shape}")
-    return places
 
 
 def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
@@ -181,27 +140,19 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     return tidy(axes)
 
 
-VISIBLE = 0.004
-"""Least drawn radius in picture widths: most tubes are thinner than a line."""
-
-
 def plot_tube(cells: Any, gaps: Sequence[tuple[float, float]], component: int, axes: Axes | None = None) -> Axes:
     """Draw the tube in one component of y against the parameter; `gaps` are arclengths."""
     axes = axes_or_new(axes)
     from matplotlib.collections import PolyCollection
 
     rows = zip(cells.begin, cells.end, cells.slope_begin, cells.slope_end)
-    cubics = [[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, SMOOTHNESS)] for row in rows]
-    curves = np.array(cubics)[:, :, [-1, component]]
-    wide = np.maximum(cells.radius[:, [-1, component]], VISIBLE * np.ptp(curves, axis=(0, 1)))[:, None]
-    lo = np.minimum(curves[:, 1:], curves[:, :-1]) - wide
-    hi = np.maximum(curves[:, 1:], curves[:, :-1]) + wide
+    curves = np.array([[cubic(*row).at(t) for t in np.linspace(0.0, 1.0, SMOOTHNESS)] for row in rows])
+    curves, wide = curves[:, :, [-1, component]], cells.radius[:, [-1, component]][:, None]
+    lo, hi = (sign * np.maximum(sign * curves[:, 1:], sign * curves[:, :-1]) + sign * wide for sign in (-1.0, 1.0))
     corners = [np.stack([x[..., 0], y[..., 1]], axis=-1) for x, y in ((lo, lo), (hi, lo), (hi, hi), (lo, hi))]
     boxes = np.stack(corners, axis=2).reshape(-1, 4, 2)
-    axes.add_collection(PolyCollection(list(boxes), color=COLOURS[0], alpha=0.35, linewidth=0.0))
+    # Most tubes are thinner than a line: their edges are drawn.
+    axes.add_collection(PolyCollection(list(boxes), color=COLOURS[0], alpha=0.35, linewidth=2.0))
     axes.plot(*curves.reshape(-1, 2).T, ".-", markevery=SMOOTHNESS, color=COLOURS[0], linewidth=0.8)
-    begins, ends = ([gap[k] for gap in gaps] for k in (0, 1))
-    beside = np.isin(cells.place[:, 1], begins) | np.isin(cells.place[:, 0], ends)
-    axes.plot(*curves[beside][:, [0, -1]].reshape(-1, 2).T, "x", color=COLOURS[1])
     axes.set(xlabel="parameter", ylabel=f"y[{component}]", title=f"{len(gaps)} gaps" if gaps else "complete")
     return tidy(axes)

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from continuation.plot.drawing import (
     Axes,
@@ -24,15 +25,14 @@ from continuation.plot.drawing import (
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
 """Component, name, function of (y, lam), or None (maximum norm)."""
 
-Stable: TypeAlias = str | Callable[[Array, float], bool] | None
+Stable: TypeAlias = Callable[[Array, float], bool] | None
 
 
 def plot_bifurcation(
     path: Drawn | Iterable[Drawn],
     axes: Axes | None = None,
-    component: int | None = None,
-    *,
     value: Value = None,
+    *,
     against: str = "lam",
     stable: Stable = None,
     names: Sequence[str] | None = None,
@@ -44,14 +44,11 @@ def plot_bifurcation(
     ----------
     path : Path or sequence of Path
     axes : matplotlib Axes, optional
-    component : int, optional
-        Same as `value`.
     value : int, str or callable, optional
         A component, the name of an unknown or observed scalar, or a function of (y, lam); default: maximum norm.
     against : {"lam", "arclength"}
-    stable : str or callable, optional
-        Observed scalar positive, or function of (y, lam) true, on stable (solid) parts; default: from
-        `continuation.Stability`.
+    stable : callable, optional
+        A function of (y, lam) that is true on stable (solid) parts; default: from `continuation.Stability`.
     names : sequence of str, optional
         One per path.
     legend : bool
@@ -63,21 +60,19 @@ def plot_bifurcation(
     Raises
     ------
     ImportError, ValueError
-        Without matplotlib; for an empty path or unknown `component`, `value`, `stable`.
+        Without matplotlib; for an empty path or unknown `value`.
     """
     paths = list(path) if isinstance(path, Iterable) else [path]
-    if not paths:
-        raise ValueError("path: expected at least one, found none")
-    wanted = value if component is None else component
+    expect(paths, "path", "at least one", paths)
     curves: list[list[Drawing]] = []
     for k, one in enumerate(paths):
         check_path(one)
         s, u = sampled(one)
         label = (names[k] if names is not None else None) or "_"
-        heights = [at_event(event, one, wanted) for event in one.events]
-        curves.append([Drawing(one, s, u, _along(one, s, u, wanted), heights, label, k, _parts(one, s, u, stable))])
+        heights = [at_event(event, one, value) for event in one.events]
+        curves.append([Drawing(one, s, u, _along(one, s, u, value), heights, label, k, _parts(one, s, u, stable))])
     axes = draw(axes, curves, against, legend)
-    axes.set_ylabel(_named(paths[0], wanted))
+    axes.set_ylabel(_named(paths[0], value))
     return axes
 
 
@@ -105,9 +100,8 @@ def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
     if isinstance(value, str):
         if value in path.steps[0].observed:
             return None
-        if value not in path.labels.names:
-            known = ", ".join((*path.labels.names, *path.steps[0].observed)) or "no names"
-            raise ValueError(f"value: expected one of {known}, found {value!r}")
+        known = ", ".join((*path.labels.names, *path.steps[0].observed)) or "no names"
+        expect(value in path.labels.names, "value", f"one of {known}", value)
         value = int(path.labels.index(value))
     (component,) = chosen_components([value], path.u[:, :-1])
     return lambda u: float(u[component])
@@ -116,12 +110,7 @@ def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
 def _parts(path: Drawn, s: Array, u: Array, stable: Stable) -> Parts:
     if stable is None:
         return stable_parts(path)
-    if callable(stable):
-        solid = np.array([bool(stable(point[:-1], float(point[-1]))) for point in u])
-    elif stable in path.steps[0].observed:
-        solid = _along(path, s, u, stable) > 0.0
-    else:
-        raise ValueError(f"stable: expected one of {', '.join(path.steps[0].observed) or 'nothing'}, found {stable!r}")
+    solid = np.array([bool(stable(point[:-1], float(point[-1]))) for point in u])
     return s[1:][np.diff(solid)].tolist(), bool(solid[0])
 
 

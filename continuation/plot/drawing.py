@@ -9,16 +9,19 @@ from typing import Any, TypeAlias
 import numpy as np
 from attrs import frozen
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
-from continuation.status import Kind, Status
+from continuation.status import Kind
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":")
-TURN = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
+TURN: dict[str, Any] = {
+    "marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none",
+}  # fmt: skip
 
-KINK = {**TURN, "marker": "D", "markersize": 5}
+KINK: dict[str, Any] = {**TURN, "marker": "D", "markersize": 5}
 
-MARKS = {
+MARKS: dict[Kind, dict[str, Any]] = {
     Kind.TURNING_POINT: TURN,
     Kind.BRANCH_POINT: {**TURN, "marker": "s", "markerfacecolor": "black"},
     Kind.SINGULAR_POINT: {**TURN, "marker": "s"},
@@ -27,7 +30,7 @@ MARKS = {
 }
 """Marks by kind."""
 
-OTHER = {**KINK, "markerfacecolor": "0.6"}
+OTHER: dict[str, Any] = {**KINK, "markerfacecolor": "0.6"}
 
 SMOOTHNESS = 12
 """Curve points per step ..."""
@@ -83,14 +86,9 @@ def sampled(path: Drawn) -> tuple[Array, Array]:
     if len(steps) < 2:
         return knots, path.u
     inner = np.linspace(0.0, 1.0, int(np.clip(SAMPLES // (len(steps) - 1), 1, SMOOTHNESS)), endpoint=False)
-    if all(step.segment is not None for step in steps[1:]):
-        u = np.array([*(step.segment.at(t) for step in steps[1:] for t in inner), steps[-1].u])
-        # Arclength inside a step goes as its chords: no picture shows the difference. Archives fill with NaN.
-        weights = [np.ones(u.shape[1]) if step.weights is None else step.weights for step in steps[1:]]
-        lengths = np.sqrt(np.nansum(np.diff(u, axis=0) ** 2 * np.repeat(weights, inner.size, axis=0), axis=1))
-        chords = np.append(0.0, np.cumsum(lengths))
-        return np.interp(chords, chords[:: inner.size], knots), u
     fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inner).ravel(), knots[-1])
+    if all(step.segment is not None for step in steps[1:]):
+        return fine, path(fine)
     fine = np.union1d(fine, [event.arclength for event in path.turning_points])
     return fine, known_along(path, lambda point: point.u, fine)
 
@@ -129,12 +127,11 @@ def stable_parts(path: Drawn) -> Parts:
 
 def draw(axes: Axes | None, paths: Sequence[Sequence[Drawing]], against: str, legend: bool) -> Axes:
     """Draw curves, one or more of each path, with events; with `legend` also names and arrows."""
-    if against not in ("lam", "arclength"):
-        raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
+    expect(against in ("lam", "arclength"), "against", "'lam' or 'arclength'", against)
     axes = axes_or_new(axes)
-    lam, flat, curves = against == "lam", True, [curve for mine in paths for curve in mine]
+    lam, curves = against == "lam", [curve for mine in paths for curve in mine]
     for curve in curves:
-        x, knots, events = curve.u[:, -1] if lam else curve.s, curve.s, curve.path.events
+        x, knots = curve.u[:, -1] if lam else curve.s, curve.s
         looks = line_style(curve.k)
         edges, solid = curve.parts or ((), True)
         for k, (a, b) in enumerate(pairwise([knots[0], *edges, knots[-1]])):
@@ -142,35 +139,22 @@ def draw(axes: Axes | None, paths: Sequence[Sequence[Drawing]], against: str, le
             dashes = {} if curve.parts is None else {"linestyle": "-" if solid != bool(k % 2) else "--"}
             alone = {"marker": "." if knots.size == 1 else "", "label": "_" if k else curve.label}
             axes.plot(np.interp(s, knots, x), np.interp(s, knots, curve.y), **{**looks, **dashes, **alone})
-        off = np.abs(np.interp([event.arclength for event in events], knots, curve.y) - curve.at)
-        flat = flat and bool(np.ptp(curve.y) < off.max(initial=0.0))
-    if flat:
-        # Draw mere round-off as a constant; later curves may need more room.
-        middle = float(curves[0].y[0])
-        room = 0.05 * (abs(middle) or 1.0)
-        axes.update_datalim([(x[0], middle - room), (x[0], middle + room)])
-        axes.autoscale_view()
+        if legend:
+            _arrow(axes, x, curve.y, looks["color"])
     label_axis(axes, against, [curve.path for curve in curves])
     tidy(axes)
     # Fix the limits, which names need.
     axes.get_xlim()
     _mark(axes, paths, lam, legend)
-    if not legend:
-        return axes
-    for curve in curves:
-        _arrow(axes, curve.u[:, -1] if lam else curve.s, curve.y, line_style(curve.k)["color"])
-    if any(curve.parts for curve in curves):
+    if legend and any(curve.parts for curve in curves):
         axes.set_title("solid: stable, dashed: not", fontsize="x-small", color="0.4", loc="right")
-    if len(axes.get_legend_handles_labels()[1]) > 1:
-        # Beside the curves, if the layout makes room.
-        room = axes.figure.get_layout_engine() is not None
-        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if room else {}
-        axes.legend(frameon=False, fontsize="small", **beside)
+    if legend and len(axes.get_legend_handles_labels()[1]) > 1:
+        axes.legend(frameon=False, fontsize="small")
     return axes
 
 
 def _mark(axes: Axes, paths: Sequence[Sequence[Drawing]], lam: bool, named: bool) -> None:
-    """Mark events; name the first of each name, with their number, and early ends."""
+    """Mark events; name the first of each name."""
     from matplotlib.lines import Line2D
 
     said = set()
@@ -179,26 +163,20 @@ def _mark(axes: Axes, paths: Sequence[Sequence[Drawing]], lam: bool, named: bool
         for k, event in enumerate(path.events):
             x, heights = event.lam if lam else event.arclength, [float(curve.at[k]) for curve in mine]
             # Round-off of events must not set the scale, as by `plot`.
-            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **mark_of(event)))
-            many = sum(other.name == event.name for other in path.events)
+            axes.add_artist(Line2D([x] * len(mine), heights, zorder=3, **MARKS.get(event.kind, OTHER)))
             if named and event.name not in said:
-                _say(axes, f"{event.name} ({many})" if many > 1 else event.name, x, max(heights))
+                _say(axes, event.name, x, max(heights))
             said.add(event.name)
-        ended = path.status.name.lower().replace("_", " ")
-        if named and not path.success and path.status is not Status.TRACING and ended not in said:
-            _say(axes, ended, path.lam[-1] if lam else path.arclength[-1], mine[0].y[-1], below=True)
-            said.add(ended)
 
 
-def _say(axes: Axes, text: str, x: float, y: float, below: bool = False) -> None:
+def _say(axes: Axes, text: str, x: float, y: float) -> None:
     """Write beside a point, towards the middle of the panel."""
     text = "".join(c if c.isprintable() else "?" for c in text)
     right, up = (axes.transData + axes.transAxes.inverted()).transform((x, y))
-    side, above = right < 0.6, up < (0.1 if below else 0.9)
+    side, above = right < 0.6, up < 0.9
     looks = {"ha": "left" if side else "right", "va": "bottom" if above else "top", "fontsize": "x-small", "zorder": 4}
-    behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.7}
     place = (6 if side else -6, 4 if above else -4)
-    axes.annotate(text, (x, y), place, textcoords="offset points", bbox=behind, parse_math=False, **looks)
+    axes.annotate(text, (x, y), place, textcoords="offset points", parse_math=False, **looks)
 
 
 def _arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
@@ -219,8 +197,7 @@ def require_matplotlib() -> None:
 
 def check_path(path: Drawn) -> None:
     """Raise ValueError for an empty path."""
-    if len(path) == 0:
-        raise ValueError("path: expected at least one point, found none")
+    expect(len(path), "path", "at least one point", path)
 
 
 def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
@@ -232,11 +209,7 @@ def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
         spaced = np.linspace(0, len(filled) - 1, min(len(filled), MOST_COMPONENTS)).round().astype(int)
         return [int(i) for i in filled[spaced]]
     chosen = list(components)
-    if not chosen:
-        raise ValueError("components: expected at least one, found none")
-    outside = [i for i in chosen if not 0 <= i < n]
-    if outside:
-        raise ValueError(f"components: expected numbers from 0 to {n - 1}, found {outside[0]}")
+    expect(chosen and all(0 <= i < n for i in chosen), "components", f"numbers from 0 to {n - 1}", chosen)
     return chosen
 
 
@@ -271,8 +244,3 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
     falling = [len(path) > 1 and (np.diff(path.lam) <= 0.0).all() and path.lam[-1] < path.lam[0] for path in paths]
     if all(falling) and not axes.xaxis_inverted():
         axes.invert_xaxis()
-
-
-def mark_of(event: Any) -> dict[str, Any]:
-    """Mark of an event."""
-    return MARKS.get(event.kind, OTHER)

@@ -21,10 +21,10 @@ def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = 
 
 
 def archive_page(archive: Any) -> str:
-    """Table of an archive's paths."""
-    shown = range(min(len(archive), TABLE_ROWS))
+    """Table of an archive's first paths."""
     lengths, messages = archive.paths["n_points"], archive.paths["message"]
-    rows = [(k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace")) for k in shown]
-    more = len(archive) - len(rows)
-    caption = f"{archive.file.name}: {len(archive)} paths" + (f", {more} not shown" if more > 0 else "")
-    return table(caption, rows, ("path", "status", "points", "message"))
+    rows = [
+        (k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace"))
+        for k in range(min(len(archive), TABLE_ROWS))
+    ]
+    return table(f"{archive.file.name}: {len(archive)} paths", rows, ("path", "status", "points", "message"))

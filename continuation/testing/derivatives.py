@@ -46,26 +46,19 @@ def bordered(subject: Subject) -> None:
     """`bordered` solves with [[H_y, H_lam], [border']] and gives the determinant's sign."""
     for place in subject.places:
         n = place.u.size
-        for border in random_directions(n, 2, 13):
+        for border, b in zip(random_directions(n, 2, 13), random_directions(n, 2, 17)):
             whole = np.vstack([subject.derivative(place), border])
             with reporting("bordered", place.where):
                 system = subject.homotopy.bordered(place.y, place.lam, border.copy())
-            for b in (np.eye(n)[-1], *random_directions(n, 2, 17)):
-                with reporting("bordered.solve", place.where):
-                    z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
-                    found, sizes = whole @ z, np.abs(z)
-                # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible
-                # term, which may be round-off.
-                largest = np.abs(whole).max(axis=1) * float(sizes.max())
-                allowed = ROOT_OF_ROUND_OFF * (np.abs(whole) @ sizes + np.abs(b) + 1e-7 * largest)
-                compare("bordered", place, "the solution's equation", found, b, allowed)
-            sign = system.sign
-            said = f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}"
-            require(sign in (-1, 0, 1), said)
-            expected, logarithm = np.linalg.slogdet(whole)
-            said = f"bordered: {place.where} the sign is {int(sign):+d}, but the determinant is {expected:+.0f} times "
-            trusted = sign != 0 and np.linalg.cond(whole) < SURELY_REGULAR
-            require(not trusted or sign == expected, f"{said}exp({logarithm:.4g})")
+                z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
+            # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term,
+            # which may be round-off.
+            largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
+            allowed = ROOT_OF_ROUND_OFF * (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
+            compare("bordered", place, "the solution's equation", whole @ z, b, allowed)
+            expected, trusted = np.linalg.slogdet(whole)[0], np.linalg.cond(whole) < SURELY_REGULAR
+            said = f"bordered: {place.where} expected the determinant's sign {expected:+.0f} or 0 (unknown)"
+            require(system.sign in (0, expected) or not trusted, f"{said}, found {system.sign}")
 
 
 def taylor(subject: Subject) -> None:
@@ -73,14 +66,10 @@ def taylor(subject: Subject) -> None:
     for place, point in subject.points():
         with reporting("taylor", place.where):
             c = np.asarray(subject.homotopy.taylor(point, COMPARED_ORDER), dtype=float)
-        shape = (COMPARED_ORDER + 1, point.u.size)
-        said = f"taylor: {place.where} expected shape {shape} at order {COMPARED_ORDER}, found {c.shape}"
-        require(c.shape == shape, said)
+        compare("taylor", place, f"shape at order {COMPARED_ORDER}", c.shape, (COMPARED_ORDER + 1, point.u.size))
         for k, expected in ((0, point.u), (1, point.tangent)):
             allowed = CANCELLED_ENTRY * float(np.abs(expected).max())
             compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
-        allowed = SIX_DIGITS * np.abs(c[2:]).max(axis=1) + 1e-12
-        compare("taylor", place, "border . c of coefficient 2 +", c[2:] @ point.border, np.zeros(len(c) - 2), allowed)
         h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
         powers = np.arange(COMPARED_ORDER + 1)
         with reporting("residual", f"{place.where}, {h:.3g} along the series"):
@@ -88,5 +77,4 @@ def taylor(subject: Subject) -> None:
         floor = 1e-12 * (1.0 + float(np.abs(subject.derivative(place)).max()) * (1.0 + float(np.abs(c[0]).max())))
         order = np.log2(max(far, floor) / max(near, floor))
         said = f"taylor: {place.where} the residual along the series falls like h^{order:.2g}"
-        enough = near <= floor or far > 2.0**COMPARED_ORDER * near
-        require(enough, f"{said}, expected h^{COMPARED_ORDER + 1} ({far:.3g} at h = {h:.3g})")
+        require(near <= floor or far > 2.0**COMPARED_ORDER * near, f"{said}, expected h^{COMPARED_ORDER + 1}")

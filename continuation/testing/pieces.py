@@ -7,52 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arrays import ROOT_OF_ROUND_OFF
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
-from continuation.testing.protocol import answers
-from continuation.testing.subject import Place, Subject, compare, random_directions, reporting, require
-
-SAME_VALUE = 1e4
-"""Allowed difference of two formulas, in round-off."""
-
-MOVED_ULPS = 64.0
-"""Motion of a point, in ulps, to sample round-off."""
-
-SMOOTH = 1e-4
-"""Relative difference of one-sided derivatives of a switch."""
-
-
-_vectors = answers(
-    "switches",
-    lambda h, place: [np.asarray(h.switches(u[:-1].copy(), float(u[-1]))) for u in (place.u, np.append(*h.start()))],
-    lambda pair, _: (
-        pair[0].ndim == 1
-        and pair[0].size == pair[1].size
-        and pair[0].dtype.kind in "fiu"
-        and bool(np.isfinite(pair[0]).all())
-    ),
-    "as many finite real numbers as at the start",
-)
-
-
-def switches(subject: Subject) -> None:
-    """`switches` gives equally many finite numbers everywhere, and is smooth.
-
-    Differences from both sides agree up to curvature, which shrinks with the step.
-    """
-    _vectors(subject)
-    each = Pieces(subject.homotopy)
-    for place in subject.places:
-        u, v = place.u, random_directions(place.u.size, 1, 23)[0]
-        with reporting("switches", f"beside the point {place.where}"):
-            far, near = (
-                np.abs(each.values(u + h * v) - 2.0 * each.values(u) + each.values(u - h * v)) / h for h in (1e-4, 1e-5)
-            )
-            slope = np.abs(each.along(u, v))
-        bad = (near > SMOOTH * (1.0 + slope)) & (near > 0.5 * far)
-        require(not bad.any(), f"switches: {place.where} number {int(np.argmax(bad))} is not differentiable")
+from continuation.testing.subject import Place, Subject, compare, reporting
 
 
 def pieces(subject: Subject) -> None:
@@ -61,14 +21,9 @@ def pieces(subject: Subject) -> None:
         with reporting("residual of the piece", place.where):
             found = piece.residual(place.y, place.lam)
             wanted = np.asarray(subject.homotopy.residual(place.y, place.lam), dtype=float)
-            move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(random_directions(place.u.size, 1, 29)[0])
-            odd = np.where(np.arange(move.size) % 2, move, -move)
-            near = [place.u + MOVED_ULPS * way for way in (move, -move, odd)]
-            looks = [np.asarray(subject.homotopy.residual(u[:-1], float(u[-1]))) for u in near]
-            round_off = np.max([np.abs(look - wanted) for look in looks], axis=0) / MOVED_ULPS
-        shown = "".join("+" if sign > 0 else "-" for sign in signs[:40]) + ("..." if len(signs) > 40 else "")
-        what = f"the piece {shown} differs from the map: number"
-        compare("piece", place, what, found, wanted, SAME_VALUE * round_off + np.finfo(float).tiny)
+        allowed = ROOT_OF_ROUND_OFF * np.abs(Subject(piece).derivative(place)) @ np.abs(place.u)
+        shown = "".join("+" if sign > 0 else "-" for sign in signs[:40])
+        compare("piece", place, f"the piece {shown} differs from the map: number", found, wanted, allowed)
 
 
 def derivatives_of_pieces(subject: Subject) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import pickle
-import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
@@ -24,8 +22,6 @@ from continuation.testing.subject import (
     require,
 )
 
-_ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
-
 
 def answers(
     name: str, ask: Callable[[Any, Place], Any], good: Callable[[Any, int], bool], wanted: str
@@ -42,10 +38,6 @@ def answers(
     return examine
 
 
-def _number(x: Any) -> bool:
-    return isinstance(x, int | float | np.integer | np.floating)
-
-
 def _double(x: Any, n: int) -> bool:
     kinds = x.dtype.kind in "iu" or x.dtype == np.float64
     return x.shape == (n,) and kinds and bool(np.isfinite(x).all())
@@ -55,22 +47,6 @@ def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
     v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
-
-
-def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
-    y, lam = homotopy.start()
-    return homotopy.observe(place.y, place.lam), homotopy.observe(np.array(y, dtype=float), float(lam))
-
-
-def _monitored(homotopy: Any, place: Place) -> list[float]:
-    v = random_directions(place.u.size, 1, 3)[0]
-    return [float(event.monitor(place.u.copy(), v)) for event in homotopy.events]
-
-
-def _entries(found: Any, n: int) -> bool:
-    entries = [] if isinstance(found, str) else [str(entry) for entry in found]
-    whole = all(_ENTRY.match(entry) and entry.count("{") == entry.count("}") for entry in entries)
-    return whole and not isinstance(found, str)
 
 
 def _factored(answer: Any, n: int) -> bool:
@@ -88,36 +64,17 @@ residual = answers(
     _double,
     "one finite number of float64 for each unknown",
 )
-target = answers(
-    "target", lambda h, _: h.target, lambda x, _: _number(x) and math.isfinite(x), "a finite number or None"
-)
 metric = answers(
     "metric",
     _weights,
     lambda pair, n: all(np.shape(w) == (n + 1,) and np.isfinite(w).all() and (w > 0.0).all() for w in pair),
     "one positive finite weight for each component",
 )
-observe = answers(
-    "observe",
-    _observed,
-    lambda pair, _: isinstance(pair[0], Mapping) and [*pair[0]] == [*pair[1]] and all(map(_number, pair[0].values())),
-    "a dictionary of real numbers with names that are the same everywhere",
-)
-finish = answers(
-    "finish",
-    lambda h, place: h.finish(place.y, place.lam),
-    lambda y, n: y is None or (np.shape(y) == (n,) and bool(np.isfinite(y).all())),
-    "None or one finite number for each unknown",
-)
-events = answers("events", _monitored, lambda x, _: bool(np.isfinite(x).all()), "a finite number of every monitor")
 jacobian_types = answers(
     "jacobian",
     lambda h, place: h.jacobian(place.y, place.lam),
     _factored,
     "a tuple (H_y, H_lam), of which H_lam has one number for each unknown",
-)
-references = answers(
-    "references", lambda h, _: h.references, _entries, "a sequence of BibTeX entries (@kind{key, ...})"
 )
 
 
@@ -144,15 +101,10 @@ def picklable(subject: Subject) -> None:
         said = f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)"
         raise CheckFailure(said) from error
     require(np.array_equal(Subject(again).start.u, subject.start.u), "picklable: the copy starts elsewhere")
-    same_residual(subject, again, "picklable", "the copy")
-
-
-def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
-    """Both residuals agree bit for bit."""
     for place in subject.places:
-        with reporting(f"residual of {what}", place.where):
-            found, wanted = (h.residual(place.y, place.lam) for h in (other, subject.homotopy))
-        compare(name, place, f"{what} has another residual: number", found, wanted)
+        with reporting("residual of the copy", place.where):
+            found, wanted = (h.residual(place.y, place.lam) for h in (again, subject.homotopy))
+        compare("picklable", place, "the copy has another residual: number", found, wanted)
 
 
 _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "observe", "switches")

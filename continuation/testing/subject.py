@@ -22,6 +22,7 @@ from continuation.path import Path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.status import Kind, Status
+from continuation.step.presets import CONSERVATIVE
 from continuation.step.start import StartError, first_point
 from continuation.step.tracer import Tracer
 from continuation.step.verdict import refused_start
@@ -29,9 +30,6 @@ from continuation.tolerance import Tolerance
 
 LONGEST_PATH = 60
 """Steps of the traced path."""
-
-FEWEST = 6
-"""Fewest points of a path that is not traced again with shorter steps."""
 
 STEPS_WITHOUT_TARGET = 12
 """Steps without a target, as the path may leave the homotopy's region."""
@@ -104,14 +102,12 @@ class Subject:
     def places(self) -> tuple[Place, ...]:
         """The start, a point beside it, and up to two points of the path."""
         start = self.start
-        generator = np.random.default_rng(8)
-        aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
-        aside *= generator.choice((-1.0, 1.0), start.u.size)
+        aside = 1e-2 * (1.0 + np.abs(start.u)) * random_directions(start.u.size, 1, 8)[0]
         if self.has("max_step"):
             with reporting("max_step", "near the start"):
                 aside *= np.clip(0.5 * float(self.homotopy.max_step(start.u.copy(), aside.copy())), 0.0, 1.0)
         beside = Place("beside the start", start.u + aside)
-        return (start, *([beside] if self.finite(beside) else []), *self._sampled)
+        return (start, *([beside] if np.isfinite(self.evaluator.residual_norm(beside.u)) else []), *self._sampled)
 
     @cached_property
     def _sampled(self) -> dict[Place, Array]:
@@ -122,10 +118,6 @@ class Subject:
             return {}
         steps = [self.path.steps[k] for k in sorted({last // 2, last - 1}) if k > 0]
         return {Place(f"at step {s.index} of the path (lam = {s.lam:.6g})", s.u): s.tangent for s in steps}
-
-    def finite(self, place: Place) -> bool:
-        """Whether the residual is finite."""
-        return bool(np.isfinite(self.evaluator.residual_norm(place.u)))
 
     @cached_property
     def first(self) -> Linearization:
@@ -155,17 +147,9 @@ class Subject:
         require(path.status not in bad and len(path) >= 2, said)
         return path
 
-    @cached_property
-    def longest(self) -> float | None:
-        """The longest step, None for the default: short paths get more points."""
-        tracer = Tracer(self.homotopy, budget=self.limits)
-        steps = [step for step in tracer if step.kind != Kind.TARGET or step.index < 2]
-        # Half a step more: a symmetric path may branch in its middle.
-        return steps[-1].arclength / (FEWEST + 0.5) if 2 <= len(steps) < FEWEST else None
-
     def traced(self, **options: Any) -> Path:
         """A trace within the limits."""
-        tracer = Tracer(self.homotopy, **{"budget": self.limits, "max_step": self.longest, **options})
+        tracer = Tracer(self.homotopy, **{"preset": CONSERVATIVE, "budget": self.limits, **options})
         for _ in tracer:
             pass
         return tracer.path

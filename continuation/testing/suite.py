@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -54,7 +53,6 @@ CHECKS = (
     Check("start", attrgetter("start"), after=""),
     Check("residual", protocol.residual),
     Check("repeatable", protocol.repeatable),
-    Check("target", protocol.target, "target"),
     Check("jacobian_types", protocol.jacobian_types, "jacobian"),
     Check("jacobian", derivatives.jacobian, "jacobian", "jacobian_types"),
     Check("differential", derivatives.differential, "differential"),
@@ -62,19 +60,12 @@ CHECKS = (
     Check("start_on_path", attrgetter("first")),
     Check("metric", protocol.metric, "metric"),
     Check("max_step", paths.max_step, "max_step"),
-    Check("observe", protocol.observe, "observe"),
-    Check("finish", protocol.finish, "finish"),
-    Check("events", protocol.events, "events"),
-    Check("references", protocol.references, "references"),
     Check("picklable", protocol.picklable),
-    Check("switches", pieces.switches, "switches"),
-    Check("pieces", pieces.pieces, "piece", "switches"),
+    Check("pieces", pieces.pieces, "piece"),
     Check("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
     Check("taylor", derivatives.taylor, "taylor", "start_on_path"),
     Check("trace", attrgetter("path"), after="start_on_path"),
-    Check("refinement", partial(paths.audited, "step refinement", False), after="trace"),
-    Check("reversal", partial(paths.audited, "reversal", True), after="trace"),
-    Check("archive", paths.archive, after="trace"),
+    Check("refinement", paths.refinement, after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
 """Cheap checks first."""

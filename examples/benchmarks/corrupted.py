@@ -3,8 +3,8 @@
     python examples/benchmarks/corrupted.py 10000 [SEED]
 
 Each corruption makes of traced paths something that they are not: continued on another sheet, points moved off the
-curve by more than the radius of their tube, their order changed, a loop left out, turned back, turning points dropped
-or invented or elsewhere; and those with kinks continued on the wrong piece, their kinks dropped, invented, moved or
+curve by more than the radius of their tube, their order changed, a loop left out, turning points dropped or invented or
+elsewhere; and those with kinks continued on the wrong piece, their kinks dropped, invented, moved or
 called by other names. A complete proof of any of it is a fault. Points left out on one and the same curve are another
 matter: there the proof is either complete, and holds them, or has a gap. From seed 1 on the paths are others for each
 part of 250.
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 from campaign import WRONG, Campaign, Verdict
-from subjects import Linear, TwoSheets, proved, subjects
+from subjects import Linear, proved, subjects
 
 from continuation import Budget, trace
 from continuation.certificate import Proof
@@ -92,23 +92,6 @@ def jumped(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
         return None  # points left out on one branch, which may well be proved
     events = [e for e in path.events if not i < e.step <= j]
     return numbered(path, steps, events)
-
-
-def across(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
-    """Continued on the other side of a narrow gap, straight on, where two sheets do not cross."""
-    middle = int(np.argmin(np.abs(path.lam)))
-    if not 2 < middle < len(path) - 3:
-        return None
-    i, j = middle - int(rng.integers(3)), middle + 1 + int(rng.integers(3))
-    mirror = np.append(-np.ones(path.u.shape[1] - 1), 1.0)
-    beyond = [evolve(s, u=mirror * s.u, tangent=mirror * s.tangent) for s in path.steps[j:]]
-    return numbered(path, [*path.steps[:i], *beyond], [])
-
-
-def invented(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
-    """A turning point listed at a step of the path, on the curve, where there is none."""
-    away = [s for s in path.steps[1:-1] if all(abs(s.arclength - e.arclength) > 0.3 for e in path.turning_points)]
-    return changed(path, None, listed(one_of(away, rng), Kind.TURNING_POINT)) if away else None
 
 
 def elsewhere(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
@@ -194,24 +177,6 @@ def renamed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return changed(path, kink, evolve(kink, switches=switches))
 
 
-def turned_back(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
-    """From a kink on, or any point of a smooth path, back on the same way."""
-    k = drawn(path, rng).step if path.kinks else int(rng.integers(1, len(path) - 1))
-    back = [evolve(s, tangent=-s.tangent) for s in path.steps[:k][::-1]]
-    whole = numbered(path, [*path.steps[: k + 1], *back], [e for e in path.events if e.step <= k])
-    last = whole.steps[-1].arclength
-    mirrored = []
-    for event in whole.events:
-        step = whole.steps[2 * k - event.step]
-        if event.kind is not Kind.KINK:
-            mirrored.append(evolve(event, arclength=last - event.arclength, step=step.index + 1))
-        elif event.step != k:
-            mirrored.append(evolve(event, arclength=step.arclength, step=step.index))
-    if not path.kinks and rng.random() < 0.5:
-        mirrored.append(listed(whole.steps[k], Kind.TURNING_POINT))
-    return changed(evolve(whole, status=Status.STOPPED_AT_EVENT), None, *mirrored)
-
-
 def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: Any = None) -> Path | None:
     """Continued on the wrong piece: past a kink by the equations that held before it."""
     k = drawn(path, rng).step
@@ -232,14 +197,14 @@ def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: An
     return evolve(found, status=Status.STOPPED_AT_EVENT)
 
 
-AT_KINKS = (unlisted, misplaced, pushed, renamed, turned_back, straight_on)
+AT_KINKS = (unlisted, misplaced, pushed, renamed, straight_on)
 
 
-def faults(homotopy: Any, path: Path) -> list[Any]:
+def faults(path: Path) -> list[Any]:
     """The faults that suit a path."""
-    found = [moved, swapped, jumped, invented, left_out, turned_back]
+    found = [moved, swapped, jumped, left_out]
     found += AT_KINKS if path.kinks else (unlisted, misplaced) if path.turning_points else ()
-    return [*found, *([elsewhere] if path.events else []), *([across] if isinstance(homotopy, TwoSheets) else [])]
+    return [*found, *([elsewhere] if path.events else [])]
 
 
 def cases(number: int, seed: int) -> Iterator[tuple[Any, Path, Any, Path]]:
@@ -248,7 +213,7 @@ def cases(number: int, seed: int) -> Iterator[tuple[Any, Path, Any, Path]]:
         rng, tried, left = np.random.default_rng(seed + part), subjects(seed + part), min(PART, number - part * PART)
         while left:
             homotopy, path, proof = one_of(tried, rng)
-            fault = rng.choice(faults(homotopy, path))
+            fault = rng.choice(faults(path))
             more = {"homotopy": homotopy} if fault is straight_on and not isinstance(homotopy, Linear) else {}
             corrupted = fault(path, proof, rng, **more)
             if corrupted is not None:

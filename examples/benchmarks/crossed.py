@@ -215,15 +215,6 @@ def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
     )  # fmt: skip
 
 
-def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
-    """`pitchfork` along the arms, over the crossing, to x_0 = 0.3; `begin` and `end` are values of x_0."""
-    at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0))
-    return _dressed(
-        rng, n, units, scalar=_forked(at, k), curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
-        begin=float(-rng.uniform(0.3, 3.0)), end=0.3,
-    )  # fmt: skip
-
-
 def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """x_0 (x_0 - k (s - s_0)) = 0, on either branch."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.normal())

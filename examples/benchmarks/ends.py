@@ -100,21 +100,6 @@ def hysteresis(generator: np.random.Generator) -> Case:
     )  # fmt: skip
 
 
-def cells(generator: np.random.Generator) -> Case:
-    """A ring of coupled cells that are alike but for 1e-2 to 1e-14, from beside zero over their pitchfork."""
-    n, eps, c = (
-        int(generator.integers(3, 10)),
-        10.0 ** generator.uniform(-14.0, -2.0),
-        float(generator.uniform(0.5, 2.0)),
-    )
-
-    # All cells alike: lam y - y^3 + eps = 0. What couples them has no part in that.
-    def residual(y: Any, lam: Any) -> Any:
-        return lam * y - y**3 + eps + c * (np.roll(y, 1) + np.roll(y, -1) - 2.0 * y)
-
-    return Case(residual, (np.full(n, eps), -1.0), 1.0)
-
-
 def pattern(generator: np.random.Generator) -> Case:
     """The trunk of Swift and Hohenberg's equation on a ring, zero by symmetry, over its patterns' branch points."""
     n, length = int(generator.integers(8, 25)), float(generator.uniform(2.0, 6.0))
@@ -156,23 +141,15 @@ def pole(generator: np.random.Generator) -> Case:
     return scalar(lambda y, lam: y ** (-1.0 / p) - 1.0 + lam, 1.0, 0.0, target, ends=ends)
 
 
-def logarithm(generator: np.random.Generator) -> Case:
-    """y = -c log(1 - lam) to lam = 1."""
-    c = float(generator.uniform(0.3, 3.0))
-    return scalar(lambda y, lam: np.exp(-y / c) - 1.0 + lam, 0.0, 0.0, 1.0, ends=(Status.DIVERGED,))
-
-
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
     "imperfections": imperfect,
     "zero by symmetry": ring,
     "localised": localised,
     "hysteresis": hysteresis,
-    "coupled cells": cells,
     "patterns": pattern,
     "trusses": truss,
     "weak parameter": weak,
     "poles": pole,
-    "logarithms": logarithm,
     # A circle to 1e-1 .. 1e-14 before its fold.
     "before folds": lambda generator: scalar(
         lambda y, lam: y**2 + lam**2 - 1.0, 1.0, 0.0, 1.0 - 10.0 ** generator.uniform(-14.0, -1.0)

@@ -166,35 +166,12 @@ def nonmonotone(k: int, r: np.random.Generator) -> LCP:
     return planted(A, r)
 
 
-def monotone(k: int, r: np.random.Generator) -> LCP:
-    """n = 20 to 200: definite, not symmetric or symmetric, or of half the rank."""
-    n = (20, 60, 200)[k % 3]
-    M, S = r.standard_normal((2, n, n))
-    A = M @ M.T / n + (S - S.T) / math.sqrt(n) if k % 2 else M[:, : n // 2] @ M[:, : n // 2].T / n
-    return planted(A, r)
-
-
-def small(k: int, r: np.random.Generator) -> LCP:
-    """n = 1 to 8, integers."""
-    n = int(r.integers(1, 9))
-    return LCP(r.integers(-5, 6, (n, n)).astype(float), r.integers(-5, 6, n).astype(float))
-
-
-def grids(k: int, r: np.random.Generator) -> LCP:
-    """Membranes over an obstacle, 12 x 12 to 30 x 30 points, and strings, sparse."""
-    m = (12, 20, 30)[k % 3]
-    line = sp.diags_array([-np.ones(m - 1), 2.0 * np.ones(m), -np.ones(m - 1)], offsets=[-1, 0, 1])
-    A = sp.kronsum(line, line, format="csr") if k % 2 else line.tocsr()
-    return LCP(A, r.normal(0.0, 0.1, A.shape[0]) - A @ r.uniform(0.0, 1.0, A.shape[0]))
-
-
 Problem = LCP | lcp.MixedLCP | lcp.Program
 
 
 FAMILIES = {
     make.__name__: drawn(make)
-    for make in (boxes, optimality, collapse, unsolvable, games, gaussian, nonmonotone, monotone, small, grids,
-                 stacks, arches, piles)
+    for make in (boxes, optimality, collapse, unsolvable, games, gaussian, nonmonotone, stacks, arches, piles)
 } | {
     "large games": drawn(partial(games, actions=(500,))),
     "traffic": drawn(lambda k, r: traffic((6, 12, 24)[k % 3], r)),

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import continuation
-from continuation.plot import plot_bifurcation, plot_heat, plot_profiles
+from continuation.plot import plot_bifurcation, plot_profiles
 
 
 class Pattern:
@@ -50,5 +50,7 @@ plot_bifurcation(path, axes, value="norm")
 # What 300 unknowns do, as a map of colours, and at a few points of the path.
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
-plot_heat(path, left, pattern.x)
+s = np.linspace(0.0, path.arclength[-1], 300)
+left.pcolormesh(s, pattern.x, path(s)[:, :-1].T, shading="nearest", rasterized=True)
+left.set(xlabel="arclength $s$", ylabel="$x$")
 plot_profiles(path, right, 4, pattern.x)

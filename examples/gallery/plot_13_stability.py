@@ -22,7 +22,7 @@ class Decay(Cusp):
 
 path = continuation.trace(Decay(splitting=1.0))
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
-path.plot(left, value="x", stable="decay")
+path.plot(left, value="x", stable=lambda y, lam: 3.0 * y[0] ** 2 > 1.0)
 path.plot(right, value="decay", against="arclength", legend=False)
 right.axhline(0.0, color="0.6", linewidth=0.8)
 for event in path.events:

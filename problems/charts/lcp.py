@@ -9,7 +9,7 @@ import numpy as np
 
 import continuation
 from continuation.arrays import Array
-from continuation.chart import Answer, Failure, Method, Problem, Profile, Rung, Study, observed, tolerances
+from continuation.chart import Answer, Method, Problem, Profile, Study
 from continuation.chart.model import answer_of
 from continuation.chart.study import Size
 from continuation.counts import Counts
@@ -20,12 +20,12 @@ from problems.lcp import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.reference import min_newton, modulus
 from problems.paper import EXAMPLES
-from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon, by_reference, by_tables
+from problems.scenes.rivals import Found, by_piqp, by_quantecon, by_reference, by_tables
 
 SOLVED_TO = 1e-6
 """Residual bound (`Certificate.solves`) for success."""
 
-RESIDUAL = observed("natural_residual", "natural residual max |min(x, Ax + q)|, over 1 + max |q|")
+RESIDUAL = {"natural_residual": "natural residual max |min(x, Ax + q)|, over 1 + max |q|"}
 
 BUDGET = continuation.Budget(steps=200)
 """Budget of a path, or of `lcp.solve`: paths that arrive take half as many steps."""
@@ -34,10 +34,10 @@ BUDGET = continuation.Budget(steps=200)
 def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
     """Trace a homotopy from ``options['x0']`` or its own start, without finish."""
 
-    def run(problem: Problem, rung: Rung) -> Answer:
+    def run(problem: Problem, rung: float) -> Answer:
         x0 = problem.options.get("x0")
         homotopy = make(problem.subject) if x0 is None else make(problem.subject, x0)
-        answer = answer_of(continuation.trace(homotopy, **{"budget": BUDGET, **options, rung.name: rung.value}))
+        answer = answer_of(continuation.trace(homotopy, **{"budget": BUDGET, **options, "tolerance": rung}))
         if answer.end is None:
             return answer
         return judged(problem.subject, answer.end[: problem.n], answer.counts, path=answer.path, message=answer.message)
@@ -48,10 +48,10 @@ def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
 def solver(name: str, **options: Any) -> Method:
     """`problems.lcp.solve`, with active-set finish."""
 
-    def run(problem: Problem, rung: Rung) -> Answer:
+    def run(problem: Problem, rung: float) -> Answer:
         solution = lcp.solve(problem.subject, x0=problem.options.get("x0"), **{"budget": BUDGET, **options})
         if solution.x is None:
-            return Answer(solution.counts, failure=Failure.STOPPED, message=solution.message)
+            return Answer(solution.counts, failure="stopped", message=solution.message)
         return judged(problem.subject, solution.x, solution.counts, message=solution.message)
 
     return Method(name, run)
@@ -60,11 +60,11 @@ def solver(name: str, **options: Any) -> Method:
 def direct(name: str, solve: Callable[[Any], Found], cost: Callable[[int, int], Counts]) -> Method:
     """A solver without tolerance ladder; `cost` estimates its counts."""
 
-    def run(problem: Problem, rung: Rung) -> Answer:
+    def run(problem: Problem, rung: float) -> Answer:
         try:
             x, iterations = solve(problem.subject)
         except ArithmeticError as error:
-            return Answer(Counts(), failure=Failure.STOPPED, message=str(error))
+            return Answer(Counts(), failure="stopped", message=str(error))
         return judged(problem.subject, x, cost(iterations, problem.n))
 
     return Method(name, run, outside=True)
@@ -86,7 +86,6 @@ DIRECT = {
     "min-Newton": ("", by_reference(min_newton), lambda k, n: Counts(factorizations=k, solves=k, accepted=k)),
     "quantecon Lemke": ("quantecon", by_quantecon, pivots),
     "PIQP": ("piqp", by_piqp, interior),
-    "Clarabel": ("clarabel", by_clarabel, interior),
 }
 """Required module, solver, cost of iterations."""
 
@@ -98,11 +97,6 @@ def direct_methods(compare: bool) -> list[Method]:
         # Warm up libraries that compile at first call.
         solve(LCP(np.eye(1), -np.ones(1)))
     return [direct(name, solve, cost) for name, (_, solve, cost) in taken.items()]
-
-
-def notes(compare: bool) -> list[str]:
-    """Outside packages present or missing."""
-    return rivals.notes([module for module, _, _ in DIRECT.values() if module], compare)
 
 
 def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
@@ -117,7 +111,7 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
         counts,
         end=x,
         observed={"natural_residual": residual},
-        failure=Failure.NONE if solved or unfinished else Failure.WRONG_END,
+        failure="" if solved or unfinished else "wrong end",
         message=message if solved else f"natural residual {residual:.1e}; {message}",
         **more,
     )
@@ -142,12 +136,11 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
                 solver("solve, auto"),
                 *direct_methods(compare),
             ],
-            ladder=tolerances(*rungs),
-            errors=(RESIDUAL,),
+            ladder=rungs,
+            errors=RESIDUAL,
             work=("factorizations", "solves"),
             figures=[Profile("factorizations")],
             repeats=0,
-            notes=notes(compare),
         )
     ]
 

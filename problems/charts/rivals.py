@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import redirect_stdout
 from functools import partial
 from importlib import import_module
 from importlib.machinery import PathFinder
-from importlib.metadata import packages_distributions, version
 from importlib.util import find_spec, module_from_spec
 from typing import Any
 
@@ -18,7 +17,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array
-from continuation.chart import Answer, Method, Problem, Rung
+from continuation.chart import Answer, Method, Problem
 from continuation.counts import Counts
 from continuation.linear import Banded
 
@@ -71,6 +70,10 @@ class _Curve:
                 return u, k + 1
         return None, 8
 
+    def tangent(self, u: Array, before: Array) -> Array:
+        v = self.solve(u, before, np.eye(u.size)[-1])
+        return np.asarray(v / np.linalg.norm(v))
+
     def land(self, before: Array, after: Array, tolerance: float) -> Answer:
         guess = before + (self.aim - before[-1]) / (after[-1] - before[-1]) * (after - before)
         end, _ = self.newton(guess, np.eye(guess.size)[-1], tolerance)
@@ -79,24 +82,16 @@ class _Curve:
 
 def _loop(curve: _Curve, tolerance: float) -> Answer:
     u, counts, h = curve.start, curve.counts, 0.1
-    last = np.eye(u.size)[-1]
-    v = curve.direction * last
+    v = curve.tangent(u, curve.direction * np.eye(u.size)[-1])
     while counts.accepted < STEPS and h > 1e-9:
-        v = curve.solve(u, v, last)
-        v /= np.linalg.norm(v)
-        following = None
-        while following is None and h > 1e-9:
-            following, iterations = curve.newton(u + h * v, v, tolerance)
-            if following is not None and curve.arrived(u[-1], following[-1]):
-                answer = curve.land(u, following, tolerance)
-                if answer.end is not None:
-                    return answer
-                following = None
-            if following is None:
-                h, counts.rejected = h / 2.0, counts.rejected + 1
-            else:
-                h *= 2.0 if iterations <= 3 else 1.0 if iterations <= 5 else 0.5
-                u, counts.accepted = following, counts.accepted + 1
+        following, iterations = curve.newton(u + h * v, v, tolerance)
+        if following is None:
+            h, counts.rejected = h / 2.0, counts.rejected + 1
+        elif curve.arrived(u[-1], following[-1]):
+            return curve.land(u, following, tolerance)
+        else:
+            h *= 2.0 if iterations <= 3 else 1.0 if iterations <= 5 else 0.5
+            u, v, counts.accepted = following, curve.tangent(following, v), counts.accepted + 1
     raise ArithmeticError(f"the plain loop did not arrive in {counts.accepted} steps")
 
 
@@ -177,18 +172,8 @@ def curve_followers(compare: bool) -> list[Method]:
 
 
 @np.errstate(all="ignore")
-def _follow(follow: Follow, problem: Problem, rung: Rung) -> Answer:
-    return follow(_Curve(problem), rung.value)
-
-
-def notes(modules: Iterable[str], compare: bool) -> list[str]:
-    """A remark on the versions of packages, and on missing ones."""
-    said = [f"{module} {_version(module) if installed(module) else 'is not installed'}" for module in modules]
-    return [f"outside solvers: {', '.join(dict.fromkeys(said))}"] if compare else []
-
-
-def _version(module: str) -> str:
-    return ", ".join(map(version, packages_distributions().get(module, [])[:1]))
+def _follow(follow: Follow, problem: Problem, rung: float) -> Answer:
+    return follow(_Curve(problem), rung)
 
 
 def installed(module: str) -> bool:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import continuation
-from continuation.chart import Profile, Study, tolerances
+from continuation.chart import Profile, Study
 from continuation.chart.study import Size
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import RESIDUAL, direct_methods, notes, path, problem, solver
+from problems.charts.lcp import RESIDUAL, direct_methods, path, problem, solver
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
@@ -30,11 +30,10 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             title="Random problems with a planted solution",
             problems=[problem(family, n, seed) for family in families for n in orders for seed in range(seeds)],
             methods=methods,
-            ladder=tolerances(1e-8),
-            errors=(RESIDUAL,),
+            ladder=(1e-8,),
+            errors=RESIDUAL,
             work=("factorizations", "solves", "seconds"),
             figures=[Profile("factorizations")],
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
-            notes=notes(compare),
         )
     ]

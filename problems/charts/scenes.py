@@ -8,13 +8,12 @@ from typing import Any
 
 from attrs import asdict
 
-from continuation.chart import Answer, Dumbbell, Failure, Method, Problem, Rung, Study, observed
+from continuation.chart import Answer, Method, Problem, Profile, Study
 from continuation.chart.study import WRONG, Size
 from continuation.counts import Counts
-from problems.charts.rivals import notes
 from problems.scenes import available, error, make, order, solve
 
-ERROR = observed("answer", "error of the answer, relative")
+ERROR = {"answer": "error of the answer, relative"}
 
 OURS = "ours"
 
@@ -34,7 +33,7 @@ LARGER: dict[str, dict[str, Any]] = {
     "puck": {"edges": 64},
     "regulator": {"horizon": 50},
     "spatial-prices": {"offers": [4.0 + k for k in range(12)], "bids": [20.0 + 2.0 * k for k in range(12)]},
-    "svm": {"samples": 200, "width": 1.0},
+    "svm": {"samples": 200},
     "torsion": {"twist": 1.0},
     "traffic": {"side": 12},
     "unmixing": {"substances": 60, "channels": 400},
@@ -56,12 +55,12 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             title="Scenes: time to the answer",
             problems=problems,
             methods=[_method(OURS, lambda scene: scene.answer(solve(scene))), *map(_rival, taken)],
-            ladder=[Rung("mesh", factor) for factor in factors],
-            errors=(ERROR,),
+            ladder=factors,
+            varied="mesh",
+            errors=ERROR,
             work=("seconds",),
-            figures=[Dumbbell("answer", "seconds", every=every) for every in (False, True)],
+            figures=[Profile("seconds", by="problem"), Profile("seconds")],
             repeats={"smoke": 0, "moderate": 1, "full": 3}[size],
-            notes=notes([rival.module for rival in rivals.values() if rival.module], compare),
         )
     ]
 
@@ -85,12 +84,11 @@ def _refined(problem: Problem, factor: float) -> Any:
 
 
 def _method(name: str, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None) -> Method:
-    def run(problem: Problem, rung: Rung) -> Answer:
-        off = error(ask(_refined(problem, rung.value)), problem.options["true"])
+    def run(problem: Problem, rung: float) -> Answer:
+        off = error(ask(_refined(problem, rung)), problem.options["true"])
         well = math.isfinite(off) and off <= WRONG
         message = "" if well else f"the answer is off by {off:.1e}"
-        failure = Failure.NONE if well else Failure.WRONG_END
-        return Answer(Counts(), observed={"answer": off}, failure=failure, message=message)
+        return Answer(Counts(), observed={"answer": off}, failure="" if well else "wrong end", message=message)
 
     return Method(name, run, applies or (lambda problem: True), outside=applies is not None)
 

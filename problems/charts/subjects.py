@@ -7,7 +7,6 @@ from typing import Any
 from continuation.chart import Problem, reference
 from continuation.events import TargetValue
 from problems.bifurcation import Bratu1D, Bratu2D, ExponentialCosine, FreudensteinRoth
-from problems.charts.chandrasekhar import Chandrasekhar
 
 
 def freudenstein() -> Problem:
@@ -30,11 +29,6 @@ def bratu(n: int) -> Problem:
 def bratu_square(m: int) -> Problem:
     """Bratu on m x m points, through the fold to lam = 2."""
     return _round_the_fold(Bratu2D(m), 2.0, f"Bratu 2D, n = {m * m}", m * m, "Bratu 2D (sparse)")
-
-
-def chandrasekhar(n: int) -> Problem:
-    """H-equation, through the fold to lam = 0.5."""
-    return _round_the_fold(Chandrasekhar(n), 0.5, f"H-equation, n = {n}", n, "H-equation (dense)")
 
 
 def _round_the_fold(subject: Any, lam: float, name: str, n: int, family: str) -> Problem:

@@ -4,16 +4,13 @@ from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.registry import available, find, make
 from problems.scenes.scene import (
     Finite,
-    Kind,
     NotNegative,
     Numbers,
-    Point,
     Positive,
     Rival,
     Scene,
     Seed,
     Unknown,
-    at_least,
     error,
     order,
     solve,
@@ -21,6 +18,6 @@ from problems.scenes.scene import (
 )
 
 __all__ = [
-    "Finite", "Kind", "NotNegative", "Numbers", "Picture", "Point", "Positive", "Rival", "Scene", "Seed", "Unknown",
-    "at_least", "available", "error", "find", "make", "mark", "order", "picture", "solve", "with_parameters",
+    "Finite", "NotNegative", "Numbers", "Picture", "Positive", "Rival", "Scene", "Seed", "Unknown",
+    "available", "error", "find", "make", "mark", "order", "picture", "solve", "with_parameters",
 ]  # fmt: skip

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import exp, log, sqrt
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.outcome import Solution
@@ -17,13 +19,11 @@ from problems.lcp.search.solver import solve
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import (
     NotNegative,
-    Point,
     Positive,
     Quantities,
     Rival,
     Scene,
     Unknown,
-    at_least,
     with_parameters,
 )
 
@@ -49,7 +49,7 @@ class Exercise:
 @with_parameters
 def AmericanPut(
     spot: Positive = 100.0, strike: Positive = 100.0, rate: NotNegative = 0.05, volatility: Positive = 0.2,
-    maturity: Positive = 1.0, n: Annotated[int, at_least(10)] = 400, steps: Annotated[int, at_least(2)] = 100,
+    maturity: Positive = 1.0, n: Annotated[int, integer(10)] = 400, steps: Annotated[int, integer(2)] = 100,
     width: Positive = 5.0,
 ) -> Scene:  # fmt: skip
     """What is a put worth that may be exercised at any time, and below which price is it exercised?
@@ -108,12 +108,9 @@ def AmericanPut(
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
     def edge(above: Array) -> float:
-        """Extrapolate quadratically. The first free point is inaccurate."""
+        """The first price above the payoff."""
         beyond = above > 1e-12 * strike
-        k = int(np.argmax(beyond)) if beyond.any() else 0
-        second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)
-        away = min(max(2.0 * second / (fourth - second) - 1.0, 0.0), 1.5) if fourth > second else 0.0
-        return strike * exp(float(x[k + 1] - away * (x[1] - x[0])))
+        return strike * exp(float(x[int(np.argmax(beyond)) + 1])) if beyond.any() else strike
 
     def solved() -> Exercise:
         found: Solution | None = None
@@ -158,7 +155,7 @@ def AmericanPut(
     )  # fmt: skip
 
 
-def _eliminated(problem: LCP) -> Point:
+def _eliminated(problem: LCP) -> Any:
     """Tridiagonal elimination, exact if the put is exercised below one price."""
     A: Any = problem.A
     lower, main, upper, right = (part.tolist() for part in (A.diagonal(-1), A.diagonal(), A.diagonal(1), -problem.q))
@@ -169,4 +166,4 @@ def _eliminated(problem: LCP) -> Point:
     x = [max(right[0] / main[0], 0.0)]
     for i in range(1, len(main)):
         x.append(max((right[i] - lower[i - 1] * x[-1]) / main[i], 0.0))
-    return Point(np.array(x))
+    return SimpleNamespace(x=np.array(x), success=True)

@@ -9,6 +9,7 @@ import numpy as np
 from attrs import frozen
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.linear import Banded
 from continuation.tracing import solve_at
@@ -16,7 +17,7 @@ from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import BratuForce
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @frozen
@@ -43,7 +44,7 @@ class HalfLayer:
 
 
 @with_parameters
-def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_least(4)] = 50) -> Scene:
+def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, integer(4)] = 50) -> Scene:
     """Where does the path of u'' + load e^u = 0, with u held below a lid, turn?
 
     It turns at a fold, and at a kink where the middle touches the lid.

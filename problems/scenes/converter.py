@@ -6,18 +6,18 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from continuation.arguments.checks import FRACTION
+from continuation.arguments.checks import FRACTION, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Converter(
-    voltage: Positive = 12.0, duty: Annotated[float, Kind(FRACTION)] = 0.5, period: Positive = 1e-5,
+    voltage: Positive = 12.0, duty: Annotated[float, FRACTION] = 0.5, period: Positive = 1e-5,
     inductance: Positive = 2e-5, capacity: Positive = 1e-4, load: Positive = 20.0,
-    n: Annotated[int, at_least(4)] = 100,
+    n: Annotated[int, integer(4)] = 100,
 ) -> Scene:  # fmt: skip
     """The periodic state of a buck converter with an ideal switch and an ideal diode.
 

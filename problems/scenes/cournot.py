@@ -10,14 +10,14 @@ import numpy as np
 from continuation.arguments.checks import POSITIVE
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Kind, Numbers, Positive, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.rivals import QUADRATIC
+from problems.scenes.scene import Numbers, Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Cournot(
     costs: Numbers = (10.0, 20.0, 30.0, 80.0), intercept: Positive = 100.0, slope: Positive = 1.0,
-    capacity: Annotated[float, Kind(POSITIVE)] = inf,
+    capacity: Annotated[float, POSITIVE] = inf,
 ) -> Scene:  # fmt: skip
     """How much does each of several producers with different costs sell?
 
@@ -62,5 +62,5 @@ def Cournot(
         unknowns=(Unknown("quantities", n, "who sells how much"),),
         # Negative marginal profits.
         problem=lambda: MixedLCP(A, cost - intercept, np.zeros(n), np.full(n, capacity)),
-        answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

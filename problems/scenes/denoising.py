@@ -7,15 +7,16 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import NotNegative, Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.rivals import QUADRATIC
+from problems.scenes.scene import NotNegative, Positive, Quantities, Scene, Seed, Unknown, with_parameters
 
 
 @with_parameters
 def Denoising(
-    samples: Annotated[int, at_least(4)] = 200, weight: Positive = 2.0, noise: NotNegative = 0.3, seed: Seed = 0
+    samples: Annotated[int, integer(4)] = 200, weight: Positive = 2.0, noise: NotNegative = 0.3, seed: Seed = 0
 ) -> Scene:
     """Where does a signal of flat pieces jump?
 
@@ -65,5 +66,5 @@ def Denoising(
     return Scene(
         units={"signal": "", "jumps": ""},
         unknowns=(Unknown("forces between neighbours", n, "where the signal jumps"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

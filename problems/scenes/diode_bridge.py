@@ -11,7 +11,6 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import LEMKE, TABLES
 from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, with_parameters
 
 
@@ -49,11 +48,12 @@ def DiodeBridge(
         return along(LCP(A, np.zeros(4)), one, (-amplitude, amplitude), x=start)
 
     def answer(solution: Any) -> Quantities:
-        path = isinstance(solution, Path)
-        x = solution(t=voltage)[:-1] if path else np.asarray(solution.x)
+        x = solution(t=voltage)[:-1]
         w = A @ x + voltage * one
-        found = {"load voltage": load * float(x[0] + x[1]), "diode currents": np.append(x[:2], w[2:])}
-        return {**found, "mean load voltage": mean(solution)} if path else found
+        return {
+            "load voltage": load * float(x[0] + x[1]), "diode currents": np.append(x[:2], w[2:]),
+            "mean load voltage": mean(solution),
+        }  # fmt: skip
 
     def mean(solution: Path) -> float:
         """Integrate the load voltage over a sine exactly."""
@@ -89,5 +89,5 @@ def DiodeBridge(
             Unknown("voltages across the lower diodes", 2, "which of these does not conduct"),
         ),
         problem=lambda: LCP(A, voltage * one),
-        solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
+        solve=solved, answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

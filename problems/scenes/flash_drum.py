@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 from attrs import frozen
-from scipy.optimize import brentq
 
 from continuation.tracing import solve_at
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Positive, Quantities, Rival, Scene, Unknown, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
 """Benzene and toluene: log10 p = A - B / (T + C), mm Hg and Celsius (Perry's handbook)."""
@@ -65,26 +64,17 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
     def problem() -> NormalMap:
         return NormalMap(balance, x0=np.zeros(1), lam0=cold, lower=0.0, upper=1.0, target=warm)
 
-    def phases(bubble: float, dew: float, part: float) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """An absent phase gets its incipient composition."""
-        k = np.array(balance.volatilities(temperature))
+        z = solve_at(problem(), temperature, solution(t=temperature)[:-1])
+        part, k = float(np.clip(z[0], 0.0, 1.0)), np.array(balance.volatilities(temperature))
         liquid = np.array([z / (1.0 + part * ki) for z, ki in zip(balance.feed, k)])
         vapour = liquid * (1.0 + k)
+        bubble, dew = (kink.lam for kink in solution.kinks)
         return {
             "bubble point": bubble, "dew point": dew, "vapour": part,
             "benzene in vapour": float(vapour[0] / vapour.sum()), "benzene in liquid": float(liquid[0] / liquid.sum()),
         }  # fmt: skip
-
-    def answer(solution: Any) -> Quantities:
-        z = solve_at(problem(), temperature, solution(t=temperature)[:-1])
-        bubble, dew = (kink.lam for kink in solution.kinks)
-        return phases(bubble, dew, float(np.clip(z[0], 0.0, 1.0)))
-
-    def exact() -> Quantities:
-        bubble, dew = (brentq(lambda T, x=x: float(balance(x, T)), cold, warm, xtol=1e-13) for x in (0.0, 1.0))
-        inside = bubble < temperature < dew
-        part = brentq(lambda x: float(balance(x, temperature)), 0.0, 1.0, xtol=1e-15) if inside else dew <= temperature
-        return phases(bubble, dew, float(part))
 
     def drawn(solution: Any) -> Picture:
         u = solution(np.linspace(0.0, solution.arclength[-1], 400))
@@ -103,6 +93,5 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
             "benzene in liquid": "",
         },
         unknowns=(Unknown("part of vapour", 1, "which phases there are"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("Brent, phase by phase (scipy)", "", lambda scene: exact()),),
+        problem=problem, answer=answer, picture=drawn,
     )  # fmt: skip

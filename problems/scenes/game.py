@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.solutions import solutions
 from problems.options import real_array
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Kind, Point, Quantities, Rival, Scene, Unknown, with_parameters
+from problems.scenes.scene import Quantities, Rival, Scene, Unknown, with_parameters
 
 
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
@@ -23,7 +24,7 @@ def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in matrix.tolist())
 
 
-Payoffs = Annotated[Any, Kind(convert=payoffs)]
+Payoffs = Annotated[Any, None, payoffs]
 
 
 def bimatrix(C: Array, D: Array) -> LCP:
@@ -70,23 +71,14 @@ def Game(
         ]  # fmt: skip
         return {"equilibria": np.array(published)} if (mine.tolist(), others.tolist()) == avis else {}
 
-    def bars(place: float, mixed: Array, colour: str) -> list[Any]:
-        left = np.append(0.0, np.cumsum(mixed)[:-1])
-        return [
-            *(mark("barh", place, part, left=at, color=colour, alpha=1.0 - 0.25 * i, edgecolor="white")
-              for i, (at, part) in enumerate(zip(left, mixed))),
-            *(mark("text", at + 0.5 * part, place, f"{i}: {part:.3g}", ha="center", va="center", color="white",
-                   fontsize="small") for i, (at, part) in enumerate(zip(left, mixed)) if part > 0.03),
-        ]  # fmt: skip
-
     def drawn(solution: Any) -> Picture:
         found = answer(solution)["equilibria"]
-        each = [part for k, row in enumerate(found)
-                for part in (*bars(3 * k, row[:m], "#0072B2"), *bars(3 * k + 1, row[m:], "#D55E00"))]  # fmt: skip
+        names = [f"first's {i}" for i in range(m)] + [f"second's {i}" for i in range(n)]
         return picture(
-            *each, mark("invert_yaxis"), yticks=[3 * k + 0.5 for k in range(len(found))],
-            yticklabels=[f"equilibrium {k}" for k in range(len(found))], xlabel="probability", xlim=(0.0, 1.0),
-            title="strategies of the first player, blue, and of the second",
+            mark("imshow", found, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto"),
+            *(mark("text", j, i, f"{part:.3g}", ha="center", va="center") for (i, j), part in np.ndenumerate(found)),
+            xticks=range(m + n), xticklabels=names, yticks=range(len(found)), ylabel="equilibrium",
+            title="probabilities of strategies",
         )  # fmt: skip
 
     def supports(scene: Any) -> Quantities:
@@ -94,7 +86,7 @@ def Game(
         theory = import_module("quantecon.game_theory")
         players = [theory.Player(mine), theory.Player(others.T)]
         found = theory.support_enumeration(theory.NormalFormGame(players))
-        return answer(Point(np.array([np.concatenate(pair) for pair in found])))
+        return answer(SimpleNamespace(x=np.array([np.concatenate(pair) for pair in found])))
 
     return Scene(
         units={"equilibria": "", "gains": ""},

@@ -7,15 +7,16 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.pictures import mark, picture
+from problems.scenes.rivals import QUADRATIC
+from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, with_parameters
 
 
 @with_parameters
-def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
+def Isotonic(samples: Annotated[int, integer(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
     """Which rising curve is nearest to a noisy response?
 
     Parameters
@@ -44,18 +45,16 @@ def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.
         fit = _pooled(data)
         return {"fit": fit, "steps": 1.0 + float((np.diff(fit) > 0.0).sum())}
 
-    def drawn(solution: Any) -> Picture:
-        return picture(
-            mark("plot", data, ".", color="0.6", label="measured"),
-            mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
-            xlabel="sample", ylabel="response",
-        )  # fmt: skip
-
     return Scene(
         units={"fit": "", "steps": ""},
         unknowns=(Unknown("forces between neighbours", n, "which samples are pooled"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact,
+        picture=lambda solution: picture(
+            mark("plot", data, ".", color="0.6", label="measured"),
+            mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
+            xlabel="sample", ylabel="response",
+        ),
+        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), *QUADRATIC),
     )  # fmt: skip
 
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from importlib import import_module
-from math import inf, nan
+from math import inf
 from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, with_parameters
 
 
 def penalised(G: Array, c: Array) -> Path:
@@ -29,8 +30,8 @@ def penalised(G: Array, c: Array) -> Path:
 
 @with_parameters
 def Lasso(
-    samples: Annotated[int, at_least(1)] = 60, features: Annotated[int, at_least(1)] = 12,
-    relevant: Annotated[int, at_least(0)] = 4, noise: NotNegative = 0.5, penalty: NotNegative = 5.0, seed: Seed = 0,
+    samples: Annotated[int, integer(1)] = 60, features: Annotated[int, integer(1)] = 12,
+    relevant: Annotated[int, integer(0)] = 4, noise: NotNegative = 0.5, penalty: NotNegative = 5.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
     """Which features explain an observation, as the penalty on their coefficients falls?
 
@@ -79,14 +80,6 @@ def Lasso(
         t = t * samples
         return {"coefficients": np.array([np.interp(-penalty, -t, row) for row in b]), "first enters at": float(t[0])}
 
-    def descent(scene: Any) -> Quantities:
-        if not penalty:
-            return {"first enters at": nan}
-        model = import_module("sklearn.linear_model").Lasso(
-            alpha=penalty / samples, fit_intercept=False, tol=1e-12, max_iter=100_000
-        )
-        return {"coefficients": model.fit(X, y).coef_}
-
     return Scene(
         units={"coefficients": "", "first enters at": "", "kinks": ""},
         # Splitting signs would make the problem singular.
@@ -94,5 +87,5 @@ def Lasso(
         problem=lambda: MixedLCP(X.T @ X, -X.T @ y),
         solve=lambda: penalised(X.T @ X, X.T @ y),
         answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("lars_path (sklearn)", "sklearn", lars), Rival("Lasso (sklearn)", "sklearn", descent)),
+        rivals=(Rival("lars_path (sklearn)", "sklearn", lars),),
     )  # fmt: skip

@@ -12,10 +12,9 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Finite, Kind, NotNegative, Positive, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.scene import Finite, NotNegative, Positive, Quantities, Scene, Unknown, with_parameters
 
-Slope = Annotated[float, Kind(number("an angle between 0 and pi/2", lambda angle: 0.0 < angle < pi / 2))]
+Slope = Annotated[float, number("an angle between 0 and pi/2", lambda angle: 0.0 < angle < pi / 2)]
 
 
 @with_parameters
@@ -57,9 +56,8 @@ def PainleveRod(
         return np.unique(np.append(path.crossings(b)[:, 0], [end[0] + beyond * v[0]] * bool(beyond > 0.0)))
 
     def answer(solution: Any) -> Quantities:
-        forces = possible(solution) if isinstance(solution, Path) else solution.x
         critical = sqrt(gravity / (half_length * s))
-        return {"a": a, "acceleration without force": b, "critical spin": critical, "forces": forces}
+        return {"a": a, "acceleration without force": b, "critical spin": critical, "forces": possible(solution)}
 
     def exact() -> Quantities:
         """The rod lifts off if b >= 0; a positive force a x = -mass b presses it down."""
@@ -82,6 +80,5 @@ def PainleveRod(
         units={"a": "", "acceleration without force": "m/s^2", "critical spin": "rad/s", "forces": "N"},
         unknowns=(Unknown("contact force", 1, "whether the rod lifts off or is pressed down"),),
         problem=lambda: LCP([[a / mass]], [b]),
-        # Rivals find one of two forces, or none without a reason.
-        solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
+        solve=solved, answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

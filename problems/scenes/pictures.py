@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.plot.drawing import COLOURS
@@ -14,32 +13,23 @@ from continuation.plot.drawing import COLOURS
 Mark = tuple[str, tuple[Any, ...], Mapping[str, Any]]
 
 
-@frozen(eq=False)
-class Picture:
-    """Marks in drawing order; a labelled one adds a legend."""
+Picture = Sequence[Mark]
 
-    marks: Sequence[Mark]
-    title: str
-    legend: Mapping[str, Any]
-    settings: Mapping[str, Any]
 
-    def on(self, axes: Any) -> None:
-        """Draw the picture.
+def draw(shown: Picture, axes: Any) -> None:
+    """Draw the marks in order.
 
-        Parameters
-        ----------
-        axes : matplotlib Axes
-        """
-        for method, arguments, options in self.marks:
-            getattr(axes, method)(*arguments, **options)
-        axes.set(**self.settings)
-        axes.set_title(self.title, fontsize="medium")
-        if any(options.get("label") for _, _, options in self.marks):
-            axes.legend(**{"frameon": False, **self.legend})
+    Parameters
+    ----------
+    shown : sequence of mark
+    axes : matplotlib Axes
+    """
+    for method, arguments, options in shown:
+        getattr(axes, method)(*arguments, **options)
 
 
 def picture(*marks: Mark, title: str = "", legend: Mapping[str, Any] | None = None, **settings: Any) -> Picture:
-    """Combine marks.
+    """Combine marks; a labelled one adds a legend.
 
     Parameters
     ----------
@@ -51,7 +41,9 @@ def picture(*marks: Mark, title: str = "", legend: Mapping[str, Any] | None = No
     **settings
         For ``axes.set``.
     """
-    return Picture(marks, title, legend or {}, settings)
+    labelled = any(options.get("label") for _, _, options in marks)
+    key = [mark("legend", **{"frameon": False, **(legend or {})})] if labelled else []
+    return [*marks, mark("set", **settings), mark("set_title", title, fontsize="medium"), *key]
 
 
 def mark(method: str, *arguments: Any, **options: Any) -> Mark:

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.solver import solve
 from problems.scenes.pictures import Picture, mark, picture, rectangle
 from problems.scenes.planar import Contact, contact_unknowns, free_motion, impulses, time_step
-from problems.scenes.rivals import LEMKE, TABLES, Found, by_quantecon, by_tables
 from problems.scenes.scene import (
     Finite,
     NotNegative,
-    Point,
     Positive,
-    Quantities,
-    Rival,
     Scene,
-    at_least,
     with_parameters,
 )
 
@@ -43,9 +38,9 @@ class Fall:
 
 @with_parameters
 def Pile(
-    boxes: Annotated[int, at_least(1)] = 4, gap: NotNegative = 0.05, side: Positive = 1.0, mass: Positive = 1.0,
+    boxes: Annotated[int, integer(1)] = 4, gap: NotNegative = 0.05, side: Positive = 1.0, mass: Positive = 1.0,
     friction: NotNegative = 0.5, speed: Finite = 1.0, gravity: Positive = 9.81, step: Positive = 0.01,
-    steps: Annotated[int, at_least(1)] = 60,
+    steps: Annotated[int, integer(1)] = 60,
 ) -> Scene:  # fmt: skip
     """Where do boxes that fall on each other come to rest?
 
@@ -94,12 +89,12 @@ def Pile(
         u[::2] += gaps / step
         return LCP(A, free_motion(u)), J, inverse, free
 
-    def fall(solver: Callable[[LCP], Any]) -> Fall:
+    def fall() -> Fall:
         (places, velocities), gaps, well = start, [], True
         history = [start]
         for _ in range(steps):
             problem, J, inverse, free = stepped(places, velocities)
-            found = solver(problem)
+            found: Any = solve(problem, tolerance=TIGHT)
             well = bool(found.success) and found.x is not None
             if not well:
                 break
@@ -112,16 +107,6 @@ def Pile(
         turning = 0.5 * mass * side**2 / 6.0 * (fast[..., 2] ** 2).sum(axis=1)
         energies = moving + turning + mass * gravity * where[..., 1].sum(axis=1)
         return Fall(where, fast, energies, np.array(gaps), well)
-
-    def answer(solution: Any) -> Quantities:
-        return {
-            "energy gained": max(float(np.diff(solution.energies).max()), 0.0),
-            "deepest penetration": max(-float(solution.gaps.min()), 0.0),
-            "heights": solution.places[-1, :, 1], "slid": float(solution.places[-1, 0, 0]),
-        }  # fmt: skip
-
-    def in_steps(rival: Rival, method: Callable[[LCP], Found]) -> Rival:
-        return evolve(rival, run=lambda scene: answer(fall(lambda problem: Point(method(problem)[0]))))
 
     def drawn(solution: Any) -> Picture:
         places, wide = solution.places, 0.5 * boxes * side
@@ -138,8 +123,12 @@ def Pile(
         units={"energy gained": "J", "deepest penetration": "m", "heights": "m", "slid": "m"},
         unknowns=contact_unknowns(2 * boxes),
         problem=lambda: stepped(*start)[0],
-        solve=lambda: fall(lambda problem: solve(problem, tolerance=TIGHT)),
-        answer=answer, picture=drawn,
+        solve=fall,
+        picture=drawn,
+        answer=lambda solution: {
+            "energy gained": max(float(np.diff(solution.energies).max()), 0.0),
+            "deepest penetration": max(-float(solution.gaps.min()), 0.0),
+            "heights": solution.places[-1, :, 1], "slid": float(solution.places[-1, 0, 0]),
+        },
         exact=lambda: {"energy gained": 0.0, "deepest penetration": 0.0},
-        rivals=(in_steps(LEMKE, by_quantecon), in_steps(TABLES, by_tables)),
     )  # fmt: skip

@@ -13,8 +13,8 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program, from_qp
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Kind, NotNegative, Numbers, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.rivals import PIQP
+from problems.scenes.scene import NotNegative, Numbers, Quantities, Scene, Unknown, with_parameters
 
 
 def critical_line(mean: Array, covariance: Array) -> Path:
@@ -38,9 +38,9 @@ def critical_line(mean: Array, covariance: Array) -> Path:
 @with_parameters
 def Portfolio(
     means: Numbers = (0.12, 0.10, 0.07, 0.03), variances: Numbers = (0.04, 0.09, 0.16, 0.01),
-    correlation: Annotated[float, Kind(number("a number from 0 to below 1", lambda c: 0.0 <= c < 1.0))] = 0.0,
+    correlation: Annotated[float, number("a number from 0 to below 1", lambda c: 0.0 <= c < 1.0)] = 0.0,
     tolerance: NotNegative = 0.5,
-    cap: Annotated[float, Kind(number("a number above 0, at most 1", lambda c: 0.0 < c <= 1.0))] = 1.0,
+    cap: Annotated[float, number("a number above 0, at most 1", lambda c: 0.0 < c <= 1.0)] = 1.0,
 ) -> Scene:  # fmt: skip
     """How is money divided among assets, none sold short?
 
@@ -106,5 +106,5 @@ def Portfolio(
             Unknown("weights", n, "how much of each asset"),
             Unknown("multiplier of the budget", 1, "all money is invested"),
         ),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP,),
     )  # fmt: skip

@@ -6,16 +6,17 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, arrow, mark, picture
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Puck(
     mass: Positive = 1.0, friction: Positive = 0.5, speed: Positive = 1.0, heading: Finite = 20.0,
-    edges: Annotated[int, at_least(3)] = 8, gravity: Positive = 9.81, step: Positive = 0.01,
+    edges: Annotated[int, integer(3)] = 8, gravity: Positive = 9.81, step: Positive = 0.01,
 ) -> Scene:  # fmt: skip
     """How does friction bend and slow the motion of a puck on a rough plane?
 

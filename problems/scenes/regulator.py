@@ -7,18 +7,17 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
-from continuation.path import Path
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Regulator(
     distance: Finite = 3.0, limit: Positive = 1.0, mass: Positive = 1.0, step: Positive = 0.5,
-    weight: Positive = 0.1, horizon: Annotated[int, at_least(1)] = 12,
+    weight: Positive = 0.1, horizon: Annotated[int, integer(1)] = 12,
 ) -> Scene:  # fmt: skip
     """Which limited force best brings a cart to rest from each distance?
 
@@ -54,18 +53,13 @@ def Regulator(
     H, c = 0.5 * (H + H.T), float(c + 0.5 * state @ last @ state)
     bound, none = np.full(horizon, limit), np.zeros(horizon)
 
-    def solved() -> Path:
-        """Distances from 0 to twice the scene's."""
-        return along(MixedLCP(H, none, -bound, bound), f, (0.0, 2.0 * distance or 1.0), x=none)
-
     def answer(solution: Any) -> Quantities:
-        path, t = isinstance(solution, Path), distance
-        u = solution(t=t)[:-1] if path else np.asarray(solution.x)
-        found = {"force": float(u[0]), "value": float(0.5 * u @ H @ u + t * f @ u + t * t * c)}
-        if not path:
-            return found
-        kinks = np.array([kink.lam for kink in solution.kinks])
-        return {**found, "free up to": float(kinks[0]) if kinks.size else float(solution.lam[-1]), "kinks at": kinks}
+        t, kinks = distance, np.array([kink.lam for kink in solution.kinks])
+        u = solution(t=t)[:-1]
+        return {
+            "force": float(u[0]), "value": float(0.5 * u @ H @ u + t * f @ u + t * t * c),
+            "free up to": float(kinks[0]) if kinks.size else float(solution.lam[-1]), "kinks at": kinks,
+        }  # fmt: skip
 
     def exact() -> Quantities:
         """The Riccati solution holds before the first kink."""
@@ -90,5 +84,7 @@ def Regulator(
         units={"force": "N", "value": "", "free up to": "m", "kinks at": "m"},
         unknowns=(Unknown("forces", horizon, "what the drive does, now and later"),),
         problem=lambda: MixedLCP(H, distance * f, -bound, bound),
-        solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        answer=answer, exact=exact, picture=drawn,
+        # Distances from 0 to twice the scene's.
+        solve=lambda: along(MixedLCP(H, none, -bound, bound), f, (0.0, 2.0 * distance or 1.0), x=none),
     )  # fmt: skip

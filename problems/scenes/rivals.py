@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from importlib import import_module
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.optimize import linprog, minimize
+from scipy.optimize import minimize
 
 from continuation.arrays import Array
 from problems.lcp.data.program import Program
 from problems.lcp.reference import ReferenceResult, lemke
-from problems.scenes.scene import Point, Rival, conditions
+from problems.scenes.scene import Rival, conditions
 
 TOLERANCE = 1e-10
 """Interior-point methods reach it on well-scaled problems."""
-
-SWEEPS = 200_000
-"""Limit for projected Gauss-Seidel, some seconds on charts."""
-
 
 Found = tuple[Array, int]
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Found]) -> Rival:
     """A rival for ``scene.problem()``."""
-    return Rival(name, module, lambda scene: scene.answer(Point(method(scene.problem())[0])))
+    return Rival(name, module, lambda scene: scene.answer(SimpleNamespace(x=method(scene.problem())[0])))
 
 
 def _arrived(x: Any, well: bool, message: object, iterations: int = 0) -> Found:
@@ -57,41 +53,6 @@ def by_reference(method: Callable[[Any], ReferenceResult]) -> Callable[[Any], Fo
 
 by_tables = by_reference(lemke)
 """Lemke's method (numpy tableau)."""
-
-
-@cache
-def _sweeper() -> Callable[..., Any]:
-    """A Python loop would be a hundred times slower."""
-
-    def sweep(data: Any, columns: Any, rows: Any, q: Any, lower: Any, upper: Any, x: Any, most: int) -> int:
-        n = q.size
-        for k in range(most):
-            moved = largest = 0.0
-            for i in range(n):
-                w, diagonal = q[i], 0.0
-                for j in range(rows[i], rows[i + 1]):
-                    w += data[j] * x[columns[j]]
-                    if columns[j] == i:
-                        diagonal = data[j]
-                new = min(max(x[i] - w / diagonal, lower[i]), upper[i])
-                moved, x[i] = max(moved, abs(new - x[i])), new
-                largest = max(largest, abs(new))
-            if moved <= 1e-12 * largest:
-                return k
-        return -1
-
-    compiled: Callable[..., Any] = import_module("numba").njit(sweep)
-    return compiled
-
-
-def _gauss_seidel(problem: Any) -> Found:
-    found = conditions(problem)
-    A = sp.csr_array(found.A)
-    if not (A.diagonal() > 0.0).all():
-        raise ArithmeticError("projected Gauss-Seidel needs a positive diagonal")
-    x = found.near_zero.copy()
-    swept = _sweeper()(A.data, A.indices, A.indptr, found.q, found.lower, found.upper, x, SWEEPS)
-    return _arrived(x, swept >= 0, f"not in {SWEEPS} sweeps")
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
@@ -124,28 +85,6 @@ def by_piqp(problem: Any) -> Found:
     return _arrived(solver.result.x, status == library.PIQP_SOLVED, status, solver.result.info.iter)
 
 
-def by_clarabel(problem: Any) -> Found:
-    """A conic interior-point method."""
-    P, c, B, b, G, h, lower, upper = program_of(problem)
-    library = import_module("clarabel")
-    settings = library.DefaultSettings()
-    settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = TOLERANCE
-    low, high, one = np.isfinite(lower), np.isfinite(upper), sp.eye_array(c.size, format="csr")
-    rows = sp.csc_matrix(sp.vstack([B, -G, -one[low], one[high]]))
-    sides = np.concatenate([b, -h, -lower[low], upper[high]])
-    cones = [library.ZeroConeT(b.size), library.NonnegativeConeT(sides.size - b.size)]
-    found = library.DefaultSolver(sp.csc_matrix(sp.triu(P)), c, rows, sides, cones, settings).solve()
-    return _arrived(found.x, str(found.status) == "Solved", found.status, found.iterations)
-
-
-def _highs(problem: Any) -> Found:
-    _, c, B, b, G, h, lower, upper = program_of(problem)
-    found = linprog(c, A_ub=-G, b_ub=-h, A_eq=B if b.size else None, b_eq=b if b.size else None,
-                    bounds=np.column_stack([lower, upper]))  # fmt: skip
-    return _arrived(found.x, found.success, found.message)
-
-
 def by_bfgs(problem: Any) -> Found:
     """Quasi-Newton, for bounds only."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
@@ -164,11 +103,8 @@ def by_bfgs(problem: Any) -> Found:
 
 LEMKE = of_problem("Lemke (quantecon)", "quantecon", by_quantecon)
 TABLES = of_problem("Lemke (tables, numpy)", "", by_tables)
-GAUSS_SEIDEL = of_problem("projected Gauss-Seidel (numba)", "numba", _gauss_seidel)
 PIQP = of_problem("PIQP", "piqp", by_piqp)
-CLARABEL = of_problem("Clarabel", "clarabel", by_clarabel)
-HIGHS = of_problem("HiGHS (scipy)", "", _highs)
 BFGS = of_problem("L-BFGS-B (scipy)", "", by_bfgs)
 
-QUADRATIC = (PIQP, CLARABEL, BFGS)
+QUADRATIC = (PIQP, BFGS)
 """For symmetric problems with bounds only."""

@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial, wraps
-from importlib import import_module
+from importlib.util import find_spec
 from inspect import signature
 from typing import Annotated, Any, ParamSpec, get_type_hints
 
 import numpy as np
 from attrs import asdict, evolve, field, frozen, make_class
 
-from continuation.arguments.checks import FINITE, NOT_NEGATIVE, POSITIVE_FINITE, Validator, integer
-from continuation.arrays import Array
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE, POSITIVE_FINITE, integer
 from continuation.tracing import trace
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.search.solver import solve as solve_problem
 from problems.options import finite_vector
-from problems.scenes.pictures import Picture
+from problems.scenes.pictures import Picture, draw
 
 Quantities = Mapping[str, Any]
 
@@ -63,19 +62,8 @@ class Rival:
 
     @property
     def installed(self) -> bool:
-        """Whether the required module imports."""
-        try:
-            return not self.module or bool(import_module(self.module))
-        except ImportError:
-            return False
-
-
-@frozen
-class Point:
-    """A vector as a solution for `Scene.answer`."""
-
-    x: Array
-    success: bool = True
+        """Whether the required module is there."""
+        return not self.module or find_spec(self.module) is not None
 
 
 @frozen(eq=False)
@@ -119,32 +107,14 @@ class Scene:
             Result of `solve`.
         axes : matplotlib Axes
         """
-        self.picture(solution).on(axes)
+        draw(self.picture(solution), axes)
 
 
-@frozen
-class Kind:
-    """Validator and converter (name, value) of a parameter."""
-
-    check: Validator | None = None
-    convert: Callable[[str, Any], Any] | None = None
-
-
-def at_least(least: int) -> Kind:
-    """An integer parameter.
-
-    Parameters
-    ----------
-    least : int
-    """
-    return Kind(integer(least))
-
-
-Positive = Annotated[float, Kind(POSITIVE_FINITE)]
-NotNegative = Annotated[float, Kind(NOT_NEGATIVE)]
-Finite = Annotated[float, Kind(FINITE)]
-Seed = Annotated[int, at_least(0)]
-Numbers = Annotated[Sequence[float], Kind(convert=lambda name, value: tuple(finite_vector(name, value).tolist()))]
+Positive = Annotated[float, POSITIVE_FINITE]
+NotNegative = Annotated[float, NOT_NEGATIVE]
+Finite = Annotated[float, FINITE]
+Seed = Annotated[int, integer(0)]
+Numbers = Annotated[Sequence[float], None, lambda name, value: tuple(finite_vector(name, value).tolist())]
 """Tuples can be compared."""
 
 P = ParamSpec("P")
@@ -156,14 +126,14 @@ def with_parameters(build: Callable[P, Scene]) -> Callable[P, Scene]:
     Parameters
     ----------
     build : callable
-        Its arguments are annotated as ``Annotated[type, Kind(...)]``.
+        Its arguments are annotated as ``Annotated[type, validator, converter]``, both of them optional: a validator of
+        attrs or None, a function of (name, value).
     """
     hints = get_type_hints(build, include_extras=True)
     parts = {}
     for name, parameter in signature(build).parameters.items():
-        kind = getattr(hints.get(name), "__metadata__", (Kind(),))[0]
-        parts[name] = field(default=parameter.default, validator=kind.check,
-                            converter=kind.convert and partial(kind.convert, name))  # fmt: skip
+        check, convert = (*getattr(hints.get(name), "__metadata__", ()), None, None)[:2]
+        parts[name] = field(default=parameter.default, validator=check, converter=convert and partial(convert, name))
     of_values: Callable[..., Scene] = build
     checked: Any = make_class(build.__name__, parts, frozen=True)
 

@@ -11,7 +11,7 @@ from continuation.arguments.checks import number
 from continuation.arrays import Array
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, with_parameters
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 
 def _lack(x: Any, lam: Any) -> Any:
@@ -26,7 +26,7 @@ def _slope(x: Array, lam: float) -> tuple[Array, Array]:
 @with_parameters
 def SnapThrough(
     rise: Positive = 0.05, span: Positive = 1.0, stiffness: Positive = 1e6,
-    stop: Annotated[float, Kind(number("a number between -1 and 0", lambda s: -1.0 < s < 0.0))] = -0.3,
+    stop: Annotated[float, number("a number between -1 and 0", lambda s: -1.0 < s < 0.0)] = -0.3,
     load: Positive = 1.5,
 ) -> Scene:  # fmt: skip
     """When do two shallow bars snap through onto a stop, and what does the stop bear?
@@ -51,9 +51,6 @@ def SnapThrough(
     # Load unit (N); the fold load in it.
     unit, top = stiffness * (rise / span) ** 3, 2.0 / (3.0 * sqrt(3.0))
     asked = load * 2.0 / (3.0 * sqrt(3.0))
-
-    def problem() -> NormalMap:
-        return NormalMap(_lack, _slope, x0=np.ones(1), lam0=0.0, lower=stop, upper=np.inf, target=1.1 * max(asked, top))
 
     def named(fold: float, kink: float, force: float) -> Quantities:
         return {"snap load": unit * fold, "load at touch": unit * kink, "force on stop": unit * max(force, 0.0)}
@@ -83,5 +80,8 @@ def SnapThrough(
     return Scene(
         units={"snap load": "N", "load at touch": "N", "force on stop": "N"},
         unknowns=(Unknown("height of the joint", 1, "where it is when it touches the stop"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn,
+        answer=answer, exact=exact, picture=drawn,
+        problem=lambda: NormalMap(
+            _lack, _slope, x0=np.ones(1), lam0=0.0, lower=stop, upper=np.inf, target=1.1 * max(asked, top)
+        ),
     )  # fmt: skip

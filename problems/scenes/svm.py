@@ -7,10 +7,11 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
+from problems.scenes.rivals import PIQP
 from problems.scenes.scene import (
     NotNegative,
     Positive,
@@ -19,7 +20,6 @@ from problems.scenes.scene import (
     Scene,
     Seed,
     Unknown,
-    at_least,
     with_parameters,
 )
 
@@ -32,18 +32,10 @@ def clouds(samples: int, distance: float, seed: int) -> tuple[Array, Array]:
     return X, side
 
 
-def kernel(X: Array, Y: Array, width: float) -> Array:
-    """Kernel matrix, shape (len(X), len(Y)); linear for width 0, else Gaussian."""
-    if not width:
-        return X @ Y.T
-    square = ((X[:, None] - Y[None]) ** 2).sum(axis=2)
-    return np.asarray(np.exp(-0.5 * square / width**2))
-
-
 @with_parameters
 def SVM(
-    samples: Annotated[int, at_least(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
-    width: NotNegative = 0.0, seed: Seed = 0,
+    samples: Annotated[int, integer(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
+    seed: Seed = 0,
 ) -> Scene:  # fmt: skip
     """Which line separates two clouds of points with the widest margin, at a price on errors?
 
@@ -55,15 +47,13 @@ def SVM(
         Between the cloud centres, in standard deviations.
     cost : float
         Price of an error: largest weight of a point.
-    width : float
-        Gaussian kernel width; 0 for a straight border.
 
     References
     ----------
     Cortes and Vapnik, Machine Learning 20 (1995).
     """
     X, side = clouds(samples, distance, seed)
-    K = kernel(X, X, width)
+    K = X @ X.T
 
     def problem() -> Program:
         P = K * np.outer(side, side)
@@ -82,18 +72,18 @@ def SVM(
 
     def exact() -> Quantities:
         weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), cost)
-        return {} if samples != 2 or width else {"weights": np.full(2, weight)}
+        return {} if samples != 2 else {"weights": np.full(2, weight)}
 
     def drawn(solution: Any) -> Picture:
         found = answer(solution)
         chosen, (low, high) = X[found["weights"] > 1e-7 * cost], (X.min(axis=0) - 0.5, X.max(axis=0) + 0.5)
         across, up = np.meshgrid(np.linspace(low[0], high[0], 80), np.linspace(low[1], high[1], 80))
-        there = kernel(np.column_stack([across.ravel(), up.ravel()]), X, width)
-        value = there @ (found["weights"] * side) + found["offset"]
+        normal = X.T @ (found["weights"] * side)
+        value = normal[0] * across + normal[1] * up + found["offset"]
         return picture(
             *(mark("plot", *X[side == s].T, ".", color=colour) for s, colour in ((-1.0, "#0072B2"), (1.0, "#D55E00"))),
             mark("plot", *chosen.T, "o", markerfacecolor="none", markeredgecolor="0.3", label="support vectors"),
-            mark("contour", across, up, value.reshape(across.shape), levels=[-1.0, 0.0, 1.0], colors="0.4",
+            mark("contour", across, up, value, levels=[-1.0, 0.0, 1.0], colors="0.4",
                  linestyles=[":", "-", ":"]),
             aspect="equal", xlabel="first feature", ylabel="second feature", legend={"fontsize": "small"},
         )  # fmt: skip
@@ -109,5 +99,5 @@ def SVM(
         unknowns=(Unknown("weights of points", samples, "which points decide"),
                   Unknown("offset", 1, "where the border is: the multiplier of balance")),
         problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("SVC (sklearn)", "sklearn", libsvm), PIQP, CLARABEL),
+        rivals=(Rival("SVC (sklearn)", "sklearn", libsvm), PIQP),
     )  # fmt: skip

@@ -7,16 +7,17 @@ from typing import Annotated, Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
+from problems.scenes.rivals import QUADRATIC
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
 
 
 @with_parameters
 def Torsion(
     side: Positive = 1.0, modulus: Positive = 1.0, yield_stress: Positive = 1.0, twist: Positive = 2.5,
-    n: Annotated[int, at_least(2)] = 24,
+    n: Annotated[int, integer(2)] = 24,
 ) -> Scene:  # fmt: skip
     """Which torque does a twisted square bar of an elastic, perfectly plastic material bear?
 
@@ -83,5 +84,5 @@ def Torsion(
     return Scene(
         units={"torque": "N m", "plastic part": ""},
         unknowns=(Unknown("stress function", size, "stresses are its slopes, the torque its volume"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

@@ -8,14 +8,15 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import dijkstra
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
+from problems.scenes.rivals import PIQP
+from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, with_parameters
 
 
 @with_parameters
-def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
+def Traffic(side: Annotated[int, integer(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
     """Which ways do drivers take across a grid of streets whose times grow with their loads?
 
     The multipliers of Beckmann's program are times to the goal.
@@ -51,14 +52,6 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
         quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]
         return {"time": float(minutes @ loads) / cars, "quickest way": float(quickest), "loads": loads}
 
-    def exact() -> Quantities:
-        if side > 2:
-            return {}
-        fixed, each = (part[[0, 2]] + part[[3, 1]] for part in (empty, slope))
-        first = float(np.clip((fixed[1] - fixed[0] + each[1] * cars) / each.sum(), 0.0, cars))
-        time = fixed[0] + each[0] * first if first > 0.0 else fixed[1] + each[1] * cars
-        return {"time": time, "quickest way": time, "loads": np.array([first, cars - first, cars - first, first])}
-
     def drawn(solution: Any) -> Picture:
         found = answer(solution)
         (y0, x0), (y1, x1) = (np.divmod(ends, side) for ends in (begin, end))
@@ -78,5 +71,5 @@ def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: 
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),
         ),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+        problem=problem, answer=answer, picture=drawn, rivals=(PIQP,),
     )  # fmt: skip

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import LEMKE, TABLES
 from problems.scenes.scene import NotNegative, Numbers, Positive, Quantities, Scene, Unknown, with_parameters
 
 
@@ -39,19 +37,15 @@ def Truss(
     n, most = len(limits), np.array(limits)
     A = (stiffness + hardening) * np.eye(n) - stiffness / n * np.ones((n, n))
 
-    def loaded(strain: Array) -> Quantities:
-        return {"plastic elongations": strain, "forces": load / n - stiffness * (strain - strain.mean())}
-
     def answer(solution: Any) -> Quantities:
-        if not isinstance(solution, Path):
-            return loaded(np.asarray(solution.x))
         end, v = solution.endpoint, solution.steps[-1].tangent
         collapse = inf if v[-1] > 1e-12 * np.abs(v).max() else end.lam
         if load > collapse:
             raise ArithmeticError(f"load: the bars bear {collapse:g} at most, found {load:g}")
         strain = solution(t=load)[:-1] if load <= end.lam else end.y + (load - end.lam) / v[-1] * v[:-1]
         return {
-            **loaded(strain), "collapse load": collapse,
+            "plastic elongations": strain, "forces": load / n - stiffness * (strain - strain.mean()),
+            "collapse load": collapse,
             "yield loads": np.array([kink.lam for kink in solution.kinks]),
         }  # fmt: skip
 
@@ -86,5 +80,5 @@ def Truss(
         unknowns=(Unknown("plastic elongations", n, "which bars have yielded; forces follow from them"),),
         problem=lambda: LCP(A, most - load / n),
         solve=lambda: along(LCP(A, most), np.full(n, -1.0 / n), (0.0, inf), x=np.zeros(n)),
-        answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
+        answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

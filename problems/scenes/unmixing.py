@@ -7,9 +7,10 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.optimize import nnls
 
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import Picture, mark, picture
-from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
+from problems.scenes.rivals import LEMKE, QUADRATIC
 from problems.scenes.scene import (
     NotNegative,
     Positive,
@@ -18,14 +19,13 @@ from problems.scenes.scene import (
     Scene,
     Seed,
     Unknown,
-    at_least,
     with_parameters,
 )
 
 
 @with_parameters
 def Unmixing(
-    substances: Annotated[int, at_least(1)] = 12, channels: Annotated[int, at_least(2)] = 200, width: Positive = 0.8,
+    substances: Annotated[int, integer(1)] = 12, channels: Annotated[int, integer(2)] = 200, width: Positive = 0.8,
     noise: NotNegative = 0.0, seed: Seed = 0,
 ) -> Scene:  # fmt: skip
     """How much of each substance is in a spectrum?
@@ -71,5 +71,5 @@ def Unmixing(
         problem=lambda: LCP(spectra.T @ spectra, -spectra.T @ measured),
         answer=answer, picture=drawn,
         exact=lambda: {} if noise else {"amounts": amounts, "misfit": 0.0},
-        rivals=(Rival("nnls (scipy)", "", lawson_hanson), GAUSS_SEIDEL, LEMKE, *QUADRATIC),
+        rivals=(Rival("nnls (scipy)", "", lawson_hanson), LEMKE, *QUADRATIC),
     )  # fmt: skip

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
-from continuation.auditing.length import arclength
 from problems.nonlinear import brown, fixed_point
 
+from ..truth.length import length
 from ..util import every_preset
 
 LENGTHS = {5: 2.7114077076, 10: 3.7199286259, 20: 5.1259069338, 30: 6.1886027468}
@@ -24,4 +24,4 @@ def test_the_root_and_the_length(n, preset):
     assert path.status is Status.REACHED_TARGET
     np.testing.assert_allclose(path.endpoint.y, np.ones(n), rtol=0, atol=1e-9)
     # Six digits are promised, the tables have eleven.
-    assert arclength(from_zero(n), path) == pytest.approx(LENGTHS[n], abs=1e-9)
+    assert length(from_zero(n), path) == pytest.approx(LENGTHS[n], abs=1e-9)

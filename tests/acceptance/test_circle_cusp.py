@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
-from continuation.auditing.length import arclength
 from problems.bifurcation import Circle, Cusp
 
+from ..truth.length import length
 from ..util import every_preset
 
 
@@ -18,7 +18,7 @@ def test_the_circle_closes_after_one_turn(preset, direction):
     np.testing.assert_allclose(path.endpoint.u, (1.0, 0.0), rtol=0, atol=1e-12)
     folds = [event.u for event in path.turning_points]
     np.testing.assert_allclose(folds, [(0.0, direction), (0.0, -direction)], rtol=0, atol=1e-12)
-    assert arclength(Circle(), path) == pytest.approx(2.0 * np.pi, rel=1e-10)
+    assert length(Circle(), path) == pytest.approx(2.0 * np.pi, rel=1e-10)
 
 
 @every_preset

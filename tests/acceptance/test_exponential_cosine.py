@@ -8,7 +8,6 @@ from attrs import evolve
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
 from continuation.auditing import audit
-from continuation.auditing.length import arclength
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
@@ -69,10 +68,3 @@ def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
     assert path.status is Status.REACHED_TARGET
     assert len(path.turning_points) != TABLE[n][1]
     assert not audit(ExponentialCosine(n), path).same
-
-
-@pytest.mark.usefixtures("unguarded")
-def test_a_path_that_jumped_has_no_length():
-    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=PAPER, metric=Euclidean())
-    with pytest.raises(ArithmeticError, match="are not joined"):
-        arclength(ExponentialCosine(5), path)

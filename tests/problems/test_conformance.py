@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from continuation import from_functions
-from continuation.arguments.plugins import available, make
+from continuation.arguments.plugins import available, find
 from continuation.testing import check_homotopy
 from problems import lcp
 from problems.bifurcation import Bratu1D, Bratu2D, Cusp, ExponentialCosine, Pitchfork
@@ -42,8 +42,8 @@ OTHERS = {
     "kkt, not refined": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6).toarray(), Q), refine=False),
     "kkt, banded": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6), Q)),
     "kkt, sparse": lambda: lcp.KKTHomotopy(lcp.LCP(scattered(24), np.resize(Q, 24))),
-    "kkt, a degenerate end": lambda: make("kkt", {"example": 7}),
-    "kkt, two turning points": lambda: make("kkt", {"example": 10}),
+    "kkt, a degenerate end": lambda: find("kkt")(example=7),
+    "kkt, two turning points": lambda: find("kkt")(example=10),
     "wang, sparse": lambda: lcp.WangHomotopy(lcp.LCP(chain(6), Q)),
 }
 
@@ -55,7 +55,7 @@ def test_every_plugin_of_ours_is_examined():
 
 @pytest.mark.parametrize("name", SMALL)
 def test_plugin(name):
-    check_homotopy(make(name, SMALL[name]))
+    check_homotopy(find(name)(**SMALL[name]))
 
 
 @pytest.mark.parametrize("name", OTHERS)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation import Tracer, trace
+from continuation import Budget, Tracer, from_functions, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, trace_many
 from continuation.controllers import Bounds, Fixed
 from problems import lcp
@@ -75,10 +75,24 @@ def tally(mode: str) -> Callable[[Path, int], Found]:
 
 
 def memory(folder: Path, size: int) -> Found:
-    """A long path of which the ends are kept."""
-    _, lines = printed(lambda: benchmark("archive_benchmark.py").memory(folder, size))
-    above = float(lines[0].partition(": ")[2].split()[0])
-    return Found(size, int(above > 16.0), lines[0])
+    """A long path of which the ends are kept, round and round the unit circle: MiB above the start."""
+    spiral = from_functions(
+        lambda y, lam: y - (np.cos(lam), np.sin(lam)),
+        lambda y, lam: (np.eye(2), np.array([np.sin(lam), -np.cos(lam)])),
+        start=([1.0, 0.0], 0.0), target=None,
+    )  # fmt: skip
+    options = {"controller": Fixed(bounds=Bounds(initial=0.01))}
+    trace(spiral, archive=PathLog(folder / "first.h5", keep="ends"), budget=Budget(steps=600), **options)
+    begin, most = _resident(), 0.0
+    log = PathLog(folder / "long.h5", keep="ends")
+    for step in Tracer(spiral, observers=(log,), budget=Budget(steps=size - 1), **options):
+        if not step.index % 1000:
+            most = max(most, _resident() - begin)
+    return Found(size, int(most > 16.0), f"{size} points of 2 unknowns: {most:.1f} MiB above the start at most")
+
+
+def _resident() -> float:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 def bad_input(folder: Path, size: int) -> Found:
@@ -208,7 +222,7 @@ def solves(folder: Path, size: int) -> Found:
         A = rng.standard_normal((3, 3))
         lcp.solve(lcp.LCP(A @ A.T + np.eye(3), rng.standard_normal(3)))
         if k in (size // 4, size - 1):
-            used.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20)
+            used.append(_resident())
     grown = used[1] - used[0]
     return Found(size, int(grown > 4.0), f"{size} solves: {grown:.1f} MiB more after the last than after a quarter")
 

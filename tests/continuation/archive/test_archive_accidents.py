@@ -15,6 +15,8 @@ from ...util import in_child, refused
 from .util import killed, logged, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.02))}
+
+
 @pytest.fixture
 def file(tmp_path):
     return killed(tmp_path / "run.h5", HOMOTOPY, 30, **OPTIONS)

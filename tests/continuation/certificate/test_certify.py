@@ -239,7 +239,7 @@ def test_an_event_that_is_not_on_the_curve_is_a_gap_however_wide_the_tube():
 
 def test_a_start_that_is_not_on_the_curve_is_a_gap_however_wide_its_tube():
     # Two of 10,000 corrupted paths were proved: between the moved start and the next point is room for one curve.
-    sheets, lemke = corrupted.TwoSheets(5.1e-4), corrupted.subjects(0)[5][0]
+    sheets, lemke = benchmark("subjects.py").TwoSheets(5.1e-4), corrupted.subjects(0)[5][0]
     for homotopy, off in ((sheets, [0.0173, 0.0173]), (lemke, [-0.068, 0.025, -0.025, -0.068])):
         path = trace(homotopy)
         first, *others = path.steps

@@ -1,7 +1,5 @@
 """Studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
 
-import math
-
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -9,8 +7,7 @@ import pytest
 import continuation
 from continuation import chart
 from continuation.chart.run import report
-from continuation.counts import Counts
-from problems.bifurcation import Circle, ExponentialCosine
+from problems.bifurcation import ExponentialCosine
 from problems.charts.subjects import cosine
 from tests.truth import exponential_cosine
 
@@ -27,23 +24,7 @@ def test_what_went_wrong_is_named_with_its_reason(results):
     assert [r.rung for r in results.of(method="Hermite")] == [1e-4, 1e-8]
     assert len(results.rows) == 10
     assert row(results, "raises").message == "ArithmeticError: on purpose"
-    assert ("exponential-cosine, n = 5", "raises", 1e-8, "exception", "ArithmeticError: on purpose") in [
-        tuple(line) for line in chart.failures(results).rows
-    ]
     assert "the path has 10" in row(results, "jumps").message
-
-
-def test_the_distance_without_a_closed_form_is_that_to_the_nearest_point():
-    # Two points on the unit circle joined by a straight line of dense output: the middle is 1 - cos(pi/8) inside.
-    angle = np.array([0.0, math.pi / 4])
-    u = np.column_stack((np.cos(angle), np.sin(angle)))
-    steps = [continuation.Step(k, point, np.zeros(2), float(angle[k])) for k, point in enumerate(u)]
-    answer = chart.Answer(Counts(), continuation.Path(steps), u[-1])
-    problem = chart.Problem("circle", Circle())
-    middle = (u[0] + u[1]) / 2
-    foot = middle / np.linalg.norm(middle)
-    expected = np.abs(middle - foot).max() / (1.0 + foot.max())
-    assert chart.CURVE_DISTANCE.measure(problem, answer) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_reference_knows_what_the_closed_form_knows():
@@ -72,7 +53,7 @@ def test_results_come_back_from_their_file_to_the_last_bit(results, tmp_path):
 
 
 def test_lines_are_named_in_the_order_of_their_ends(results):
-    figure = chart.Lines("curve_distance", ("factorizations", "seconds")).draw(results)
+    figure = chart.Lines("end_point", ("factorizations", "seconds")).draw(results)
     panel, timed = figure.axes
     assert panel.get_xscale() == panel.get_yscale() == "log"
     assert panel.xaxis_inverted()
@@ -88,44 +69,14 @@ def test_lines_are_named_in_the_order_of_their_ends(results):
     assert all("failed" in name for name in key[-4:])
 
 
-def made(problem, method, error, work, *, outside=False, failure="", rung=1.0, n=1):
-    counts = Counts(factorizations=work)
-    return chart.Row(problem, "f", n, method, outside, rung, failure, "", {"e": error}, counts, 0, 1.0)
-
-
-def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio():
-    rows = [
-        made("even", "ours", 1e-15, 10), made("even", "slow", 1e-9, 70, outside=True),
-        made("even", "quick", 1e-4, 20, outside=True), made("lost", "ours", 1e-15, 10),
-        made("lost", "ours", 1e-15, 1, rung=0.5),
-        made("lost", "quick", 1e-15, 5, outside=True), made("won", "ours", 1e-15, 10),
-        made("won", "slow", 1e-15, 99, outside=True), made("won", "quick", 1.0, 1, outside=True, failure="wrong end"),
-        made("alone", "ours", 1e-15, 10), made("failed", "ours", 1.0, 1, failure="wrong end"),
-        made("failed", "quick", 1e-15, 5, outside=True),
-    ]  # fmt: skip
-    results = chart.Results("s", "t", "mesh", {"e": "error"}, ["factorizations"], rows)
-    (panel,) = chart.Dumbbell("e", "factorizations").draw(results).axes
-    assert [label.get_text() for label in panel.get_yticklabels()] == ["won", "even", "lost", "alone", "failed"]
-    said = [text.get_text() for text in panel.texts]
-    assert said == [
-        "9.9× quicker than slow", "2.0× quicker than quick", "2.0× slower than quick", "no rival", "ours failed"
-    ]  # fmt: skip
-    (every,) = chart.Dumbbell("e", "factorizations", ["won", "even"], every=True).draw(results).axes
-    labels = [label.get_text() for label in every.get_yticklabels()]
-    assert labels == ["won:  ours", "slow", "quick", "", "even:  ours", "quick", "slow"]
-    assert "wrong end" in [text.get_text() for text in every.texts]
-
-
 @pytest.mark.parametrize(
     ("picture", "complaint"),
     [
         (chart.Lines("none", "seconds"), "error: expected some of"),
         (chart.Lines("end_point", "none"), "work: expected some of"),
         (chart.Lines("end_point", "seconds", ["none"]), "problems: expected some of"),
-        (chart.Lines("end_point", "seconds", None, ["none"]), "methods: expected some of"),
         (chart.Profile("none"), "work: expected some of"),
-        (chart.Dumbbell("none", "seconds"), "error: expected some of"),
-        (chart.Dumbbell("end_point", "seconds", []), "problems: expected some of"),
+        (chart.Profile("seconds", "family"), "by: expected some of"),
     ],
 )
 def test_what_is_not_there_is_not_drawn(results, picture, complaint):

@@ -17,10 +17,19 @@ def test_a_profile_has_a_row_for_each_method_and_those_that_solve_most_stand_abo
     assert {tuple(line.get_xdata()) for line in panel.get_lines()} == {(), (1.0,), (1.0, 1.0), (100.0,), (100.0, 100.0)}
 
 
+def test_a_profile_by_problems_has_ours_and_the_others_in_a_row():
+    ours = made(("ours", 1.0, 10, "")).rows[0]
+    theirs = evolve(ours, method="theirs", outside=True, counts=Counts(factorizations=5))
+    rows = [ours, theirs, evolve(ours, problem="q"), evolve(theirs, problem="q", failure="jump")]
+    (panel,) = chart.Profile("factorizations", by="problem").draw(evolve(made(), rows=rows)).axes
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["q", "p"]
+    assert {tuple(line.get_xdata()) for line in panel.get_lines()} >= {(2.0, 1.0, 2.0), (1.0, 1.0)}
+
+
 def made(*points):
     """Results of one problem: (method, error, factorisations, failure)."""
     rows = [
-        chart.Row("p", "p", 1, name, False, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0)
+        chart.Row("p", "p", 1, name, False, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 1.0)
         for name, error, work, failure in points
     ]
     return chart.Results("s", "t", "tolerance", {"e": "error"}, ("factorizations",), tuple(rows))

@@ -18,8 +18,7 @@ def installed(monkeypatch):
         name="closed",
         problems=[cosine(2)],
         methods=[chart.traced("Hermite"), chart.Method("raises", boom)],
-        ladder=chart.tolerances(1e-6),
-        errors=[chart.END_POINT],
+        ladder=(1e-6,),
         figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
         repeats=0,
     )
@@ -50,7 +49,6 @@ def test_the_command_writes_everything(installed, tmp_path, capsys):
     ]  # fmt: skip
     said = capsys.readouterr().out
     assert "1 exception" in said
-    assert "closed: Failures" in said
     assert "blas_threads" in chart.read(folder / "closed.json").provenance
 
 

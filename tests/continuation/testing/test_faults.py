@@ -11,7 +11,7 @@ import continuation
 from continuation.testing import CheckFailure, homotopy_checks
 from continuation.testing.suite import CHECKS
 
-from .util import REFERENCE, Interior, NoSolution, WrongSeries, interior
+from .util import Interior, NoSolution, WrongSeries, interior
 
 
 @pytest.mark.parametrize("check", homotopy_checks(Interior()), ids=str)
@@ -46,24 +46,6 @@ def flipped(self, y, lam, border):
 
 def plain(residual, y0):
     return continuation.from_functions(residual, start=([y0], 1.0), target=0.0)
-
-
-class OneWay(Interior):
-    """Where points of the path have come with a larger parameter four times, there is another path."""
-
-    last, rises = 1.0, 0
-
-    def start(self):
-        self.last, self.rises = 1.0, 0
-        return super().start()
-
-    def residual(self, y, lam):
-        value = super().residual(y, lam)
-        if np.abs(value).max() < 1e-10:
-            # By more than from a look within a short step back to its end.
-            self.rises += lam > self.last + 0.05
-            self.last = lam
-        return value + (1e-2 if self.rises >= 4 else 0.0)
 
 
 @define
@@ -134,9 +116,8 @@ FAULTS = [
         Bent(watched=lambda y: np.multiply(y, 1.5, out=y)),
         "switches: at the start it changes its argument",
     ),
-    ("switches", Bent(watched=lambda y: np.append(y, np.abs(y + 1.0))), "number 1 is not differentiable"),
     ("pieces", Bent(tear=1e-3), "piece: .* differs from the map: number 0 is .*, a difference of 0.001"),
-    ("derivatives_of_pieces", Bent(wrong=1e-2), "is -1.01, expected -1"),
+    ("derivatives_of_pieces", Bent(wrong=1e-4), "is -1.0001, expected -1"),
     ("start", interior(start=None), "expected a method `start`, found none"),
     ("start", interior(start=lambda self: [1.0, 2.0, 3.0]), r"expected a tuple \(y0, lam0\), found list"),
     ("start", interior(start=lambda self: (np.full(2, np.nan), 1.0)), "expected finite numbers, found NaN"),
@@ -163,8 +144,6 @@ FAULTS = [
         interior(jacobian=reusing, buffer=np.zeros((2, 2))),
         r"jacobian: .* an answer changes when the method is called again \(return new arrays\)",
     ),
-    ("target", interior(target="zero"), "expected a finite number or None, found 'zero'"),
-    ("target", interior(target=math.inf), "expected a finite number or None, found inf"),
     (
         "jacobian_types",
         interior(jacobian=lambda self, y, lam: [[1.0, 1.0], [1.0, -1.0]]),
@@ -191,7 +170,7 @@ FAULTS = [
         interior(differential=lambda self, y, lam, v: self.jacobian(y, lam)[0] @ v[:-1]),
         "differential: at the start component 0 is .*, expected .*, a difference of",
     ),
-    ("bordered", interior(bordered=flipped), r"the sign is [+-]1, but the determinant is"),
+    ("bordered", interior(bordered=flipped), r"expected the determinant's sign [+-]1 or 0 .unknown., found [+-]?1"),
     (
         "bordered",
         interior(bordered=lambda *given: Interior.bordered(*given[:3], np.array([0.0, 0.0, 1.0]))),
@@ -211,11 +190,6 @@ FAULTS = [
     ("max_step", interior(max_step=lambda self, u, v: 0.0), "it is 0, expected a positive number"),
     (
         "max_step",
-        interior(max_step=lambda self, u, v: Interior.max_step(self, u, v) if v.any() else 1.0),
-        "it is 1 along v = 0, expected inf",
-    ),
-    (
-        "max_step",
         interior(max_step=lambda self, u, v: 0.9 * Interior.max_step(self, u, v)),
         r"after 0\.5 of .* what is left along 1 v, number 0 is .*, expected",
     ),
@@ -224,37 +198,17 @@ FAULTS = [
         interior(max_step=lambda self, u, v: float(np.linalg.norm(v)) * Interior.max_step(self, u, v)),
         "what is left along 2 v, number 0 is .*, expected",
     ),
-    (
-        "observe",
-        interior(observe=lambda self, y, lam: {"gap" if lam == 1.0 else "distance": 0.0}),
-        "beside the start expected a dictionary of real numbers with names that are the same everywhere, found",
-    ),
-    ("observe", interior(observe=lambda self, y, lam: {"gap": "small"}), "expected a dictionary of real numbers"),
-    (
-        "finish",
-        interior(finish=lambda self, y, lam: y[:1]),
-        "expected None or one finite number for each unknown, found",
-    ),
-    ("events", interior(events=(object(),)), "it raises AttributeError"),
-    (
-        "events",
-        interior(events=(continuation.Monitor(lambda u, v: math.nan, "nowhere"),)),
-        r"expected a finite number of every monitor, found \[nan\]",
-    ),
-    ("references", interior(references=("Nobody, On products, 2026",)), "expected a sequence of BibTeX entries"),
-    ("references", interior(references=REFERENCE), "expected a sequence of BibTeX entries .*, found '@misc"),
     ("picklable", interior(), "picklable: .*PicklingError"),
     ("taylor", WrongSeries(), r"the residual along the series falls like h\^[23]\.?\d*, expected h\^7"),
-    ("taylor", interior(taylor=lambda self, point, order: np.zeros((order, 3))), r"expected shape \(7, 3\)"),
+    ("taylor", interior(taylor=lambda self, point, order: np.zeros((order, 3))), "shape at order 6 0 is 6, expected 7"),
     (
         "trace",
         plain(lambda y, lam: y - np.sqrt(lam - 0.5), math.sqrt(0.5)),
         "the path ended after .* steps, (LEFT_DOMAIN|STEP_TOO_SMALL)",
     ),
-    ("refinement", Ageing(drift=1e-3), r"step refinement: The retrace does not pass through step \d+ \(arclength"),
-    ("reversal", OneWay(), "reversal: The retrace does not pass through step"),
-    ("archive", Forgetful(), "the homotopy read back has another residual: number 0 is"),
-    ("resume", Ageing(), r"resume: (expected <Step .* found <Step|.* homotopy: expected the archive's residual)"),
+    ("refinement", Ageing(drift=1e-3), r"refinement: The retrace does not pass through step \d+ \(arclength"),
+    ("resume", Forgetful(), "resume: expected <Step"),
+    ("resume", Ageing(), r"resume: (expected <Step|.* homotopy: expected the archive's residual)"),
 ]
 
 

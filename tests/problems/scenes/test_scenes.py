@@ -60,7 +60,7 @@ def test_the_answer_has_units_and_is_the_exact_one(name):
     assert set(answer) == set(scene.units)
     assert all(np.isfinite(np.asarray(value, dtype=float)).all() for value in answer.values()), answer
     assert set(scene.exact()) <= set(answer)
-    assert error(answer, scene.exact()) <= EXACT_TO[name]
+    assert not scene.exact() or error(answer, scene.exact()) <= EXACT_TO[name]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -99,8 +99,8 @@ def test_rivals_that_are_installed_agree(name):
     # Interior points leave no exact zeros to be counted, and are asked for 1e-10 of a residual, not of an answer.
     exact = {key: value for key, value in exact.items() if key not in COUNTS}
     for rival in scene.rivals:
-        if rival.installed and name != "painleve-rod":  # They find one of its two answers.
-            assert error(rival.run(scene), exact) <= max(1e-3, EXACT_TO[name]), rival.name
+        if rival.installed:
+            assert error(rival.run(scene), exact) <= max(1e-3, EXACT_TO.get(name, 0.0)), rival.name
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if not isinstance(conditions(make(name).problem()), MixedLCP)])
