@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from scipy.sparse import csc_array, csr_array, issparse
-from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from continuation.linear import Banded, Operator, Symmetric
+from continuation.linear import Banded
 from problems.nonlinear import brown, fixed_point, newton
 
 both = pytest.mark.parametrize("make", [fixed_point, newton])
@@ -60,10 +59,8 @@ def cubic_slope(x):
         (lambda x: csr_array(cubic_slope(x)), csr_array),
         (lambda x: csc_array(cubic_slope(x)), csc_array),
         (banded, Banded),
-        (lambda x: Symmetric(cubic_slope(x)), Symmetric),
-        (lambda x: aslinearoperator(cubic_slope(x)), LinearOperator),
     ],
-    ids=["dense", "csr", "csc", "banded", "symmetric", "operator"],
+    ids=["dense", "csr", "csc", "banded"],
 )
 def test_the_structure_of_the_derivative_is_kept(make, slope, kind):
     homotopy = make(cubic, np.full(4, 0.5), slope)
@@ -79,11 +76,6 @@ def test_blending_leaves_the_given_matrix_alone():
     bands = kept.ab.copy()
     fixed_point(cubic, np.zeros(4), lambda x: kept).jacobian(np.zeros(4), 0.5)
     np.testing.assert_array_equal(kept.ab, bands)
-
-
-def test_fixed_point_refuses_a_matrix_that_it_cannot_blend():
-    with pytest.raises(TypeError, match=r"F'\(x\) is of type Operator; expected"):
-        fixed_point(cubic, np.zeros(4), lambda x: Operator(cubic_slope(x)))
 
 
 @both
