@@ -74,13 +74,13 @@ class Diagram:
     branches : list of Branch
         In order of discovery, breadth first.
     points : list of Special
-        Turning points, branch points, Hopf points and kinks, each once.
+        Turning points, branch points, Hopf points and kinks, each once, in order of discovery.
     complete : bool
         Whether all branches were followed to the box, to infinity or back to themselves.
     message : str
         Reason.
     counts : Counts
-        Of all traces, discarded ones included.
+        Of the traces of all branches.
     """
 
     branches: list[Branch] = field(factory=list)
