@@ -81,7 +81,8 @@ def diagram(
     """
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
     Evaluator(homotopy, Counts())
-    expect(isinstance(branches, Integral) and is_number(branches) and branches > 0, "branches", "a positive integer", branches)
+    whole = isinstance(branches, Integral) and is_number(branches) and branches > 0
+    expect(whole, "branches", "a positive integer", branches)
     expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     expect(isinstance(stability, Stability | None), "stability", "a Stability or None", stability, TypeError)
     if executor is not None:
