@@ -11,7 +11,7 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import FINITE, complain
 from continuation.arguments.labels import Labels
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
@@ -215,10 +215,6 @@ class Curve:
             U = np.concatenate([y, np.stack([lam])])
             return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
         return self._at(y, lam).residual()
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Derivatives by the unknowns and by mu."""
-        return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """The derivative times a direction."""
