@@ -86,7 +86,7 @@ def test_blending_leaves_the_given_matrix_alone():
         (lambda x: [0.0], [0.0], None, TypeError, r"F\(a\): expected an array of shape \(1,\), found list"),
         (lambda x: x[:1], [0.0, 1.0], None, ValueError, r"F\(a\): expected shape \(2,\), that of a, found \(1,\)"),
         (lambda x: np.log(x), [-1.0], None, ValueError, r"F\(a\): expected finite numbers, found nan"),
-        (lambda x: x + 1j, [0.0], None, ValueError, r"F\(a\): expected a vector of real numbers.*complex128"),
+        (lambda x: x + 1j, [0.0], None, ValueError, r"F\(a\): expected real numbers.*complex128"),
         (cubic, np.zeros(4), lambda x: 1.0, TypeError, r"jacobian\(a\): expected a matrix"),
         (
             cubic,
