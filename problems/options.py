@@ -66,7 +66,8 @@ def real_array(name: str, value: Any) -> Array:
     try:
         # MATLAB matrices come by columns.
         array = np.array(value, order="C")
-        if array.dtype.kind not in "fiub" and not all(isinstance(entry, REAL) for entry in array.flat):
+        entries = array.flat if array.dtype == object else ()
+        if array.dtype.kind not in "fiubO" or not all(isinstance(entry, REAL) for entry in entries):
             raise TypeError(f"dtype {array.dtype}")
         with np.errstate(over="ignore"):
             numbers: Array = array.astype(float, copy=False)
