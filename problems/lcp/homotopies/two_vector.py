@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem
@@ -14,7 +14,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import interior, references
 from problems.lcp.homotopies.elimination import factor_pairs
-from problems.lcp.homotopies.interior import OwnMetric, Parts, Recent, RelativeMetric, System
+from problems.lcp.homotopies.interior import OwnMetric, Parts, RelativeMetric, System
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import feasible_start, given_inside, natural_units, positive_vector
 from problems.options import quiet
@@ -66,7 +66,6 @@ class TwoVectorHomotopy:
     target: ClassVar[float | None] = 0.0
     signs: ClassVar[float] = 1.0
     metric: ClassVar[OwnMetric] = OwnMetric()
-    _recent: Recent = field(factory=Recent, init=False, repr=False)
 
     residual = interior.residual
     jacobian = interior.jacobian
