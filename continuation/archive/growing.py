@@ -5,7 +5,10 @@ A `Share` is some paths and their points, in memory or in an open file. A store 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from copy import deepcopy
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
@@ -15,10 +18,10 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve, frozen
 
-from continuation.archive.atomic import ArchiveError, new_file
+from continuation.archive.atomic import ArchiveError, new_file, own
 from continuation.archive.contents import Contents
-from continuation.archive.provenance import history, root_attributes
-from continuation.archive.reader import Archive
+from continuation.archive.provenance import history, process, root_attributes
+from continuation.archive.reader import Archive, StoredSteps, open_archive
 from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
 from continuation.archive.schema import ORIGIN_COLUMNS, ORIGINS, SCHEMA, Layout, text
 from continuation.archive.store import Store, put
@@ -226,21 +229,45 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
 class Growing:
     """An archive of finished paths, safe from kills.
 
-    `pieces`: store switches and rays of kinks.
+    `pieces`: store switches and rays of kinks. `keep`: steps in memory, "all" or "ends".
     """
 
     file: File
     title: str
     pieces: bool
+    keep: str = "all"
     _store: Store | None = None
 
-    def add(self, path: Path) -> None:
-        """Append a path."""
+    def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
+        """The paths of an existing file, whole and as kept; a growing copy then replaces it."""
+        if not self.file.exists():
+            return
+        target = File(os.path.realpath(self.file))
+        with (
+            open_archive(target) as source,
+            closing(own(target, source.contents.descriptor, source.attributes.get("process"))),
+        ):
+            if len(source):
+                last = source[-1].endpoint
+                check_homotopy(homotopy, last.u, last.residual_norm)
+            for number, path in enumerate(source):
+                # A view would keep the whole array in memory.
+                yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
+            self._store = copy([share_of(source)], target, what="went on", more=process(), replace=True, grows=True)
+
+    def add(self, path: Path) -> Path:
+        """Append a path and return it as kept."""
         share = share_of_path(path, member=self._store.committed.paths if self._store else 0, pieces=self.pieces)
         if self._store is None:
             about = _attributes(path, self.title)
             self._store = put(self.file, partial(Store, layout=share.layout, attributes=about), grows=True)
-        append(self._store, share, self.file.name)
+        return self._kept(path, append(self._store, share, self.file.name))
+
+    def _kept(self, path: Path, number: int) -> Path:
+        if self.keep == "all":
+            return path
+        steps: Any = StoredSteps(self.file, number, [path.steps[0], path.steps[-1]], len(path.steps))
+        return evolve(path, steps=steps)
 
     def __enter__(self) -> Growing:
         return self

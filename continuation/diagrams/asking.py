@@ -34,11 +34,14 @@ def diagram(
     *,
     starts: Sequence[Any] = (),
     branches: int = 100,
+    generations: int | None = None,
     deflate: Sequence[float] = (),
     step: float = 1e-2,
     stability: Stability | None = None,
     executor: Executor | None = None,
     archive: str | PathLike[str] | None = None,
+    resume: bool = False,
+    keep: str = "all",
     **options: Unpack[Options],
 ) -> Diagram:
     """Trace all connected branches: from the start both ways, then from every point where others leave.
@@ -54,6 +57,8 @@ def diagram(
         Starts besides the homotopy's own.
     branches : int, default 100
         Largest number of branches.
+    generations : int, optional
+        Largest number of branch points between a branch and the start.
     deflate : sequence of float, default ()
         Parameter values at which deflation (`Deflated`) seeks disconnected solutions.
     step : float, default 1e-2
@@ -64,6 +69,10 @@ def diagram(
         Traces the paths of a generation.
     archive : path, optional
         A new file; branches are written as they finish.
+    resume : bool, default False
+        Continue the archive, if it exists, with the same arguments.
+    keep : str, default "all"
+        "ends": points between ends of a branch stay in the archive.
     {options}
 
     Returns
@@ -81,8 +90,9 @@ def diagram(
     """
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
     Evaluator(homotopy, Counts())
-    whole = isinstance(branches, Integral) and is_number(branches) and branches > 0
-    expect(whole, "branches", "a positive integer", branches)
+    for name, count in (("branches", branches), ("generations", 1 if generations is None else generations)):
+        whole = isinstance(count, Integral) and is_number(count) and count >= (name == "branches")
+        expect(whole, name, "a positive integer", count)
     expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     expect(isinstance(stability, Stability | None), "stability", "a Stability or None", stability, TypeError)
     if executor is not None:
@@ -95,6 +105,16 @@ def diagram(
         TypeError,
     )
     expect(all(is_guess(start) for start in starts), "starts", "pairs (y, lam)", starts, TypeError)
+    expect(
+        isinstance(resume, bool) and (archive is not None or not resume),
+        "resume",
+        "True with an archive, or False",
+        resume,
+    )
+    expect(keep == "all" or (keep == "ends" and archive is not None), "keep", '"all", or "ends" with an archive', keep)
+    file = None if archive is None else as_file("archive", archive)
+    if file is not None and not resume:
+        check_new(file)
     box = options.get("box", getattr(homotopy, "box", None))
     expect(
         box is not None and not isinstance(box, str) and not is_boundless(box),
@@ -105,11 +125,8 @@ def diagram(
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)
-    file = None if archive is None else as_file("archive", archive)
-    if file is not None:
-        check_new(file)
-    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces))
-    search = BranchSearch(homotopy, asked, executor, float(step), branches, log)
+    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces), keep)
+    search = BranchSearch(homotopy, asked, executor, float(step), branches, generations, log)
     with nullcontext() if log is None else log:
         try:
             search.run([None, *starts], [float(lam) for lam in deflate])

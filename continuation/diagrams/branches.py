@@ -74,13 +74,13 @@ class Diagram:
     branches : list of Branch
         In order of discovery, breadth first.
     points : list of Special
-        Turning points, branch points, Hopf points and kinks, each once, in order of discovery.
+        Turning points, branch points, Hopf points and kinks, each once.
     complete : bool
         Whether all branches were followed to the box, to infinity or back to themselves.
     message : str
         Reason.
     counts : Counts
-        Of the traces of all branches.
+        Of all traces, discarded ones included.
     """
 
     branches: list[Branch] = field(factory=list)

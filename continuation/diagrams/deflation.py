@@ -9,7 +9,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE, expect, real_vector
-from continuation.arrays import SIX_DIGITS, Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
@@ -99,8 +99,26 @@ class Deflated:
         # inf * 0 would be nan.
         return value * H if np.isfinite(value) else np.full_like(H, np.inf)
 
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """M (H_y + H (log M)'), dense, and M H_lam: for checks."""
+        value, slope = self.factor(y)
+        H_y, H_lam = self._evaluator.derivative(y, lam)
+        whole = H_y if isinstance(H_y, np.ndarray) else H_y.toarray()
+        H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        return value * (whole + np.outer(H, slope)), value * np.asarray(H_lam, dtype=float)
+
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """The derivative times a direction (v_y, v_lam)."""
+        value, slope = self.factor(y)
+        H_y, H_lam = self._evaluator.derivative(y, lam)
+        H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        return np.asarray(value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1])))
+
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The homotopy's bordered matrix, factored, with a rank-one change (Sherman and Morrison)."""
+        """The homotopy's bordered matrix, factored, with a rank-one change (Sherman and Morrison).
+
+        If half of the digits cancel, the whole matrix is factored.
+        """
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
@@ -109,6 +127,8 @@ class Deflated:
         changed = eliminated(
             lambda rhs: system.solve(rhs[:-1], rhs[-1]), turned[:, None], np.append(slope, [0.0, -1.0])[None]
         )
+        if not abs(changed.schur[0, 0]) * ROOT_OF_ROUND_OFF < 1.0:
+            return factor_bordered(*self.jacobian(y, lam), border)
 
         def solve(r: Array, rho: float) -> Array:
             return changed.solve(np.concatenate([r / value, [rho, 0.0]]))[:-1]

@@ -35,6 +35,7 @@ class Junction:
     rays: Array
     starts: list[tuple[Array, Array]]
     label: str = ""
+    number: int = -1
     generation: int = 0
     failed: str = ""
     used: set[int] = field(factory=set)

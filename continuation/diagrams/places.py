@@ -2,33 +2,48 @@
 
 from __future__ import annotations
 
-from typing import Generic, TypeVar
+from bisect import bisect, insort
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from attrs import define, field
 
-from continuation.arrays import SIX_DIGITS, Array
+from continuation.arrays import SIX_DIGITS, Array, generic_vector
+from continuation.metric import norm
+from continuation.numbers.ends import accumulated
 
 Item = TypeVar("Item")
 
 
 @define(eq=False)
 class PointIndex(Generic[Item]):
-    """Items at points, each with its metric; one point's locations agree in six digits, being polished to ten."""
+    """Items at points, each with its metric; one point's locations agree in six digits, being polished to ten.
 
-    _items: list[Item] = field(factory=list)
-    _points: Array = field(factory=lambda: np.empty((0, 0)))
-    _weights: Array = field(factory=lambda: np.empty((0, 0)))
+    Items are sorted by a . u with a generic vector a, which the distance bounds: bisection finds candidates.
+    """
+
+    _axis: Array = field(factory=lambda: np.empty(0))
+    _reach: float = 0.0
+    _sorted: list[tuple[float, int, Array, Array, Item]] = field(factory=list)
 
     def add(self, u: Array, weights: Array, item: Item) -> None:
         """Add an item."""
-        self._points = np.vstack([self._points.reshape(-1, u.size), u])
-        self._weights = np.vstack([self._weights.reshape(-1, u.size), weights])
-        self._items.append(item)
+        if not self._sorted:
+            self._axis = generic_vector(u.size) * np.sqrt(weights)
+        self._reach = max(self._reach, SIX_DIGITS * float(np.linalg.norm(self._axis / np.sqrt(weights))))
+        insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
 
     def near(self, u: Array) -> list[Item]:
         """Items within `SIX_DIGITS` of a point, in order."""
-        if not self._items:
+        if not self._sorted:
             return []
-        squares = np.einsum("kn,kn->k", self._weights, (self._points - u) ** 2)
-        return [self._items[k] for k in np.flatnonzero(squares <= SIX_DIGITS**2)]
+        number = float(self._axis @ u)
+        reach = self._reach + accumulated(u.size) * float(np.abs(self._axis) @ np.abs(u))
+        first, last = (bisect(self._sorted, end, key=_number) for end in (number - reach, number + reach))
+        close = sorted(self._sorted[first:last], key=lambda found: found[1])
+        return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SIX_DIGITS]
+
+
+def _number(entry: tuple[Any, ...]) -> float:
+    number: float = entry[0]
+    return number

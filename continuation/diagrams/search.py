@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from attrs import define, evolve, field
+from attrs import define, evolve, field, frozen
 
 from continuation.archive.growing import Growing
 from continuation.arguments.labels import Labels
@@ -34,6 +34,20 @@ LEAVES = 0.1
 """Distance of guesses from known solutions, relative to their spread."""
 
 
+@frozen(eq=False)
+class Task:
+    """A path to trace.
+
+    `weights`, `used`: its junction's metric and used rays.
+    """
+
+    start: Any
+    direction: int = 0
+    weights: Array | None = None
+    used: set[int] = field(factory=set)
+    ray: int = -1
+
+
 def _path(homotopy: Any, start: Any, direction: int, options: Options, before: Array | None) -> Path:
     asked = options.copy()
     asked["direction"] = direction
@@ -44,44 +58,28 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
     return trace(homotopy, **asked)
 
 
-@contextmanager
-def _ready(executor: Executor | None, asked: dict[Any, tuple[Any, ...]]) -> Iterator[Callable[[Any], Path]]:
-    """A function that gives the traces by name: traced when asked for, or ahead by the executor."""
-    if executor is None:
-        yield lambda name: _path(*asked[name])
-        return
-    futures = {name: executor.submit(_path, *one) for name, one in asked.items()}
-    try:
-        yield lambda name: futures[name].result()
-    finally:
-        for future in futures.values():
-            future.cancel()
-
-
 @define(eq=False)
 class BranchSearch:
-    """A search in progress.
-
-    `junctions`: those on branches, in order; `places`, all that were met. `points`, `specials`: labels, events and
-    numbers of branches of the special points.
-    """
+    """A search in progress."""
 
     homotopy: Any
     options: Options
     executor: Executor | None
     step: float
     most: int
+    generations: int | None
     log: Growing | None = None
     branches: list[Branch] = field(factory=list)
     junctions: list[Junction] = field(factory=list)
     places: PointIndex[Junction] = field(factory=PointIndex)
-    points: dict[str, tuple[LocatedEvent, list[int]]] = field(factory=dict)
-    specials: PointIndex[str] = field(factory=PointIndex)
+    labels: Counter[str] = field(factory=Counter)
     missing: list[str] = field(factory=list)
     counts: Counts = field(factory=Counts)
 
     def run(self, starts: list[Any], deflate: list[float]) -> None:
         """Search from all starts, then by deflation."""
+        for path, kept in () if self.log is None else self.log.held(self.homotopy):
+            self._recall(path, kept)
         for start in starts:
             self._begin(start)
         for lam in deflate:
@@ -94,8 +92,7 @@ class BranchSearch:
         """The diagram so far."""
         said = "; ".join(dict.fromkeys(self.missing))
         said = f"Not complete: {said}." if said else "Complete: nothing is left open."
-        points = [Special(label, event, tuple(dict.fromkeys(on))) for label, (event, on) in self.points.items()]
-        return Diagram(self.branches, points, not self.missing, said, self.counts)
+        return Diagram(self.branches, points_of(self.branches, self.junctions), not self.missing, said, self.counts)
 
     def _guesses(self, known: list[Array]) -> list[Array]:
         start = np.atleast_1d(np.asarray(self.homotopy.start()[0], dtype=float))
@@ -104,19 +101,35 @@ class BranchSearch:
         beside = LEAVES * np.where(apart > 0.0, apart, 1.0)
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
+    def _recall(self, path: Path, kept: Path) -> None:
+        self.counts = self.counts + path.counts
+        self._meet(path)
+        points = enumerate(path.u)
+        known = [(j, k) for k, u in points for j in self.places.near(u) if j.label and (j.event.u == u).all()]
+        if not known:
+            self._add(kept, "", 0, held=True)
+            return
+        junction, number = min(known, key=lambda found: found[0].number)
+        at = path.steps[number]
+        junction.take(at.tangent)
+        if at.index:
+            junction.take(-at.tangent)
+        self._add(kept, junction.label, junction.generation + 1, held=True)
+
     def _begin(self, start: Any) -> None:
         u = np.append(*self.homotopy.start()) if start is None else guessed(start)
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
-        if self._known(u):
-            return
-        asked = {way: (self.homotopy, start, way, self.options, None) for way in (1, -1)}
-        with _ready(self.executor, asked) as traced:
-            whole = self._met(traced(1))
-            if whole.status is not Status.CLOSED:
-                whole = _through(self._met(traced(-1)), whole)
-        if len(whole):
-            self._add(whole, "", 0)
+        if not (start is None and self.branches) and not self._known(u):
+            both = self._traced([Task(start, 1), Task(start, -1)])
+            whole = ahead = next(both) or Path()
+            if ahead.status is not Status.CLOSED:
+                behind = next(both) or Path()
+                self._meet(behind)
+                whole = _through(behind, ahead)
+            self._meet(ahead)
+            if len(whole):
+                self._add(whole, "", 0)
         self._spread()
 
     def _inside(self, u: Array) -> bool:
@@ -140,84 +153,132 @@ class BranchSearch:
                 found.append(guess)
         return found
 
-    def _met(self, path: Path) -> Path:
-        """The path, after its rays at junctions are marked as used."""
-        self.counts = self.counts + path.counts
+    def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
+        ready = [None if self.executor is None else self.executor.submit(_path, *self._asked(task)) for task in tasks]
+        try:
+            for task, future in zip(tasks, ready):
+                path = None
+                if future is not None or task.ray not in task.used:
+                    path = _path(*self._asked(task)) if future is None else future.result()
+                    self.counts = self.counts + path.counts
+                yield None if task.ray in task.used else path
+        finally:
+            for future in filter(None, ready):
+                future.cancel()
+
+    def _asked(self, task: Task) -> tuple[Any, ...]:
+        return self.homotopy, task.start, task.direction, self.options, task.weights
+
+    def _meet(self, path: Path) -> None:
         if not len(path):
             self.missing.append(path.message)
         for event in meetings(path):
             junction = self._junction(event)
             for direction in directions_of(event, path):
                 junction.take(direction)
-        return path
 
     def _junction(self, event: LocatedEvent) -> Junction:
         known = self.places.near(event.u)
         if known:
             return known[0]
         junction = Junction.at(self.homotopy, event, self.step)
+        self.junctions.append(junction)
         self.places.add(event.u, junction.weights, junction)
         return junction
 
-    def _label(self, event: LocatedEvent) -> str:
-        """The label of a special point, perhaps a new one."""
-        prefix = LABELS[event.kind]
-        for label in self.specials.near(event.u):
-            if label.startswith(prefix):
-                return label
-        label = f"{prefix}{1 + sum(one.startswith(prefix) for one in self.points)}"
-        self.specials.add(event.u, metric_at(event), label)
-        self.points[label] = event, []
-        return label
-
-    def _add(self, path: Path, origin: str, generation: int) -> None:
+    def _add(self, path: Path, origin: str, generation: int, held: bool = False) -> None:
         if path.status not in WHOLE:
             self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
-        labels = {id(event): self._label(event) for event in path.events if event.kind in LABELS}
         for event in meetings(path):
             junction = self._junction(event)
             if junction.label:
                 continue
-            junction.label, junction.generation = labels[id(event)], generation
-            self.junctions.append(junction)
+            prefix = LABELS[event.kind]
+            junction.number, junction.generation = self.labels.total() + 1, generation
+            self.labels[prefix] += 1
+            junction.label = f"{prefix}{self.labels[prefix]}"
             if junction.failed:
                 self.missing.append(f"at {junction.label}, lam = {event.lam:.6g}, {junction.failed}")
-        for label in [*labels.values(), *filter(None, [origin])]:
-            self.points[label][1].append(len(self.branches))
-        if self.log is not None:
-            self.log.add(path)
+        if self.log is not None and not held:
+            path = self.log.add(path)
         self.branches.append(Branch(path, origin, generation))
 
     def _spread(self) -> None:
-        """Follow unused rays, generation by generation."""
         while True:
-            rays = [(j, ray) for j in self.junctions for ray in j.open() if self._inside(j.starts[ray - 2][0])]
+            labelled = sorted((j for j in self.junctions if j.label), key=lambda j: j.number)
+            rays = [(j, ray) for j in labelled for ray in j.open() if self._inside(j.starts[ray - 2][0])]
             if not rays:
+                return
+            before = min(j.generation for j, _ in rays)
+            if self.generations is not None and before >= self.generations:
+                self.missing.append(f"{len(rays)} rays beyond generation {self.generations} were not followed")
                 return
             if len(self.branches) >= self.most:
                 self.missing.append(f"the limit of {self.most} branches is reached, {len(rays)} rays are open")
                 return
-            before = min(j.generation for j, _ in rays)
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """Trace rays, each with the one opposite to it."""
-        asked = {(j.label, ray): (self.homotopy, j.starts[ray - 2], 0, self.options, j.weights) for j, ray in rays}
-        with _ready(self.executor, asked) as traced:
-            for junction, ray in rays:
-                halves = []
-                for one in (ray, junction.opposite(ray)):
-                    if one is None or one in junction.used or (junction.label, one) not in asked:
-                        continue
-                    junction.used.add(one)
-                    path = self._met(traced((junction.label, one)))
+        paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
+        waiting = {(j.number, ray) for j, ray in rays}
+        tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]
+        try:
+            for (junction, ray), path in zip(rays, self._traced(tasks)):
+                waiting.remove((junction.number, ray))
+                if path is not None:
+                    junction.used.add(ray)
+                    self._meet(path)
                     if len(path):
-                        halves.append(from_point(junction.event, junction.rays[one], path, junction.weights))
-                if halves:
-                    whole = halves[0] if len(halves) == 1 else _through(halves[1], halves[0])
-                    self._add(whole, junction.label, generation)
+                        paths[junction.number, ray] = junction, path
+                self._put_together(paths, waiting, generation)
+        except KeyboardInterrupt:
+            # The diagram shows finished halves; resuming traces them again.
+            self.log = None
+            self._put_together(paths, set(), generation)
+            raise
+
+    def _put_together(
+        self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
+    ) -> None:
+        while paths:
+            number, ray = next(iter(paths))
+            junction = paths[number, ray][0]
+            across = junction.opposite(ray)
+            if across is not None and (number, across) in waiting:
+                return
+            whole = from_point(junction.event, junction.rays[ray], paths.pop((number, ray))[1], junction.weights)
+            if across is not None and (number, across) in paths:
+                _, other = paths.pop((number, across))
+                whole = _through(from_point(junction.event, junction.rays[across], other, junction.weights), whole)
+            self._add(whole, junction.label, generation)
 
 
 def _through(behind: Path, ahead: Path) -> Path:
     whole = behind.reversed().join(ahead)
     return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)
+
+
+def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
+    """Junctions, turning points, Hopf points and kinks, in branch order."""
+    labels: Counter[str] = Counter()
+    found: list[tuple[str, LocatedEvent, list[int]]] = []
+    places: PointIndex[tuple[str, list[int]]] = PointIndex()
+
+    def entry(label: str, event: LocatedEvent) -> list[int]:
+        through: list[int] = []
+        found.append((label, event, through))
+        places.add(event.u, metric_at(event), (label, through))
+        labels[label[:2]] += 1
+        return through
+
+    origins = {j.label: entry(j.label, j.event) for j in sorted(junctions, key=lambda j: j.number) if j.label}
+    for k, branch in enumerate(branches):
+        for event in branch.path.events:
+            if event.kind not in LABELS:
+                continue
+            kind = LABELS[event.kind]
+            same = [through for label, through in places.near(event.u) if label.startswith(kind)]
+            (same[0] if same else entry(f"{kind}{1 + labels[kind]}", event)).append(k)
+        if branch.origin:
+            origins[branch.origin].append(k)
+    return [Special(label, event, tuple(dict.fromkeys(through))) for label, event, through in found]

@@ -1,6 +1,8 @@
 """Pitchforks that leave each other, (lam - k) y_k = y_k^3 for k = 1 to n: all 1 + (3^n - 1) / 2 branches.
 
     python examples/benchmarks/pitchforks.py [n] [processes] [archive]
+
+With an archive, points stay in the file, and one that is there is gone on with.
 """
 
 import resource
@@ -35,9 +37,10 @@ class Pitchforks:
 
 def run(n, processes=0, archive=None):
     """The diagram, after a look at every branch point and every end."""
+    kept = {} if archive is None else {"archive": archive, "keep": "ends", "resume": True}
     with ProcessPoolExecutor(processes) if processes else nullcontext() as executor:
         found = continuation.diagram(
-            Pitchforks(n), box={"lam": (0.0, n + 2.0)}, branches=10**6, executor=executor, archive=archive
+            Pitchforks(n), box={"lam": (0.0, n + 2.0)}, branches=10**6, executor=executor, **kept
         )
     assert found.complete, found.message
     assert len(found) == 1 + (3**n - 1) // 2

@@ -155,8 +155,9 @@ def engine(w: World) -> Iterator[Call]:
         Call(
             c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
             {"box": ({"lam": (0.0, 2.0)}, {}, {"lam": (None, float("inf"))}), "starts": ([3],), "direction": (1,),
-             "homotopy": "homotopy", "branches": "count", "step": "positive, finite",
-             "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values"},
+             "homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
+             "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
+             "resume": "truth", "keep": "text"},
         ),
         Call(
             c.Deflated,
