@@ -80,6 +80,7 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 
 
 def _check(columns: dict[str, Any]) -> None:
+    # Cells may be wider than the path (`certifying.SupportsWrittenOut`).
     count, width = columns["begin"].shape
     for name in COLUMNS:
         shape = (count,) if name == "slabs" else (count, 2 if name == "place" else width)

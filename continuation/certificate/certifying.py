@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.auditing.length import metric_of
@@ -26,7 +26,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
 from continuation.metric import norm
-from continuation.path import Path
+from continuation.path import Path, Step
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -90,7 +90,10 @@ def certify(path: Path, homotopy: Any) -> Proof:
     width = path.u.shape[1]
     if width != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {width - 1} unknowns")
-    return _proved(homotopy, path, None)
+    whole = lifted(homotopy, path)
+    if isinstance(whole, Proof):
+        return whole
+    return _proved(*whole, None).of_width(width)
 
 
 def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
@@ -116,11 +119,10 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tu
 
 def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
     """Check every condition of a proof again."""
-    found, width = cells.begin.shape[1], path.u.shape[1]
-    if found != width:
-        ends = float(path.arclength[0]), float(path.arclength[-1])
-        return Proof.empty(width, Gap(*ends, f"tubes have {found} components, not {width}"))
-    return _proved(homotopy, path, cells)
+    whole = lifted(homotopy, path, cells)
+    if isinstance(whole, Proof):
+        return whole
+    return _proved(*whole, cells).of_width(path.u.shape[1])
 
 
 @frozen(eq=False)
@@ -214,6 +216,60 @@ def _weights(homotopy: Any, path: Path) -> list[Array]:
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)
         out.append(usual if after.weights is None else after.weights)
     return out
+
+
+# Paths with further unknowns, with which the residual is plain arithmetic
+
+
+@runtime_checkable
+class SupportsWrittenOut(Protocol):
+    """A homotopy that eliminates unknowns by factorisations."""
+
+    def written_out(self, points: Array) -> Any:
+        """The homotopy with all unknowns, or None.
+
+        Its `lifted(u, before)` puts the further unknowns in front of u, near those of `before`.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, N + 1)
+            Points of the path.
+        """
+        ...
+
+
+def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
+    """The homotopy and path to prove, perhaps with further unknowns, or an empty proof with a reason.
+
+    Nodes of `cells` give those of the points that they share.
+    """
+    points = path.u
+    width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))
+    try:
+        whole = homotopy.written_out(points) if isinstance(homotopy, SupportsWrittenOut) else None
+        longer = path if whole is None else _lifted(whole, path, cells)
+    except ArithmeticError as error:
+        return Proof.empty(width, Gap(*ends, f"the equations cannot be written out there ({error})"))
+    needed = longer.steps[0].u.size
+    if cells is not None and cells.begin.shape[1] != needed:
+        return Proof.empty(width, Gap(*ends, f"tubes have {cells.begin.shape[1]} components, not {needed}"))
+    return homotopy if whole is None else whole, longer
+
+
+def _lifted(whole: Any, path: Path, cells: Cells | None) -> Path:
+    rows = () if cells is None else (*cells.begin, *cells.end)
+    known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}
+    steps: list[Step] = []
+    before = None
+    for step in path.steps:
+        found = known.get(step.u.tobytes())
+        before = whole.lifted(step.u, before) if found is None else found
+        steps.append(evolve(step, u=before, tangent=np.full_like(before, np.nan), weights=None))
+    events = []
+    for event in path.events:
+        u = whole.lifted(event.u, steps[min(event.step, len(steps) - 1)].u)
+        events.append(evolve(event, u=u, tangent=np.full_like(u, np.nan)))
+    return evolve(path, steps=steps, events=events)
 
 
 # Steps short enough for a proof

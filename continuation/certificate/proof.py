@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells
+from continuation.certificate.cells import COLUMNS, Cells
 
 
 @frozen
@@ -67,6 +67,8 @@ class Proof:
         Largest distance of the curve from the stored end, if proved exactly at the target.
     kinks : tuple of tuple of float
         Ranges of arclength with exactly one zero of a switch; there are no others.
+    width : int
+        N + 1 of the path; cells may have further unknowns in front.
     """
 
     cells: Cells
@@ -76,6 +78,7 @@ class Proof:
     end: str
     end_radius: Array | None = None
     kinks: tuple[tuple[float, float], ...] = ()
+    width: int = 0
 
     @classmethod
     def empty(cls, width: int, *gaps: Gap) -> Proof:
@@ -111,6 +114,22 @@ class Proof:
         more = f"; and {len(self.gaps) - SHOWN} more" if len(self.gaps) > SHOWN else ""
         return "Not proved " + "; ".join(str(gap) for gap in self.gaps[:SHOWN]) + more
 
+    @property
+    def shadow(self) -> Cells:
+        """Cells in the path's unknowns."""
+        rows = {name: getattr(self.cells, name)[:, -self.width :] for name in COLUMNS if name not in ("slabs", "place")}
+        return evolve(self.cells, **rows)
+
+    def of_width(self, width: int) -> Proof:
+        """The proof with the path's `width` (N + 1).
+
+        Parameters
+        ----------
+        width : int
+        """
+        end = None if self.end_radius is None else self.end_radius[-width:]
+        return evolve(self, node_radius=self.node_radius[:, -width:], end_radius=end, width=width)
+
     def radius(self, s: float) -> Array:
         """The tube's radius, shape (N + 1,); nan in a gap.
 
@@ -126,8 +145,8 @@ class Proof:
         place = self.cells.place
         inside = np.flatnonzero((place[:, 0] <= s) & (s <= place[:, 1]))
         if not len(inside):
-            return np.full(self.cells.radius.shape[1], np.nan)
-        return np.asarray(self.cells.radius[inside].max(axis=0))
+            return np.full(self.shadow.radius.shape[1], np.nan)
+        return np.asarray(self.shadow.radius[inside].max(axis=0))
 
     def plot(self, component: int = 0, axes: Any = None) -> Any:
         """Plot the tube and the gaps against the parameter.
@@ -144,4 +163,4 @@ class Proof:
         """
         from continuation.plot.along import plot_tube
 
-        return plot_tube(self.cells, [(gap.begin, gap.end) for gap in self.gaps], component, axes)
+        return plot_tube(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

@@ -33,7 +33,7 @@ def as_event(value: Any) -> Any:
     kind = getattr(value, "kind", value)
     if isinstance(value, LocatedEvent):
         if kind == Kind.TURNING_POINT and value.name != "turning point":
-            raise ValueError(f"event: expected a turning point of the parameter, found a {value.name}")
+            raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
     elif hasattr(value, "monitor") and (kind not in BY_KIND or getattr(value, "component", -1) != -1):
         return value
     if kind not in BY_KIND:

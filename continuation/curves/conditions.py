@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import scipy.sparse as sp
 from attrs import evolve, frozen
@@ -60,6 +62,13 @@ class Eigenvalue:
         """The null vectors."""
         return null_vectors(self.matrix(full, omega), self.b, self.c)
 
+    def null_vector(self, u: Array) -> Array:
+        """The null vector, of unit length in extents."""
+        member, beside = np.split(u[:-1], [self.calculus.extent.size])
+        full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
+        right = self.near(full, float(beside.sum())).right
+        return right / float(np.linalg.norm(right))
+
     def at(self, u: Array, beside: float, mu: float) -> Here:
         """The condition at a point."""
         calculus = self.calculus
@@ -71,13 +80,14 @@ class Eigenvalue:
             return -calculus.second(u, mu, part, w)
 
         if (tangential := self.tangential) is not None:
+            kernel = cache(lambda: tangential.factored(u, mu))
 
             def both() -> Array:
                 row = np.insert(gradient(v.real) + 1j * gradient(v.imag), u.size, 1j * (w @ v[:-1]))
                 return np.array([row.real, row.imag])
 
-            values = np.array([near.s.real, near.s.imag])
-            return Here(calculus, u, mu, values, both, lambda: tangential.factored(u, mu), np.zeros((w.size, 1)))
+            values, signs = np.array([near.s.real, near.s.imag]), {"zero-Hopf": lambda _: float(kernel()[1][-1])}
+            return Here(calculus, u, mu, values, both, lambda: kernel()[0], np.zeros((w.size, 1)), signs=signs)
         base = calculus.unscaled(near.factors)
         sign = base.sign
         values = np.array([sign * near.s.real])

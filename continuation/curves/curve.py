@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property, lru_cache, partial
 from typing import Any
 
@@ -17,7 +17,8 @@ from continuation.curves.beginning import as_event, as_point, as_size, corrected
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import Eigenvalue
 from continuation.curves.here import Here
-from continuation.curves.monitors import Vanishing, of_point
+from continuation.curves.monitors import Vanishing, plainly, without_tangent
+from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
 from continuation.homotopy import SupportsPieces
@@ -45,11 +46,13 @@ class Curve:
     a Hopf point                 H_y has a pair of eigenvalues +- i omega
     a kink                       the same switch vanishes
     ``TargetValue(value, k)``    the unknown k, or lam, keeps its value
-    ``Monitor(function)``        the function of the point vanishes
+    ``TurningPoint(k)``          the unknown k turns
+    ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
     Fold curves locate cusps (both parameters turn) and Bogdanov-Takens points; where only mu turns, two branches cross
-    or a closed one shrinks to a point. Hopf curves end at Bogdanov-Takens points.
+    or a closed one shrinks to a point. Hopf curves end at Bogdanov-Takens points and locate "zero-Hopf" points (H_y
+    singular).
 
     Factorisations are the family's, or of H_y with a border, and stay sparse. Second derivatives come from jets (up to
     128 unknowns) or two Jacobians.
@@ -114,8 +117,8 @@ class Curve:
             raise complain(TypeError, "family", "piecewise smooth homotopies, with `switches` and `piece`", member)
         if hasattr(member, "observe"):
             object.__setattr__(self, "observe", self._observed)
-        if not isinstance(self.event, Kind):
-            of_point(self.event, np.append(*self.at))
+        if hasattr(member, "max_step"):
+            object.__setattr__(self, "max_step", self._room)
 
     def __reduce__(self) -> Any:
         return Curve, (self.family, self.event, self.at, self.mu, self.frequency, self.size)
@@ -183,15 +186,15 @@ class Curve:
         calculus, event = self._calculus, self.event
         if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.HOPF):
             return Eigenvalue.at_start(calculus, event, self._frequency if event == Kind.HOPF else 0.0)
-        assert self._plain is not None
-        return Vanishing.at_start(calculus, self._plain)
+        plain = self._plain
+        return Vanishing.at_start(calculus, plain or (lambda x: plainly(event)(*np.split(x, 2))), plain is None)
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
         k = self._switch
         if k is not None:
             return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
-        return None if isinstance(self.event, Kind) else of_point(self.event, np.append(*self.at))
+        return None if isinstance(self.event, Kind) else without_tangent(self.event, np.append(*self.at))
 
     def residual(self, y: Array, lam: float) -> Array:
         """H and the conditions; shape (N + 1,), or (N + 2,) for Hopf points.
@@ -210,11 +213,22 @@ class Curve:
         """
         if not isinstance(y, np.ndarray) or y.dtype == object:
             if self._plain is None:
-                what = self.event.name.lower().replace("_", " ")
+                what = self.event.name.lower().replace("_", " ") if isinstance(self.event, Kind) else "tangent's"
                 raise TypeError(f"the residual of a {what} curve is not plain arithmetic: it takes a factorisation")
             U = np.concatenate([y, np.stack([lam])])
             return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
         return self._at(y, lam).residual()
+
+    def written_out(self, points: Array) -> WrittenOut | None:
+        """Equations without factorisations, for `certify`; None if not needed.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, N + 2) or (m, N + 3)
+            The path's.
+        """
+        eliminates = self._plain is None and self.event != Kind.BRANCH_POINT
+        return WrittenOut.of(self._condition, points) if eliminates else None
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """The derivative times a direction."""
@@ -238,8 +252,8 @@ class Curve:
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
-        """Degenerate points: cusps, Bogdanov-Takens points, zeros of other switches."""
-        names = ("cusp", "Bogdanov-Takens") if self.event == Kind.TURNING_POINT else ()
+        """Degenerate points: cusps, Bogdanov-Takens and zero-Hopf points, zeros of other switches."""
+        names = {Kind.HOPF: ("zero-Hopf",), Kind.TURNING_POINT: ("cusp", "Bogdanov-Takens")}.get(self.event, ())
         found: list[Event] = [Monitor(_frequency, "Bogdanov-Takens", 1)] if self.event == Kind.HOPF else []
         found += [Monitor(partial(self._sign, name), name) for name in names]
         others = [i for i in range(np.size(self._signs)) if i != self._switch] if self._signs is not None else []
@@ -266,6 +280,11 @@ class Curve:
         return (*labels.names, *beside) if labels.names else ()
 
     @property
+    def units(self) -> Mapping[str, str]:
+        """The member's units."""
+        return Labels.of(self.family(self.mu)).units
+
+    @property
     def references(self) -> tuple[str, ...]:
         """References of member and method."""
         return (*getattr(self.family(self.mu), "references", ()), GOVAERTS)
@@ -273,6 +292,9 @@ class Curve:
     def _observed(self, y: Array, lam: float) -> dict[str, float]:
         n = self.size.size - 1
         return dict(self.family(lam).observe(y[:n], float(y[n])))
+
+    def _room(self, u: Array, v: Array) -> float:
+        return float(self._member(u[-1]).max_step(u[: self.size.size], v[: self.size.size]))
 
 
 def _frequency(u: Array, v: Array) -> float:

@@ -27,7 +27,7 @@ class Family:
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If the homotopy has no such number.
     """
 
@@ -36,11 +36,14 @@ class Family:
 
     @name.validator
     def _a_number_of_the_homotopy(self, attribute: Any, name: Any) -> None:
+        if not isinstance(name, str):
+            raise complain(TypeError, "name", "the name of an attribute", name)
+        if not hasattr(self.homotopy, name):
+            raise complain(ValueError, "name", f"an attribute of {type(self.homotopy).__name__}", name)
         try:
             float(getattr(self.homotopy, name))
-        except (AttributeError, TypeError, ValueError):
-            expected = f"a numerical attribute of {type(self.homotopy).__name__}"
-            raise complain(ValueError, "name", expected, name) from None
+        except (TypeError, ValueError):
+            raise complain(TypeError, name, "a number to begin with", getattr(self.homotopy, name)) from None
 
     @property
     def value(self) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
-from continuation.linear import BorderedSystem
 from continuation.linear.nullspace import LONG, REFRESHED
 
 
@@ -23,14 +24,12 @@ class Tangential:
     def at_start(cls, calculus: Calculus) -> Tangential:
         """Take the kernel at the start as border."""
         first = cls(calculus, generic_vector(calculus.u0.size - 1) / calculus.extent)
-        t = first._factored(calculus.u0[:-1], float(calculus.u0[-1]))[1] / calculus.extent
+        u, mu = calculus.u0[:-1], float(calculus.u0[-1])
+        t = first.factored(u, mu)[1] / calculus.extent
         return cls(calculus, t / float(np.linalg.norm(t)) / calculus.extent)
 
-    def factored(self, u: Array, mu: float) -> BorderedSystem:
-        """The family's factorisation."""
-        return self._factored(u, mu)[0]
-
-    def _factored(self, u: Array, mu: float) -> tuple[BorderedSystem, Array]:
+    def factored(self, u: Array, mu: float) -> tuple[Any, Array]:
+        """The family's factorisation, and the oriented unit kernel."""
         extent, row = self.calculus.extent, self.row
         evaluator = self.calculus.evaluator(mu)
         for _ in range(REFRESHED):

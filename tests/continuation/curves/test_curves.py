@@ -22,6 +22,8 @@ from .util import (
     first_fold,
     imperfect,
     named,
+    ring,
+    steep,
     wing,
 )
 
@@ -34,6 +36,11 @@ def unit_circle(u, v):
     return u[0] ** 2 + u[1] ** 2 - 1.0
 
 
+def uneven(u, v):
+    """It has no power of the tangent's length as a factor."""
+    return v[0] ** 4 - 0.09 * u[0] ** 4 * v[1] ** 2
+
+
 def test_branch_points_that_part_are_refused():
     curve = Curve(imperfect, Kind.BRANCH_POINT, (np.zeros(1), 0.0), mu=0.0)
     with pytest.raises(ValueError, match="family: expected branch points for every mu, as in symmetric problems"):
@@ -42,10 +49,7 @@ def test_branch_points_that_part_are_refused():
 
 def test_a_condition_that_nothing_near_meets_has_no_curve():
     curve = Curve(imperfect, Monitor(lambda u, v: 1.0 + u[0] ** 2), (np.array([-1.2]), 1.4), mu=0.1)
-    # Newton's method wanders to where it stops, by the last bits of the start, here or at the first step.
-    path = continuation.trace(curve)
-    assert path.status in (continuation.Status.START_NOT_ON_PATH, continuation.Status.STEP_TOO_SMALL)
-    assert len(path) <= 1
+    assert continuation.trace(curve).status is continuation.Status.START_NOT_ON_PATH
 
 
 def test_kinks_until_another_switch_vanishes():
@@ -77,14 +81,6 @@ def test_values_and_monitors():
     assert np.abs(lam * y - y**3 + eps).max() <= 1e-10
 
 
-@pytest.mark.parametrize("kind", ["folds", "Hopf points", "branch points"])
-def test_what_takes_a_factorisation_is_not_proved_and_that_is_said(kind):
-    curve = KINDS[kind]()
-    path = continuation.trace(curve, budget=Budget(steps=3))
-    with pytest.raises(TypeError, match="curve is not plain arithmetic: it takes a factorisation"):
-        continuation.certify(path, curve)
-
-
 def test_a_family_with_a_factorisation_of_its_own():
     generator = np.random.default_rng(1)
     A, q, d = generator.standard_normal((5, 5)), *generator.standard_normal((2, 5))
@@ -98,6 +94,25 @@ def test_a_family_with_a_factorisation_of_its_own():
     assert np.abs(path.y[:, -1] - 0.5).max() <= 1e-12
     there = continuation.solve_at(family(0.3), 0.5, u[:-1])
     np.testing.assert_allclose(path.endpoint.y[:-1], there, rtol=1e-7)
+
+
+def topmost(a):
+    """Where y_1 turns on the ring."""
+    path = continuation.trace(ring(a), events=[TurningPoint(1)], box={"y": (-3.0, 3.0)})
+    return named(path, "turning point of component 1")
+
+
+def test_what_looks_at_the_tangent():
+    curve = Curve(ring, TurningPoint(1), topmost(1.0)[0], mu=1.0)
+    path = continuation.trace(curve, box={"lam": (None, 3.0)}, tolerance=1e-12)
+    # The members themselves say where it turns.
+    for u in path.u[1:]:
+        assert min(np.abs(event.u - u[:-1]).max() for event in topmost(u[-1])) <= 1e-10
+    own = Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1)
+    path = continuation.trace(own, box={"lam": (None, 1.0)}, tolerance=1e-12)
+    # dy/dlam = y / (3 y^2 - lam) = -0.4 there.
+    y, lam, _ = path.u.T
+    assert np.abs(1.2 * y**2 - 0.4 * lam + y).max() <= 1e-10
 
 
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
@@ -122,7 +137,8 @@ KINDS = {
     "folds": folds,
     "Hopf points": lambda: Curve(Family(Lorenz(), "b"), Kind.HOPF, wing(25.0)),
     "branch points": pitchforks,
-    "a circle": lambda: Curve(imperfect, Monitor(unit_circle), (np.array([0.2]), 1.0), mu=0.1),
+    "a slope": lambda: Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1),
+    "no homogeneous condition": lambda: Curve(imperfect, Monitor(uneven), (np.array([-0.95]), 1.008), mu=0.1),
 }
 
 
@@ -169,8 +185,9 @@ WRONG = {
         lambda: Curve(cusp_form, Kind.EVENT, (np.zeros(1), 0.0), mu=1.0), TypeError, "event: expected a turning",
     ),
     "a turn of an unknown": (
-        lambda: Curve(imperfect, TurningPoint(0), (np.zeros(1), 1.0), mu=1.0), ValueError,
-        "event: expected a function of the point alone",
+        lambda: Curve(
+            ring, topmost(1.0)[0], mu=1.0,
+        ), ValueError, "give TurningPoint(component), and the point as `at`",
     ),
     "sizes of another number": (
         lambda: Curve(cusp_form, Kind.TURNING_POINT, (np.zeros(1), 0.0), mu=1.0, size=[1.0]),
@@ -184,11 +201,9 @@ WRONG = {
         lambda: Curve(cusp_form, Kind.KINK, (np.zeros(1), 0.0), mu=1.0),
         TypeError, "family: expected piecewise smooth homotopies",
     ),
-    "no such attribute": (
-        lambda: Family(Plain(1.0), "nu"), ValueError, "name: expected a numerical attribute of Plain, found",
-    ),
-    "an attribute that is no number": (lambda: Family(Plain(1.0), "start"), ValueError, "name: expected a numerical"),
-    "no name": (lambda: Family(Plain(1.0), 3), ValueError, "name: expected a numerical attribute"),
+    "no such attribute": (lambda: Family(Plain(1.0), "nu"), ValueError, "name: expected an attribute of Plain"),
+    "an attribute that is no number": (lambda: Family(Plain(1.0), "start"), TypeError, "start: expected a number to"),
+    "no name": (lambda: Family(Plain(1.0), 3), TypeError, "name: expected the name of an attribute"),
 }  # fmt: skip
 
 

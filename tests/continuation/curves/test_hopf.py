@@ -26,6 +26,8 @@ def test_it_passes_where_the_equilibrium_turns():
     path = continuation.trace(curve, direction=-1, box={"lam": (-1.5, None)}, tolerance=1e-12)
     assert np.abs(path.y[:, 3] - path.lam**2).max() <= 1e-10
     assert np.abs(path.y[:, 4] - 2.0).max() <= 1e-10
+    (point,) = named(path, "zero-Hopf")
+    assert np.abs(point.u - [0.0, 0.0, 0.0, 0.0, 2.0, 0.0]).max() <= 1e-10
 
 
 @pytest.mark.parametrize(("n", "accuracy"), [(10, 1e-10), (300, 1e-9)])

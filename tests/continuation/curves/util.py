@@ -90,6 +90,20 @@ def coupled(mu=1.0, sparse=False):
     )
 
 
+def ring(a=1.0):
+    """y_0^2 / a + y_1^2 + lam^2 = 1, y_1 = a lam y_0: where y_1 is largest moves with a."""
+    return from_functions(
+        lambda y, lam: np.stack([y[0] ** 2 / a + lam**2 + y[1] ** 2 - 1.0, y[1] - a * lam * y[0]]),
+        start=([1.0, 0.0], 0.0),
+        target=None,
+    )
+
+
+def steep(u, v):
+    """Where the slope is -0.4."""
+    return v[0] + 0.4 * v[1]
+
+
 @frozen
 class Bent:
     """y = 2 lam inside a circle of radius mu^(1/2), another curve outside: kinks at 5 lam^2 = mu."""
