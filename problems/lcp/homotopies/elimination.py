@@ -17,6 +17,7 @@ from problems.lcp.homotopies.sides import BoundPairs
 if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
 
+
 @frozen(eq=False)
 class Core:
     """The full bordered system, solved by its core."""
