@@ -48,6 +48,10 @@ def check_budget(value: Any) -> None:
         raise TypeError(f"budget: expected a Budget, found {value!r}")
 
 
+REAL = (Real, Decimal, np.bool_)
+"""Types of real entries of object arrays."""
+
+
 def real_array(name: str, value: Any) -> Array:
     """Copy `value` to a float array, or keep a read-only one that owns its row-major floats.
 
@@ -62,10 +66,8 @@ def real_array(name: str, value: Any) -> Array:
     try:
         # MATLAB matrices come by columns.
         array = np.array(value, order="C")
-        if array.dtype == object:
-            if not all(_is_real(entry) for entry in array.flat):
-                raise TypeError("objects that are no real numbers")
-        elif array.dtype.kind not in "fiub":
+        entries = array.flat if array.dtype == object else ()
+        if array.dtype.kind not in "fiubO" or not all(isinstance(entry, REAL) for entry in entries):
             raise TypeError(f"dtype {array.dtype}")
         with np.errstate(over="ignore"):
             numbers: Array = array.astype(float, copy=False)
@@ -75,10 +77,6 @@ def real_array(name: str, value: Any) -> Array:
     if array.dtype.itemsize > numbers.itemsize and np.any(np.isinf(numbers) & np.isfinite(array)):
         raise ValueError(f"{name}: expected numbers below 1.8e308 in size, found larger ones")
     return numbers
-
-
-def _is_real(entry: Any) -> bool:
-    return isinstance(entry, (Real, Decimal, np.bool_)) or (isinstance(entry, np.ndarray) and entry.ndim == 0)
 
 
 def sound_sparse(name: str, value: Any) -> Any:
@@ -126,10 +124,7 @@ def check_finite(name: str, value: Any) -> None:
 
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
     """Copy `value` to a vector of finite floats (of length `size`), or raise ValueError."""
-    try:
-        vector = real_array(name, value)
-    except ValueError as error:
-        raise ValueError(str(error).replace("expected real numbers", "expected a vector of real numbers", 1)) from None
+    vector = real_array(name, value)
     kind = np.asarray(value).dtype
     if kind.kind == "b" or vector.ndim != 1 or vector.size == 0:
         raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")

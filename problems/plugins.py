@@ -10,10 +10,10 @@ from continuation.arrays import Array
 from problems.lcp.data.files import read_problem
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy, Registered
-from problems.nonlinear import Differentiable, FixedPointHomotopy, brown
+from problems.nonlinear import FixedPointHomotopy, brown
 
 
-def brown_fixed_point(n: int = 5) -> Differentiable:
+def brown_fixed_point(n: int = 5) -> FixedPointHomotopy:
     """Brown's almost linear function by the fixed-point homotopy from the origin.
 
     Parameters
@@ -22,7 +22,7 @@ def brown_fixed_point(n: int = 5) -> Differentiable:
         Equations.
     """
     F = brown(n)
-    return Differentiable(FixedPointHomotopy(F, np.zeros(n)), F.jacobian)
+    return FixedPointHomotopy(F, np.zeros(n), F.jacobian)
 
 
 def _plugin(homotopy: Registered) -> Callable[..., LCPHomotopy]:

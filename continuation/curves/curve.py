@@ -11,7 +11,7 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import FINITE, complain
 from continuation.arguments.labels import Labels
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
@@ -229,10 +229,6 @@ class Curve:
         """
         eliminates = self._plain is None and self.event != Kind.BRANCH_POINT
         return WrittenOut.of(self._condition, points) if eliminates else None
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """Derivatives by the unknowns and by mu."""
-        return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """The derivative times a direction."""

@@ -6,18 +6,14 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import field, frozen
-from scipy.sparse.linalg import LinearOperator
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.curves.calculus import Calculus
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.singularity import full_derivative
 from continuation.linear import BorderedSystem
 from continuation.linear.elimination import eliminated
-from continuation.linear.entries import extended
 from continuation.linear.system import Solver
 
 
@@ -86,19 +82,6 @@ class Here:
         beside = v[n:-1] if follows is None else np.array([follows @ v])
         H = self.apply(v[:n]) + self.column @ beside + v[-1] * self.by_parameter
         return np.append(H, rows @ v)
-
-    def matrices(self) -> tuple[Matrix, Array]:
-        """Derivatives by the unknowns and by mu; an operator if sparse with a hidden unknown."""
-        full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
-        column = self.column
-        last = np.append(self.by_parameter, rows[:, -1])
-        if follows is not None:
-            last[:-1] += column[:, 0] * follows[-1]
-            if sp.issparse(full):
-                order = self.u.size
-                return LinearOperator((order, order), lambda v: self.times(np.append(v, 0.0)), dtype=float), last
-            return np.vstack([full + column * follows[:-1], rows[:, :-1]]), last
-        return extended(full, column, rows[:, :-1]), last
 
     def bordered(self, border: Array) -> BorderedSystem:
         """The bordered derivative, by elimination of y.

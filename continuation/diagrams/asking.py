@@ -90,15 +90,9 @@ def diagram(
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
     Evaluator(homotopy, Counts())
     for name, count in (("branches", branches), ("generations", 1 if generations is None else generations)):
-        expect(
-            isinstance(count, Integral) and not isinstance(count, bool) and count >= (name == "branches"),
-            name,
-            "a positive integer",
-            count,
-        )
-    expect(
-        is_number(step) and not isinstance(step, bool) and 0.0 < step < np.inf, "step", "a positive finite number", step
-    )
+        whole = isinstance(count, Integral) and is_number(count) and count >= (name == "branches")
+        expect(whole, name, "a positive integer", count)
+    expect(is_number(step) and 0.0 < step < np.inf, "step", "a positive finite number", step)
     expect(isinstance(stability, Stability | None), "stability", "a Stability or None", stability, TypeError)
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")

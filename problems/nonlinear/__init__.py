@@ -7,14 +7,13 @@ from problems.nonlinear.complementarity import (
     MixedComplementarity,
     solve_complementarity,
 )
-from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.fixed_point import FixedPointHomotopy, fixed_point
 from problems.nonlinear.newton import NewtonHomotopy, newton
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import bratu_under_obstacle
 
 __all__ = [
-    "BrownAlmostLinear", "ComplementaritySolution", "Differentiable", "FixedPointHomotopy", "InteriorHomotopy",
+    "BrownAlmostLinear", "ComplementaritySolution", "FixedPointHomotopy", "InteriorHomotopy",
     "MixedComplementarity", "NewtonHomotopy", "NormalMap", "bratu_under_obstacle", "brown",
     "fixed_point", "newton", "solve_complementarity",
 ]  # fmt: skip

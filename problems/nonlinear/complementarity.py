@@ -210,12 +210,6 @@ class InteriorHomotopy:
         """(H_y, H_lam) in full."""
         return self._linearized(y).jacobian(y, lam)
 
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """The natural residual."""
-        x = y[: self.problem.n]
-        natural = self._shape.natural_map(x, self.problem.F(x.copy()))
-        return {"natural_residual": float(np.abs(natural).max())}
-
 
 @frozen(eq=False)
 class ComplementaritySolution:
@@ -240,21 +234,6 @@ class ComplementaritySolution:
     def x(self) -> Array:
         """Solution, or best point found, shape (n,)."""
         return self.certificate.x
-
-    @property
-    def F(self) -> Array:
-        """F(x), shape (n,)."""
-        return self.certificate.w
-
-    @property
-    def residual(self) -> float:
-        """Absolute natural residual."""
-        return self.certificate.residual
-
-    @property
-    def relative_residual(self) -> float:
-        """See `Certificate`."""
-        return self.certificate.relative_residual
 
 
 def solve_complementarity(

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+import numpy as np
 from attrs import field, frozen
+from scipy.sparse import eye_array
 
 from continuation.arrays import Array, Matrix
+from continuation.linear import Banded
 from problems.bibliography import CHOW_MALLET_PARET_YORKE
-from problems.nonlinear.differentiable import Differentiable
-from problems.nonlinear.identity import blend_with_identity
-from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, start_vector, value_at
+from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, check_jacobian_shape, start_vector, value_at
 from problems.options import quiet
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class FixedPointHomotopy:
     """H(x, lam) = (1 - lam) F(x) + lam (x - a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
@@ -24,6 +25,8 @@ class FixedPointHomotopy:
         ``F(x) -> (n,)``.
     a : array_like, shape (n,)
         Start; for almost every a the path is regular.
+    slope : callable, optional
+        ``slope(x) -> (n, n)``, F': dense, sparse or `Banded`. With it the homotopy has a `jacobian`.
 
     Raises
     ------
@@ -39,12 +42,16 @@ class FixedPointHomotopy:
 
     F: Function
     a: Array = field(converter=start_vector)
+    slope: Jacobian | None = None
     problem_class: ClassVar[str] = EQUATIONS
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (CHOW_MALLET_PARET_YORKE,)
 
     def __attrs_post_init__(self) -> None:
         value_at(self.F, self.a)
+        if self.slope is not None:
+            check_jacobian_shape(self.slope, self.a)
+            object.__setattr__(self, "jacobian", self._jacobian)
 
     def start(self) -> tuple[Array, float]:
         """(a, 1)."""
@@ -56,19 +63,19 @@ class FixedPointHomotopy:
         return (1.0 - lam) * self.F(y) + lam * (y - self.a)
 
     @quiet
-    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y).
+    def _jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam); H_y has the structure of F'."""
+        assert self.slope is not None
+        matrix, column = self.slope(y), y - self.a - self.F(y)
+        if isinstance(matrix, Banded):
+            bands = (1.0 - lam) * matrix.ab
+            bands[matrix.upper] += lam
+            return Banded(bands, matrix.lower, matrix.upper), column
+        identity = np.eye(y.size) if isinstance(matrix, np.ndarray) else eye_array(y.size, format="csr")
+        return (1.0 - lam) * matrix + lam * identity, column
 
-        Parameters
-        ----------
-        slope : ndarray or sparse array, shape (n, n)
-        y : ndarray, shape (n,)
-        lam : float
-        """
-        return blend_with_identity(slope, lam), y - self.a - self.F(y)
 
-
-def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedPointHomotopy | Differentiable:
+def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedPointHomotopy:
     """The fixed-point homotopy of F from `a`.
 
     Parameters
@@ -76,7 +83,6 @@ def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedP
     F : callable
     a : array_like, shape (n,)
     jacobian : callable, optional
-        ``jacobian(x) -> (n, n)``: any matrix that `continuation.linear` factors.
+        ``jacobian(x) -> (n, n)``: dense, sparse or `Banded`.
     """
-    homotopy = FixedPointHomotopy(F, a)
-    return homotopy if jacobian is None else Differentiable(homotopy, jacobian)
+    return FixedPointHomotopy(F, a, jacobian)

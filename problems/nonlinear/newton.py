@@ -9,12 +9,11 @@ from attrs import field, frozen
 from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER
-from problems.nonlinear.differentiable import Differentiable
-from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, start_vector, value_at
+from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, check_jacobian_shape, start_vector, value_at
 from problems.options import quiet
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class NewtonHomotopy:
     """H(x, lam) = F(x) - lam F(a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
@@ -24,6 +23,9 @@ class NewtonHomotopy:
         ``F(x) -> (n,)``.
     a : array_like, shape (n,)
         Start, with F' regular.
+    slope : callable, optional
+        ``slope(x) -> (n, n)``, F': any matrix that `continuation.linear` factors. With it the homotopy has a
+        `jacobian`.
 
     Raises
     ------
@@ -40,15 +42,18 @@ class NewtonHomotopy:
 
     F: Function
     a: Array = field(converter=start_vector)
+    slope: Jacobian | None = None
     value: Array = field(init=False, repr=False)
     """F(a), shape (n,)."""
     problem_class: ClassVar[str] = EQUATIONS
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
 
-    @value.default
-    def _value_at_start(self) -> Array:
-        return value_at(self.F, self.a)
+    def __attrs_post_init__(self) -> None:
+        object.__setattr__(self, "value", value_at(self.F, self.a))
+        if self.slope is not None:
+            check_jacobian_shape(self.slope, self.a)
+            object.__setattr__(self, "jacobian", self._jacobian)
 
     def start(self) -> tuple[Array, float]:
         """(a, 1)."""
@@ -59,19 +64,14 @@ class NewtonHomotopy:
         """H, shape (n,)."""
         return self.F(y) - lam * self.value
 
-    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y).
-
-        Parameters
-        ----------
-        slope : ndarray or sparse array, shape (n, n)
-        y : ndarray, shape (n,)
-        lam : float
-        """
-        return slope, -self.value
+    @quiet
+    def _jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(F', -F(a))."""
+        assert self.slope is not None
+        return self.slope(y), -self.value
 
 
-def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy | Differentiable:
+def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy:
     """The Newton homotopy of F from `a`.
 
     Parameters
@@ -81,5 +81,4 @@ def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomot
     jacobian : callable, optional
         ``jacobian(x) -> (n, n)``, any matrix that `continuation.linear` factors.
     """
-    homotopy = NewtonHomotopy(F, a)
-    return homotopy if jacobian is None else Differentiable(homotopy, jacobian)
+    return NewtonHomotopy(F, a, jacobian)

@@ -9,14 +9,11 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
 
-from continuation import jets
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import check_derivative, from_residual
-from continuation.homotopy import TangentPoint
-from continuation.linear import Banded, BorderedSystem
+from continuation.linear import Banded
 from problems.bibliography import ROBINSON
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
-from problems.nonlinear.normal_system import NormalSystem
 from problems.nonlinear.start_checks import require_callable
 from problems.options import finite, finite_or_none, finite_vector, quiet, real_array
 
@@ -171,20 +168,11 @@ class NormalMap:
         return np.concatenate([y[below] - lower, upper - y[above]])
 
     def piece(self, signs: Array) -> NormalPiece:
-        """The smooth map on which unknowns of negative switch are at bounds.
-
-        Raises
-        ------
-        ValueError
-            If one is beyond both bounds.
-        """
+        """The smooth map on which unknowns of negative switch are at bounds."""
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         m = int(below.sum())
         low, high = np.zeros(self.lower.shape, dtype=bool), np.zeros(self.lower.shape, dtype=bool)
         low[below], high[above] = signs[:m] < 0, signs[m:] < 0
-        if (low & high).any():
-            i = int(np.argmax(low & high))
-            raise ValueError(f"signs: expected an unknown to be beyond one bound at most, found z[{i}] beyond both")
         clamped = np.where(low, self.lower, np.where(high, self.upper, 0.0))
         moving = np.where(low, self.lower_rate, np.where(high, self.upper_rate, 0.0))
         return NormalPiece(self, ~(low | high), clamped, moving)
@@ -210,37 +198,17 @@ class NormalPiece:
         return self.whole.F(y * on + held, lam) + y * (1.0 - on) - held
 
     @quiet
-    def slope(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """F_x, and the map's derivative by lam."""
-        assert self.whole.jacobian_of_F is not None
-        F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped + lam * self.moving), lam)
-        column = np.asarray(F_lam, dtype=float)
-        return F_x, column + F_x @ self.moving - self.moving if self.moving.any() else column
-
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """Columns of F_x for free unknowns, else of the identity."""
-        F_x, F_lam = self.slope(y, lam)
-        on = 1.0 * self.free
+        assert self.whole.jacobian_of_F is not None
+        F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped + lam * self.moving), lam)
+        column, on = np.asarray(F_lam, dtype=float), 1.0 * self.free
+        if self.moving.any():
+            column = column + F_x @ self.moving - self.moving
+        if isinstance(F_x, Banded):
+            bands = F_x.ab * on
+            bands[F_x.upper] += 1.0 - on
+            return Banded(bands, F_x.lower, F_x.upper), column
         if isinstance(F_x, np.ndarray):
-            return F_x * on + np.diag(1.0 - on), F_lam
-        columns = F_x.tosparse() if isinstance(F_x, Banded) else F_x
-        return sp.csc_array(columns @ sp.diags_array(on) + sp.diags_array(1.0 - on)), F_lam
-
-    def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """F_x v_x + F_lam v_lam + v_z - v_x."""
-        F_x, F_lam = self.slope(y, lam)
-        moved = np.where(self.free, v[:-1], 0.0)
-        change: Array = F_x @ moved + F_lam * v[-1] + v[:-1] - moved
-        return change
-
-    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the equations of free unknowns."""
-        return NormalSystem.of(*self.slope(y, lam), np.asarray(self.free), border)
-
-    def taylor(self, point: TangentPoint, order: int) -> Array:
-        """A straight line for an affine F, else jets."""
-        if isinstance(self.whole.F, AffineForce):
-            c = np.zeros((order + 1, point.u.size))
-            c[0], c[1] = point.u, point.tangent
-            return c
-        return jets.path_series(self.residual, point.u, point.tangent, point.solve, order)
+            return F_x * on + np.diag(1.0 - on), column
+        return sp.csc_array(F_x @ sp.diags_array(on) + sp.diags_array(1.0 - on)), column

@@ -7,11 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 
 from continuation.arguments.checks import complain
 from continuation.arrays import Array, generic_vector
-from continuation.citation.bibliography import SQUIRE_TRAPP
 from continuation.evaluation.products import (
     AGREEMENT,
     BY_COMPLEX_STEP,
@@ -36,11 +35,6 @@ class Field:
     own: Callable[..., Any] | None = None
     beside: tuple[Any, ...] = ()
     steps: ByDifferences | None = None
-    references: tuple[str, ...] = field(init=False)
-
-    @references.default
-    def _references(self) -> tuple[str, ...]:
-        return (SQUIRE_TRAPP,) if self.steps is None and self.own is None else ()
 
     def __call__(self, x: Array, p: Any) -> Array:
         """The value."""

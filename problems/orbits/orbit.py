@@ -79,6 +79,7 @@ class PeriodicOrbit:
     renewed_at: ClassVar[tuple[str, ...]] = ("phase condition fails",)
     parameter_name: ClassVar[str] = "p"
     problem_class: ClassVar[str] = "periodic orbits"
+    references: ClassVar[tuple[str, ...]] = (DE_BOOR_SWARTZ, WRIGHT)
 
     def __attrs_post_init__(self) -> None:
         if len(self.states) != (wanted := (self.mesh.size - 1) * self.degree):
@@ -327,8 +328,3 @@ class PeriodicOrbit:
 
     def _direction(self, motion: Array) -> Array:
         return np.append(motion, np.zeros(self.mesh.size))
-
-    @property
-    def references(self) -> tuple[str, ...]:
-        """For collocation, multipliers and derivatives."""
-        return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import Budget, Kind, Monitor, Status, TargetValue, trace
-from continuation.linear import Banded, SingularError
+from continuation.linear import Banded
 from continuation.testing import check_homotopy
 from problems.nonlinear import NormalMap, bratu_under_obstacle
 
@@ -55,29 +55,19 @@ def test_kojima_and_shindos_two_solutions_on_one_path():
 
 
 def banded(n):
-    """The same in bands."""
+    """The chain in bands."""
     return Banded(np.array([np.full(n, -1.0), np.full(n, 2.5), np.full(n, -1.0)]), 1, 1)
 
 
 @pytest.mark.parametrize("make", [lambda n: chain(n).toarray(), chain, banded], ids=["dense", "sparse", "banded"])
 @pytest.mark.parametrize("count", [0, 3, 8])
-def test_the_reduced_system_solves_the_whole_one(make, count):
+def test_columns_of_unknowns_at_bounds_are_those_of_the_identity(make, count):
     generator = np.random.default_rng(5)
     problem = NormalMap.affine(make(8), np.ones(8), np.ones(8), x0=np.zeros(8), lam0=1.0)
-    piece = problem.piece(np.where(generator.permutation(np.arange(8) < count), 1, -1))
-    border, b, v = generator.standard_normal((3, 9))
-    H_y, H_lam = piece.jacobian(np.zeros(8), 0.0)
-    whole = np.vstack([np.column_stack([np.asarray(H_y @ np.eye(8)), H_lam]), border])
-    system = piece.bordered(np.zeros(8), 0.0, border)
-    assert system.sign == np.sign(np.linalg.det(whole))
-    assert np.abs(whole @ system.solve(b[:-1], b[-1]) - b).max() < 1e-12
-    assert np.abs(piece.differential(np.zeros(8), 0.0, v) - whole[:-1] @ v).max() < 1e-13
-
-
-def test_a_piece_without_free_unknowns_may_be_singular():
-    problem = NormalMap.affine(np.eye(2), [1.0, 1.0], [0.0, 0.0], x0=np.zeros(2), lam0=1.0)
-    with pytest.raises(SingularError):
-        problem.piece(np.array([-1, -1])).bordered(np.zeros(2), 0.0, np.zeros(3))
+    free = generator.permutation(np.arange(8) < count)
+    H_y, H_lam = problem.piece(np.where(free, 1, -1)).jacobian(np.zeros(8), 0.0)
+    np.testing.assert_allclose(H_y @ np.eye(8), np.where(free, chain(8).toarray(), np.eye(8)))
+    np.testing.assert_array_equal(H_lam, 1.0)
 
 
 def test_random_paths_end_in_solutions():

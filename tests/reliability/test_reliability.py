@@ -28,7 +28,7 @@ RESULTS = {
     "Gradient", "Interrupted", "Kind", "Knot", "LocatedEvent", "Outcome", "Path", "Preset", "Program",
     "Proof", "Sensitivity", "Solution", "Solutions", "Status", "Step", "StepMeasures",
     "Answers", "Diagram", "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy",
-    "BrownAlmostLinear", "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
+    "BrownAlmostLinear", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
     "Tangent", "Followed", "plot_orbits",
 }  # fmt: skip
 """What is made by the package and handed over, made by a function that is in the table, or takes no argument."""

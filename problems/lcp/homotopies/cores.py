@@ -19,10 +19,6 @@ from continuation.linear.silence import without_warnings
 GAINED = 1e-3
 """Largest relative first correction of an accepted core: four such corrections reach round-off."""
 
-FIRM_CORRECTION = 1e-13
-"""Largest correction of the tangent for which solutions need none."""
-
-
 _silently = without_warnings(all="ignore")
 """A pair of zeros gives inf, which the factorisation reports."""
 
@@ -104,7 +100,6 @@ class CoreSystem:
     apply: Callable[[Array], Array]
     border: Array
     sizes: Array
-    coefficients: Array
     quick: BorderedSystem | None
     make_robust: Callable[[], BorderedSystem]
 
@@ -125,57 +120,49 @@ class CoreSystem:
 
     def solve(self, r: Array, rho: float) -> Array:
         """The solution, shape (N + 1,)."""
-        core, tangent, firm = self._probe
+        core, tangent = self._probe
         if rho == 1.0 and not r.any():
             return tangent.copy()
-        if firm:
-            return core.solve(r, rho)
-        solution = self._refined(core, r, rho)
-        return self._robustly(r, rho)[0] if solution is None else solution[0]
+        solution = None if core is not self.quick else self._refined(core, r, rho)
+        return self._robustly(r, rho) if solution is None else solution
 
     def approximate(self, r: Array, rho: float) -> Array:
         """The uncorrected solution."""
         return self._probe[0].solve(r, rho)
 
     @cached_property
-    def _probe(self) -> tuple[BorderedSystem, Array, bool]:
+    def _probe(self) -> tuple[BorderedSystem, Array]:
         nothing = np.zeros(self.sizes.size)
         solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
-        core = self.robust if self.quick is None or solution is None else self.quick
-        tangent, moved = self._robustly(nothing, 1.0) if solution is None else solution
-        return core, tangent, moved <= FIRM_CORRECTION and self._even()
-
-    @_silently
-    def _even(self) -> bool:
-        sizes = np.abs(np.concatenate([self.sizes, self.coefficients, [1.0]]))
-        return bool(GAINED * sizes.max() <= sizes.min())
+        if self.quick is None or solution is None:
+            return self.robust, self._robustly(nothing, 1.0)
+        return self.quick, solution
 
     def _residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
         return r - self.apply(z), rho - float(self.border.dot(z))
 
-    def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
+    def _robustly(self, r: Array, rho: float) -> Array:
         z = self.robust.solve(r, rho)
-        correction = self.robust.solve(*self._residual(z, r, rho))
-        return z + correction, self._moved(correction, z)[0]
+        return z + self.robust.solve(*self._residual(z, r, rho))
 
     @_silently
-    def _refined(self, core: BorderedSystem, r: Array, rho: float) -> tuple[Array, float] | None:
-        """The solution to round-off and its first correction; None if that is large."""
+    def _refined(self, core: BorderedSystem, r: Array, rho: float) -> Array | None:
+        """The solution to round-off; None if corrections are large."""
         try:
-            z, changes = core.solve(r, rho), [np.inf]
+            z, last = core.solve(r, rho), np.inf
             # Four corrections, or one below 1e-9, reach round-off.
-            while len(changes) <= 4 and changes[-1] > GAINED**3:
+            for _ in range(4):
                 correction = core.solve(*self._residual(z, r, rho))
                 z = z + correction
                 moved, overall = self._moved(correction, z)
                 if not overall <= GAINED:
                     return None
-                changes.append(moved)
-                if moved > 0.5 * changes[-2]:
+                if moved <= GAINED**3 or moved > 0.5 * last:
                     break
+                last = moved
         except SingularError:
             return None
-        return z, changes[1]
+        return z
 
     def _moved(self, correction: Array, z: Array) -> tuple[float, float]:
         """The relative corrections, by component and overall; tiny components count as 1e-6 of the largest."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,16 +16,6 @@ from problems.lcp.homotopies.sides import BoundPairs
 
 if TYPE_CHECKING:
     from problems.lcp.homotopies.interior import System
-
-LEAST_GIVE = 1e-9
-"""Least diagonal entry of a bounded row's multiplier in the core of order n + 1, in natural units: active rows have 0
-at lambda = 0.
-"""
-
-LEAST_GAP = 1e-13
-"""Least distance over multiplier, in natural units: 11 of 2,300 systems need the robust core; 26 with 1e-16, 147 with
-0.
-"""
 
 
 @frozen(eq=False)
@@ -61,10 +51,9 @@ class Core:
 
 @frozen(eq=False)
 class OfPairs:
-    """Elimination in (x, y) to order n + 1: the better pivot of each pair if `larger`, else y."""
+    """Elimination in (x, y) to order n + 1 by the better pivot of each pair."""
 
     system: System
-    larger: bool
     first: Pairs | BoundPairs
 
     @property
@@ -78,9 +67,7 @@ class OfPairs:
         homotopy, n = self.system.of, self.system.of.n
         alpha, beta, gamma = homotopy.blend.slopes(self.system.lam)
         v, force, dy = self.first.known(r[n:])
-        top = homotopy.blend.sign * r[:n] + gamma * force
-        if self.larger:
-            top -= alpha * homotopy.problem.A.dot(v) + beta * v
+        top = homotopy.blend.sign * r[:n] + gamma * force - alpha * homotopy.problem.A.dot(v) - beta * v
         return top, np.concatenate([v, dy])
 
     def backward(self, k: Array, r: Array) -> Array:
@@ -101,20 +88,12 @@ class OfPairs:
 def factor_pairs(system: System, border: Array) -> BorderedSystem:
     """The bordered system of a homotopy in (x, y).
 
-    Eliminating y leaves alpha A + beta I + gamma diag(y/x), with bounds s/(x-l) + t/(u-x) for y/x. Cholesky factors it
-    if A is symmetric positive semidefinite and the sum is definite; otherwise the larger of each pair x_i, y_i stays,
-    and LU factors what is left. Raises `SingularError`.
+    The larger of each pair x_i, y_i stays; without any y the core is alpha A + beta I + gamma diag(y/x), with bounds
+    s/(x-l) + t/(u-x) for y/x. Raises `SingularError`.
     """
-    homotopy, (_, _, y, gaps, _) = system.of, system.parts
-    structure = homotopy.structure
-
-    def core(larger: bool) -> Core:
-        return Core.of(OfPairs(system, larger, homotopy.sides.eliminated(y, gaps, larger)), border)
-
-    definite = not (structure.problem.sparse or np.any(np.less(homotopy.blend.x, 0)))
-    definite = definite and structure.symmetric and structure.semidefinite
-    inside = definite and (gaps > 0.0).all() and (y > 0.0).all()
-    return _refining(system, border, _or_none(lambda: core(False)) if inside else None, lambda: core(True), np.zeros(0))
+    _, _, y, gaps, _ = system.parts
+    core = Core.of(OfPairs(system, system.of.sides.eliminated(y, gaps, True)), border)
+    return CoreSystem(system.apply, border, system.sizes, None, lambda: core)
 
 
 @frozen(eq=False)
@@ -188,33 +167,20 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
     pairs = RowPairs.of_boxes(rows, factor, rest, p[m + n :], q[m + n :])
 
     def reduced() -> Core:
-        rest, distances = pairs.rest, gap
-        if not structure.problem.standard:
-            least = LEAST_GIVE * homotopy.unit * pairs.factor
-            rest = np.where(np.abs(rest) < np.abs(least), least, rest)
-            distances = np.maximum(gap, LEAST_GAP * z1 / homotopy.unit)
-        way = OfRows(system, rows.sides.eliminated(z1, distances, False), pairs, second_eliminated(pairs.factor, rest))
+        second = second_eliminated(pairs.factor, pairs.rest)
+        way = OfRows(system, rows.sides.eliminated(z1, gap, False), pairs, second)
         return Core.of(way, border)
 
     def augmented() -> Core:
         return Core.of(OfRows(system, rows.sides.eliminated(z1, gap, True), pairs), border)
 
-    return _refining(system, border, _or_none(reduced) if structure.squarable else None, augmented, rest)
-
-
-def _or_none(make: Callable[[], Core]) -> Core | None:
-    try:
-        return make()
-    except SingularError:
-        return None
-
-
-def _refining(
-    system: System, border: Array, quick: Core | None, robust: Callable[[], Core], coefficients: Array
-) -> BorderedSystem:
-    if quick is not None and not system.of.refine:
+    quick = None
+    if structure.squarable:
+        with suppress(SingularError):
+            quick = reduced()
+    if quick is not None and not homotopy.refine:
         return quick
-    found = CoreSystem(system.apply, border, system.sizes, coefficients, quick, robust)
+    found = CoreSystem(system.apply, border, system.sizes, quick, augmented)
     if quick is None:
         _ = found.robust
     return found

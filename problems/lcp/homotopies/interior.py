@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
-from attrs import cmp_using, define, field, frozen
+from attrs import cmp_using, field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array, Matrix
@@ -103,20 +103,6 @@ class System:
         return sizes
 
 
-@define(eq=False)
-class Recent:
-    """The system at the last point."""
-
-    found: tuple[bytes, float, System] | None = None
-
-    def at(self, homotopy: Any, y: Array, lam: float) -> System:
-        """H' at a point."""
-        found, entries = self.found, y.tobytes()
-        if found is None or found[:2] != (entries, lam):
-            self.found = found = entries, lam, System.at(homotopy, y, lam)
-        return found[2]
-
-
 @quiet
 def residual(self: Any, y: Array, lam: float) -> Array:
     """The residual H(y, lam)."""
@@ -132,8 +118,7 @@ def jacobian(self: Any, y: Array, lam: float) -> tuple[Matrix, Array]:
 @quiet
 def differential(self: Any, y: Array, lam: float, v: Array) -> Array:
     """H' v."""
-    system: System = self._recent.at(self, y, lam)
-    return system.apply(v)
+    return System.at(self, y, lam).apply(v)
 
 
 @quiet

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem
@@ -14,7 +14,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import interior
 from problems.lcp.homotopies.elimination import factor_rows
-from problems.lcp.homotopies.interior import OwnMetric, Parts, Recent, RelativeMetric, System
+from problems.lcp.homotopies.interior import OwnMetric, Parts, RelativeMetric, System
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import Start, kkt_start, natural_units, require_interior
@@ -88,7 +88,6 @@ class KKTHomotopy:
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (DUTTA_DAS_JANA,)
     metric: ClassVar[OwnMetric] = OwnMetric()
-    _recent: Recent = field(factory=Recent, init=False, repr=False)
 
     residual = interior.residual
     jacobian = interior.jacobian

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from attrs import evolve, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from problems.lcp.data.matrix_structure import Structure
@@ -47,7 +47,7 @@ class Registered:
         """The homotopy at a start; one in (x, y) uses x0 and w0."""
         if self.make is KKTHomotopy:
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
-        return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
+        return self.make(problem, start.x0, start.w0, structure=structure)
 
 
 HOMOTOPIES: Mapping[str, Registered] = {

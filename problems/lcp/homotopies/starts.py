@@ -224,15 +224,7 @@ def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
         if not (y0 > 0.0).all():
             i = int(np.argmin(y0))
             raise ValueError(f"x0: expected A x0 + q > 0 (or give y0 > 0), found (A x0 + q)[{i}] = {y0[i]}")
-        made_of_x0(y0)
     return x0, y0
-
-
-def made_of_x0(y0: Array) -> Array:
-    """y0, or ValueError if it is not finite."""
-    if not np.isfinite(y0).all():
-        raise ValueError(f"x0: expected numbers from which a finite y0 comes (or give y0 > 0), found {y0.max()} in it")
-    return y0
 
 
 def given_inside(problem: MixedLCP, x0: Any) -> Array:

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem
@@ -14,9 +14,9 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import interior, references
 from problems.lcp.homotopies.elimination import factor_pairs
-from problems.lcp.homotopies.interior import OwnMetric, Parts, Recent, RelativeMetric, System
+from problems.lcp.homotopies.interior import OwnMetric, Parts, RelativeMetric, System
 from problems.lcp.homotopies.sides import Sides
-from problems.lcp.homotopies.starts import feasible_start, given_inside, made_of_x0, natural_units, positive_vector
+from problems.lcp.homotopies.starts import feasible_start, given_inside, natural_units, positive_vector
 from problems.options import quiet
 
 
@@ -53,8 +53,6 @@ class TwoVectorHomotopy:
         The start: x0 between the bounds, y0 positive, one per finite bound.
     references : tuple of str
     structure : Structure
-    refine : bool
-        As for `KKTHomotopy`.
     """
 
     name: str
@@ -64,12 +62,10 @@ class TwoVectorHomotopy:
     y0: Array
     references: tuple[str, ...]
     structure: Structure
-    refine: bool = True
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     signs: ClassVar[float] = 1.0
     metric: ClassVar[OwnMetric] = OwnMetric()
-    _recent: Recent = field(factory=Recent, init=False, repr=False)
 
     residual = interior.residual
     jacobian = interior.jacobian
@@ -172,7 +168,7 @@ def YuHomotopy(
     """
     x0 = given_inside(problem, x0)
     with np.errstate(over="ignore"):
-        y0 = made_of_x0(1.0 / Sides(problem).gaps(x0)) if y0 is None else y0
+        y0 = 1.0 / Sides(problem).gaps(x0) if y0 is None else y0
     return _made("Yu", problem, Blend(sign=1, x=1), x0, y0, references.YU, structure)
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 
-from continuation.archive import PathLog
-from continuation.archive.atomic import as_file
+from continuation.archive.atomic import new_file
+from continuation.archive.growing import save_all
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
@@ -21,11 +21,9 @@ from problems.lcp.data.problem import MixedLCP, require_problem
 from problems.lcp.data.scaling import Exponents, balanced
 from problems.lcp.data.spread import alike
 from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.natural import NaturalMap
 from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
 from problems.lcp.parametric.walk import OUTSIDE_LIMITS
-from problems.lcp.search.padded import show
 from problems.lcp.search.solver import solve
 from problems.options import check_budget, finite_vector
 
@@ -87,6 +85,7 @@ def along(
     began = time.perf_counter()
     require_problem(problem)
     check_budget(budget)
+    file = None if archive is None else new_file("archive", archive)
     n = problem.n
     slope = finite_vector("d", d, n)
     levels = levels_of(level, problem)
@@ -117,14 +116,25 @@ def along(
             trail.points, trail.tangents = [np.append(point, first)], [np.zeros(n + 1)]
         else:
             status, message = trail.follow(walk, last, budget or Budget(steps=CORNERS))
-        natural = NaturalMap(problem, slope, levels, trail.points[0])
-        steps, events = trail.steps(np.abs(natural.residuals(np.array(trail.points))).max(axis=1, initial=0.0))
+        off = natural_residuals(problem, slope, levels, np.array(trail.points))
+        steps, events = trail.steps(np.abs(off).max(axis=1, initial=0.0))
     counts = Counts(accepted=len(steps))
     path = Path(steps, events, status, message, counts, time.perf_counter() - began, references=_CITED)
-    if archive is not None:
-        with PathLog(as_file("archive", archive)) as log:
-            show(path, natural, log)
+    if file is not None:
+        save_all([path], file, "A path of LCP(q + t d, A)")
     return path
+
+
+def natural_residuals(problem: MixedLCP, d: Array, level: Array, u: Array) -> Array:
+    """The natural map at points u, shape (m, n + 1) to (m, n); zero on the path.
+
+    x - mid(lower, x - w, upper), w = Ax + q + t d; for a level, w + mid(-t level, x - w, t level).
+    """
+    x, t = u[:, :-1], u[:, -1:]
+    w = x @ problem.A.T + (problem.q + t * d)
+    width = t * level
+    kept = np.minimum(np.maximum(x - w, -width), width)
+    return np.where(level > 0.0, w + kept, problem.natural_map(x, w))
 
 
 def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Exponents, Exponents]:
@@ -176,7 +186,7 @@ def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> A
             raise ValueError(f"t: expected a start t[0] with a solution, found none for {t:g}. {found.message}")
         return found.x
     given = finite_vector("x", x, problem.n)
-    off = np.abs(NaturalMap(problem, d, levels, given).residual(given, t))
+    off = np.abs(natural_residuals(problem, d, levels, np.append(given, t)[None])[0])
     if (off > OUTSIDE_LIMITS * at.scale(given)).any():
         i = int(np.argmax(off))
         raise ValueError(f"x: expected a solution for t = {t:g}, found one that is off by {off[i]:.1e} at index {i}")

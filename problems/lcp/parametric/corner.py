@@ -18,7 +18,7 @@ LARGEST_LISTED = 10
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
-    """All rays, including that of arrival; a cone's edges; one ray of many switches, by Lemke's method.
+    """All rays that are alone on their piece, including that of arrival; one of many switches, by Lemke's method.
 
     Parameters
     ----------
@@ -43,27 +43,18 @@ def rays(S: Array, r: Array) -> list[Ray]:
             rest = [i for i in range(m) if i not in active]
             block = whole[np.ix_(list(active), columns)]
             kernel = null_space(block, rcond=ZERO_COMPONENT) if active else np.ones((1, 1))
-            signs = np.vstack([np.eye(size, size + 1), whole[np.ix_(rest, columns)]]) @ kernel
-            for edge in _edges(signs):
+            if kernel.shape[1] != 1:
+                continue
+            for ray in (kernel[:, 0], -kernel[:, 0]):
+                signs = np.append(ray[:size], whole[np.ix_(rest, columns)] @ ray)
+                if (signs < -ZERO_COMPONENT).any():
+                    continue
                 along = np.zeros(m + 1)
-                along[columns] = kernel @ edge
-                along /= np.abs(along).max()
+                along[columns] = ray / np.abs(ray).max()
                 along[:m] = np.where(along[:m] > ZERO_COMPONENT, along[:m], 0.0)
                 if not any(np.abs(along - one).max() <= 1e3 * ZERO_COMPONENT for one in found):
                     found.append(along)
     return [Ray(along[:m] / wide, float(along[m])) for along in found]
-
-
-def _edges(signs: Array) -> list[Array]:
-    dimension = signs.shape[1]
-    if dimension == 0:
-        return []
-    candidates = []
-    for chosen in combinations(range(signs.shape[0]), dimension - 1):
-        kernel = null_space(signs[list(chosen)], rcond=ZERO_COMPONENT) if chosen else np.ones((1, 1))
-        if kernel.shape[1] == 1:
-            candidates += [kernel[:, 0], -kernel[:, 0]]
-    return [c for c in candidates if (signs @ c >= -ZERO_COMPONENT).all()]
 
 
 def _a_solution(S: Array, r: Array) -> Array | None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from attrs import define, evolve, field, frozen
@@ -25,7 +24,7 @@ from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.verdict import confirmed
 from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
 from problems.lcp.search.solver import solve
-from problems.options import check_budget, check_seed, check_tolerance, finite_vector
+from problems.options import check_budget, check_seed, check_tolerance
 
 SAME_SOLUTION = 1e-7
 """Relative difference up to which solutions are equal."""
@@ -75,7 +74,6 @@ class Solutions:
 def solutions(
     problem: MixedLCP,
     *,
-    known: Sequence[Any] = (),
     enumerate_faces: bool = True,
     seed: int = 0,
     budget: Budget | None = None,
@@ -84,14 +82,12 @@ def solutions(
     """Find several solutions of an LCP(q, A), with or without bounds.
 
     Up to order ten each complementary face of an LCP is solved exactly, which finds all solutions, unless a face holds
-    a continuum. Otherwise paths of q + t d, for random d, start from known solutions; each crossing of t = 0 is a
-    solution.
+    a continuum. Otherwise paths of q + t d, for random d, start from the solution of `solve` and from those found; each
+    crossing of t = 0 is a solution.
 
     Parameters
     ----------
     problem : LCP or MixedLCP
-    known : sequence of array_like, shape (n,)
-        Solutions to start from; default that of `solve`.
     enumerate_faces : bool
         Whether to try all faces.
     seed : int
@@ -108,7 +104,7 @@ def solutions(
     Raises
     ------
     TypeError, ValueError
-        For bad input, or a wrong point in `known`.
+        For bad input.
 
     References
     ----------
@@ -122,14 +118,10 @@ def solutions(
     if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_LISTED):
         return _on_faces(problem, tolerance)
     search = _Search(Structure(problem), tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
-    for k, given in enumerate(known):
-        if not search.take(finite_vector(f"known[{k}]", given, problem.n)):
-            raise ValueError(f"known[{k}]: expected a solution that no other one in the list is, found another point")
-    if not search.found:
-        first = solve(problem, tolerance=tolerance, seed=seed)
-        if not first.solved or first.x is None:
-            return Solutions(problem, (), False, 0, f"No path has begun. {first.message}")
-        search.take(first.x)
+    first = solve(problem, tolerance=tolerance, seed=seed)
+    if not first.solved or first.x is None:
+        return Solutions(problem, (), False, 0, f"No path has begun. {first.message}")
+    search.take(first.x)
     ended = search.run()
     message = f"{len(search.found)} found on {search.paths} paths (seed {seed}), which tell of no others. {ended}"
     return Solutions(problem, tuple(search.found), False, search.paths, message)

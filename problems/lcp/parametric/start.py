@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.linalg import qr
 
 from continuation.arrays import Array
 from continuation.kinks.pivots import ZERO_COMPONENT
 from problems.lcp.data.problem import MixedLCP, State
-from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.corner import rays
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.parametric.ties import aim, small
-from problems.lcp.parametric.walk import FLAT, Walk
+from problems.lcp.parametric.walk import Walk
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
@@ -49,10 +47,7 @@ def from_solution(
     """
     stairs = Stairs.of(problem, level)
     walk = Walk(problem, d, stairs, stairs.states(problem, x), problem.n, t, sign)
-    try:
-        walk.locate()
-    except SingularBasisError:
-        return _standing(walk, x, t, ray, sign)
+    walk.locate()
     walk.find_tied()
     if walk.tied.size:
         S, r, along = small(walk)
@@ -75,20 +70,3 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
     if ray is not None:
         return float(direction @ ray) / length
     return sign * float(direction[-1]) / length if abs(direction[-1]) > ZERO_COMPONENT * length else 0.0
-
-
-def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
-    moving = np.flatnonzero(walk.moves_x)
-    block = np.column_stack([walk.problem.A[np.ix_(moving, moving)], walk.shares[moving]])
-    q, r, _ = qr(block.T, pivoting=True)
-    diagonal = np.abs(np.diag(r))
-    if diagonal.size and diagonal.min() <= FLAT * diagonal.max():
-        raise SingularBasisError("the equations of the start are dependent")
-    kernel = np.zeros(walk.problem.n + 1)
-    kernel[np.append(moving, walk.problem.n)] = q[:, -1]
-    if _agreement(kernel, ray, sign) < 0.0:
-        kernel = -kernel
-    walk.u = np.array([np.append(x, t), kernel])
-    aim(walk, kernel)
-    walk.locate()
-    return walk

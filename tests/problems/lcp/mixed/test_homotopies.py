@@ -120,7 +120,7 @@ def test_a_nonlinear_problem_with_bounds(jacobian):
     wanted = [np.log(2.0), 0.0, np.log(3.0), np.log(1.5), 1.0]
     solution = solve_complementarity(problem)
     np.testing.assert_allclose(solution.x, wanted, atol=1e-15)
-    assert solution.relative_residual <= 1e-15
+    assert solution.certificate.relative_residual <= 1e-15
     path = continuation.trace(InteriorHomotopy(problem))
     assert path.success
     np.testing.assert_allclose(path.endpoint.y[:5], wanted, atol=1e-8)
