@@ -21,7 +21,7 @@ MOST_ROWS = 60
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
+    formats = f"{PROBLEM_FORMATS}; - for stdin"
     add_command(
         subparsers, run, "solve",
         argument("file", metavar="FILE", help=formats),

@@ -1,12 +1,11 @@
 """Reads LCPs and vectors from files, with one-line errors.
 
-Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
+Containers (.npz, .json, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
 """
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
@@ -16,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS, read_hdf5
+from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS
 from problems.lcp.data.models import MODEL_FORMATS, read_model
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
@@ -25,12 +24,10 @@ from problems.options import finite_vector, sound_sparse
 ROWS = 1 << 22
 """Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
 
-_CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
+CONTAINERS = (".npz", ".json", ".h5", ".hdf5")
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
 """Bounds that JSON's null stands for."""
-
-_HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
 
 class InputError(ValueError):
@@ -48,10 +45,9 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path` names a ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` file with A, q, and optionally lower, upper
-    (JSON's null is infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as
-    ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q beside A. Raises
-    `InputError`.
+    `path` names a ``.npz``, ``.json`` or ``.h5`` file with A, q, and optionally lower, upper (JSON's null is infinite;
+    HDF5: at the root or in group ``problem``); with `q` also A alone as ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or
+    `scipy.sparse.save_npz`. `q` is a file, preferred to a q beside A. Raises `InputError`.
     """
     contents = _contents("path", path)
     A = _named(contents, "A", "path", path)
@@ -78,7 +74,7 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 def read_program(path: str | PathLike[str]) -> Program | None:
     """Read a program; None if the file holds none.
 
-    `path` names a ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``,
+    `path` names a ``.npz``, ``.json`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``,
     ``.mps``, ``.lp`` (need highspy). Raises `InputError`.
     """
     if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
@@ -86,7 +82,7 @@ def read_program(path: str | PathLike[str]) -> Program | None:
             return read_model(fspath(path))
         except (ValueError, ImportError) as error:
             raise InputError("path", f"{error}, in {_shown(path)}") from None
-    if not _CONTAINERS.search(fspath(path)):
+    if Path(path).suffix.lower() not in CONTAINERS:
         return None
     contents = _contents("path", path)
     if "c" not in contents or "q" in contents or "A" in contents:
@@ -117,7 +113,7 @@ def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
 
 
 def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
-    file, group = _parted(path)
+    file = fspath(path)
     suffix = Path(file).suffix.lower()
     if not Path(file).exists():
         raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
@@ -129,17 +125,11 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
     try:
         # Claimed sizes may overflow when multiplied.
         with np.errstate(over="ignore"):
-            return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
+            return READERS[suffix](file)
     except Exception as error:
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
         raise InputError(argument, complaint) from None
-
-
-def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
-    text = fspath(path)
-    grouped = _HDF5_GROUP.fullmatch(text)
-    return (grouped["file"], grouped["group"]) if grouped else (text, None)
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
@@ -151,7 +141,7 @@ def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | Pa
         value = [NONE[name] if entry is None else entry for entry in value]
     try:
         if sp.issparse(value):
-            if max(value.shape) > max(ROWS, Path(_parted(path)[0]).stat().st_size):
+            if max(value.shape) > max(ROWS, Path(path).stat().st_size):
                 raise ValueError(f"it claims the shape {value.shape}, and is too small for that")
             return sound_sparse(name, value)
         array = np.asarray(value)

@@ -66,9 +66,8 @@ class Pivots:
         paths = self._lemke(problem, work) if played is None else self._lemke_howson(played, work)
         for path, most in paths:
             if reached(self.search, path, most):
-                compiled = " (pivots compiled by numba)" if path is not None and path.compiled else ""
                 method = "Lemke's method" if played is None else "the method of Lemke and Howson"
-                return f"By {method}{compiled}, before any path."
+                return f"By {method}, before any path."
         return ""
 
     def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:

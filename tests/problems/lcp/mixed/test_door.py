@@ -6,7 +6,6 @@ import json
 import h5py
 import numpy as np
 import pytest
-import scipy.io
 import scipy.sparse as sp
 from hypothesis import given
 from hypothesis import strategies as st
@@ -65,8 +64,6 @@ def written(file, data):
     """A file of that suffix, with the data; JSON has null where a bound is infinite."""
     if file.suffix == ".npz":
         np.savez(file, **data)
-    elif file.suffix == ".mat":
-        scipy.io.savemat(file, data)
     elif file.suffix == ".h5":
         with h5py.File(file, "w") as root:
             root.update(data)
@@ -76,7 +73,7 @@ def written(file, data):
     return file
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".json", ".mat", ".h5"])
+@pytest.mark.parametrize("suffix", [".npz", ".json", ".h5"])
 def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
     bounded = {"A": A, "q": Q, "lower": [0.0, -np.inf], "upper": [1.0, np.inf]}
     program = {"P": A, "c": Q, "G": np.ones((1, 2)), "h": [2.0], "rows_lower": [-np.inf], "lower": [0.0, 0.0]}
