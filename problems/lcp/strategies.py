@@ -11,13 +11,11 @@ from problems.lcp.matrix_strategies import CLASSES, ORDERS, POSITIVE, Draw, Entr
 
 __all__ = [
     "CLASSES",
-    "LARGE",
     "ORDERS",
     "Draw",
     "Order",
     "badly_scaled_lcps",
     "feasible_lcps",
-    "large_lcps",
     "lcps",
     "matrices",
     "near_singular_lcps",
@@ -44,48 +42,6 @@ def lcps(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.Sea
 def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrategy[float]) -> LCP:
     A = draw(matrix)
     return LCP(A, np.array([draw(entries) for _ in A], dtype=float))
-
-
-LARGE = ("P", "PSD", "K", "any")
-"""Classes for `large_lcps`."""
-
-
-def large_lcps(cls: str = "P", n: Order = 300) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A large problem and a solution up to rounding, from one seed, in milliseconds.
-
-    P: diagonally dominant; PSD: of rank n // 2 plus a skew part; K: dominant, tridiagonal; any: normal entries.
-
-    Parameters
-    ----------
-    cls : str
-        One of `LARGE`.
-    n : int or strategy of int
-
-    Raises
-    ------
-    ValueError
-        For an unknown class.
-    """
-    if cls not in LARGE:
-        raise ValueError(f"cls: expected one of {', '.join(LARGE)}, found {cls!r}")
-    return st.builds(_large, st.just(cls), orders_of(n), st.integers(0, 2**32 - 1))
-
-
-def _large(cls: str, n: int, seed: int) -> tuple[LCP, Array]:
-    generator = np.random.default_rng(seed)
-    A = generator.standard_normal((n, n))
-    if cls == "P":
-        A[np.diag_indices(n)] = np.abs(A).sum(axis=1) + 1.0
-    elif cls == "PSD":
-        factor = generator.standard_normal((n // 2, n))
-        A = factor.T @ factor + (A - A.T)
-    elif cls == "K":
-        off = -np.abs(A[0, 1:])
-        A = np.diag(off, 1) + np.diag(off, -1)
-        A[np.diag_indices(n)] = 0.1 - A.sum(axis=1)
-    values, basic = generator.uniform(0.5, 2.0, n), generator.random(n) < 0.5
-    x, w = np.where(basic, values, 0.0), np.where(basic, 0.0, values)
-    return LCP(A, w - A @ x), x
 
 
 def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:

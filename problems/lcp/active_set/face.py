@@ -38,9 +38,6 @@ DOUBTFUL_PIVOTS = 1e-6
 SINGULAR_SHIFT = 1e-8
 """Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
 
-FACES_KEPT = 8
-"""Faces kept for the next q: a motion to and fro visits few."""
-
 SHIFTED_CORRECTIONS = 4
 """Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
@@ -145,20 +142,16 @@ def exchanging(method: str = "auto") -> Factoring:
 
 @frozen(eq=False)
 class Faces:
-    """The faces of one problem.
-
-    `current` is the problem if its q is not the structure's.
-    """
+    """The faces of one problem; `kept` is one of a problem with the same A."""
 
     structure: Structure
-    current: MixedLCP | None = None
-    kept: dict[bytes, Face] | None = None
     factoring: Factoring = field(factory=exchanging)
+    kept: Face | None = None
 
     @property
     def problem(self) -> MixedLCP:
         """The problem."""
-        return self.structure.problem if self.current is None else self.current
+        return self.structure.problem
 
     def face(
         self,
@@ -172,20 +165,9 @@ class Faces:
 
         With a `centre` the face is that of the proximal problem, A + shift I and q - shift centre.
         """
-        if self.kept is None or shift or centre is not None:
-            return self._made(state, shift, centre, regular, near)
-        key = state.tobytes()
-        face = self.kept.pop(key, None) or self._made(state, shift, centre, regular, near)
-        if face is None:
-            return None
-        self.kept[key] = face
-        if len(self.kept) > FACES_KEPT:
-            self.kept.pop(next(iter(self.kept)))
-        same = face.problem is self.problem
-        return face if same else evolve(face, problem=self.problem, q=self.problem.q)
-
-    def _made(self, state: State, shift: float, centre: Array | None, regular: bool, near: Array | None) -> Face | None:
-        problem = self.problem
+        problem, kept = self.problem, self.kept
+        if kept is not None and not shift and centre is None and np.array_equal(state, kept.state):
+            return evolve(kept, problem=problem, q=problem.q)
         active = state == BETWEEN
         inside = active.nonzero()[0]
         q = problem.q if centre is None else problem.q - shift * centre

@@ -30,7 +30,7 @@ class Finish:
     """Tries active sets of one problem, each once, for all its paths.
 
     `nearest` is the judged point with least normwise residual that is no solution. `ended` and `following` tell why the
-    last iteration ended, and its next state.
+    last iteration ended, and its next state; `solved_on` is the face of the solution.
     """
 
     faces: Faces
@@ -41,6 +41,7 @@ class Finish:
     nearest: Certificate | None = field(default=None, init=False)
     ended: Ended | None = field(default=None, init=False)
     following: State | None = field(default=None, init=False)
+    solved_on: Face | None = field(default=None, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -124,6 +125,7 @@ class Finish:
             elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
                 best = certified(self.problem, zeros)
         if self._kept(best):
+            self.solved_on = face
             return best.x, best.w, True
         return x, self.problem.w(x), False
 
