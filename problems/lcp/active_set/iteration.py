@@ -102,7 +102,7 @@ def iterate(
                 return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(state, shift or 0.0, centre, policy.singular == 0, x)
+        face = faces.face(state, shift or 0.0, centre, policy.singular == 0)
         singular += face is None or not face.exact
         if policy.singular == 0 and singular:
             return Iterated(Ended.SINGULAR, state, x)

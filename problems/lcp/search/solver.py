@@ -14,14 +14,12 @@ from attrs import evolve
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
 from continuation.arguments.checks import check_flag
-from continuation.arrays import Array, largest
+from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
 from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
-from continuation.path import Path, Step
-from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Faces, exchanging
 from problems.lcp.active_set.finish import Finish
@@ -29,7 +27,7 @@ from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
 from problems.lcp.data.spread import extreme
-from problems.lcp.homotopies import KKTHomotopy, Structure
+from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
@@ -47,7 +45,6 @@ from problems.lcp.search.judge import (
     with_fixed,
 )
 from problems.lcp.search.outcome import Outcome, Solution
-from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Asked, Nearby, Search
 from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, settled_by
 from problems.lcp.search.work import default_budget
@@ -106,7 +103,7 @@ def solve(
     tolerance : float
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
-        A new HDF5 file for all traced paths. Without paths it holds the solution as the KKT path's end.
+        A new HDF5 file for all traced paths; implies `path`.
     progress : bool
         One progress bar per path (needs tqdm).
     sparse : str
@@ -144,6 +141,7 @@ def solve(
     _check_arguments(tolerance, restarts, seed, budget, options, finish=finish, path=path, progress=progress)
     if problem.n == 0:
         return _nothing(problem, archive)
+    path = path or archive is not None
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
     if not problem.standard and problem.fixed.any():
@@ -181,10 +179,7 @@ def solve(
             found = answer(search, _account(search, settled))
             if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION:
                 found = exactly(search, found)
-        found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
-        if log is not None and not found.paths:
-            _archive_without_path(log, found)
-        return found
+        return found if scaled is None else unscaled(problem, scaled, found, tolerance)
 
 
 def _given(arguments: dict[str, Any]) -> dict[str, Any]:
@@ -265,16 +260,3 @@ def _account(search: Search, settled: str) -> str:
     if (best := search.best()) is not None:
         parts.append(f"The relative residual of the best point is {best.certificate.relative_residual:.1e}.")
     return " ".join([*parts, factored]).rstrip()
-
-
-def _archive_without_path(log: PathLog, found: Solution) -> None:
-    homotopy = KKTHomotopy(found.problem)
-    path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
-    end = found.certificate
-    if end is not None:
-        y = homotopy.at_solution(end.x)
-        u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
-        observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
-        path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
-        path.status = Status.REACHED_TARGET
-    show(path, homotopy, Padded.of(log, found.problem))

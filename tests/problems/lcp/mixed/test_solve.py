@@ -128,10 +128,9 @@ def test_a_multiplier_of_bounds_is_checked_exactly():
     assert not proof.holds(lcp.MixedLCP(problem.A, problem.q, [0.0, 0.0], [3.0, np.inf]))
 
 
-@pytest.mark.parametrize("path", [False, True])
-def test_an_archive_of_a_problem_with_bounds(tmp_path, path):
+def test_an_archive_of_a_problem_with_bounds(tmp_path):
     problem = lcp.MixedLCP([[1.0, 1.0], [-1.0, 1.0]], [-1.0, -1.0], [0.0, -np.inf], [0.5, np.inf])
-    solution = lcp.solve(problem, archive=tmp_path / "run.h5", path=path)
+    solution = lcp.solve(problem, archive=tmp_path / "run.h5")
     with open_archive(tmp_path / "run.h5") as archive:
         (stored,) = archive
         np.testing.assert_allclose(stored.endpoint.u[:2], solution.x, atol=1e-14)
