@@ -12,7 +12,6 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.step.tracer import Observer, Tracer
 from problems.lcp.data.problem import MixedLCP
 
-
 P = TypeVar("P", Step, LocatedEvent)
 
 
