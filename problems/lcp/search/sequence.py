@@ -126,7 +126,7 @@ class Solver:
                 self._last, message = (problem.q, last), "Solved by pivots along a path from a problem nearby."
             self._face = finish.solved_on or self._face
             found = answer(search, message)
-        found = found if scaled is None else unscaled(problem, scaled, found, self.tolerance)
+        found = found if scaled is None else unscaled(problem, scaled, self.tolerance, found)
         return found if found.solved else None
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from functools import partial
 from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
@@ -125,52 +126,48 @@ def solve(
     ----------
     Dutta, Das and Jana (see `KKTHomotopy`).
     """
+    back: list[Callable[[Solution], Solution]] = []
     if isinstance(problem, Program):
-        return of_program(problem, solve(problem.problem, homotopy, **_given(locals()), **options))
+        back.append(partial(of_program, problem))
+        problem = problem.problem
     require_problem(problem)
-    if problem.standard and not isinstance(problem, LCP):
-        problem = LCP(problem.A, problem.q, primal=problem.primal)
-    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
-        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
-        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
     automatic = homotopy == "auto"
-    if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
-        known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
-        raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
+    _check_homotopy(homotopy, problem)
     check_method("sparse", sparse)
     _check_arguments(tolerance, restarts, seed, budget, options, finish=finish, path=path, progress=progress)
-    if problem.n == 0:
-        return _nothing(problem, archive)
     path = path or archive is not None
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
     if not problem.standard and problem.fixed.any():
         small = without_fixed(problem)
-        left = _given(locals())
-        left["x0"] = None if start is None else start[small.kept]
-        left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
-        left["archive"] = archive if small.kept.size else None
-        return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
+        back.append(partial(with_fixed, small, tolerance))
+        start = None if start is None else start[small.kept]
+        near = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
+        problem = small.problem
+    if problem.standard and not isinstance(problem, LCP):
+        problem = LCP(problem.A, problem.q, primal=problem.primal)
     if problem.sparse and problem.n <= LARGEST and sparse == "auto":
-        dense = evolve(problem, A=problem.A.toarray())
-        return stored_as(problem, solve(dense, homotopy, **_given(locals()), **options))
+        back.append(partial(stored_as, problem))
+        problem = evolve(problem, A=problem.A.toarray())
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
-    scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
-    beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
-    if beyond:
-        scaled = None
-    if scaled is not None:
+    scaled = None
+    if problem.n and (automatic or extreme(problem)):
+        scaled = units_of_its_own(problem, automatic and finish and not path)
+    found = _nothing(problem, archive) if problem.n == 0 else None
+    if scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED):
+        found = beyond_floats(problem, tolerance)
+    elif scaled is not None:
         start = None if start is None else scaled.u(start)
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    current = problem if scaled is None else scaled.problem
+        back.append(partial(unscaled, problem, scaled, tolerance))
+        problem = scaled.problem
     log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
     with Silence(), one_thread, nullcontext() if log is None else log:
-        found = beyond_floats(problem, tolerance) if beyond else None
         if found is None and automatic and finish and not path and start is None and near is None:
-            found = at_once(current, tolerance)
+            found = at_once(problem, tolerance)
         if found is None:
-            structure = Structure(current)
+            structure = Structure(problem)
             tried = Finish(Faces(structure, factoring=exchanging(sparse)), tolerance) if finish else None
             asked = Asked(homotopy, start, near, restarts, seed, path, log, progress, dict(options))
             budget = default_budget(problem) if budget is None else budget
@@ -179,11 +176,18 @@ def solve(
             found = answer(search, _account(search, settled))
             if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION:
                 found = exactly(search, found)
-        return found if scaled is None else unscaled(problem, scaled, found, tolerance)
+        for step in reversed(back):
+            found = step(found)
+    return found
 
 
-def _given(arguments: dict[str, Any]) -> dict[str, Any]:
-    return {name: arguments[name] for name in solve.__kwdefaults__ or ()}
+def _check_homotopy(homotopy: Any, problem: MixedLCP) -> None:
+    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
+        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
+        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
+    if homotopy != "auto" and not problem.standard and not HOMOTOPIES[homotopy].bounds:
+        known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
+        raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
 
 
 def _title(problem: MixedLCP) -> str:
