@@ -44,7 +44,8 @@ def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrate
     return LCP(A, np.array([draw(entries) for _ in A], dtype=float))
 
 
-def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
+@st.composite
+def feasible_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[LCP, Array]:
     """A problem and a strictly feasible integer start: x0 > 0 and A x0 + q > 0, exactly.
 
     Parameters
@@ -53,12 +54,10 @@ def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tupl
         One of `CLASSES`.
     n : int or strategy of int
     """
-    return _feasible(matrices(cls, n))
+    return _with_start(draw, draw(matrices(cls, n)))
 
 
-@st.composite
-def _feasible(draw: Draw, matrix: st.SearchStrategy[Array]) -> tuple[LCP, Array]:
-    A = draw(matrix)
+def _with_start(draw: Draw, A: Array) -> tuple[LCP, Array]:
     x0, w0 = (np.array([draw(POSITIVE) for _ in A], dtype=float) for _ in range(2))
     return LCP(A, w0 - A @ x0), x0
 
@@ -80,10 +79,8 @@ def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> s
     ValueError
         For an unknown kind, or a class with "many".
     """
-    if kind == "strict":
-        return _planted(matrices(cls, n), degenerate=False)
-    if kind == "degenerate":
-        return _planted(matrices(cls, n), degenerate=True)
+    if kind in ("strict", "degenerate"):
+        return _planted(matrices(cls, n), kind == "degenerate")
     if kind != "many":
         raise ValueError(f"kind: expected strict, degenerate or many, found {kind!r}")
     if cls != "any":
@@ -136,11 +133,11 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
     i = draw(st.integers(0, order - 1))
     A[i] = sum(draw(st.integers(-1, 1)) * A[j] for j in range(order) if j != i)
     A[i, draw(st.integers(0, order - 1))] += 2.0 ** -draw(st.integers(10, 40))
-    x0, w0 = (np.array([draw(POSITIVE) for _ in A], dtype=float) for _ in range(2))
-    return LCP(A, w0 - A @ x0), x0
+    return _with_start(draw, A)
 
 
-def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
+@st.composite
+def badly_scaled_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[LCP, Array]:
     """A strictly feasible problem in units from 2^-26 to 2^26, with its start.
 
     Powers of two scale exactly.
@@ -151,12 +148,7 @@ def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[
         One of `CLASSES`.
     n : int or strategy of int
     """
-    return _badly_scaled(feasible_lcps(cls, n))
-
-
-@st.composite
-def _badly_scaled(draw: Draw, case: st.SearchStrategy[tuple[LCP, Array]]) -> tuple[LCP, Array]:
-    problem, x0 = draw(case)
+    problem, x0 = draw(feasible_lcps(cls, n))
     powers = st.integers(-26, 26)
     left, right = (np.array([2.0 ** draw(powers) for _ in x0]) for _ in range(2))
     return LCP(left[:, None] * problem.A * right, left * problem.q), x0 / right

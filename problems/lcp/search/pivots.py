@@ -82,21 +82,15 @@ class Pivots:
         yield covering(problem, np.full(problem.n, unit)), most
 
     def _lemke_howson(self, played: Game, work: float) -> Iterator[tuple[AlmostComplementary, int]]:
-        """Ever longer paths from one label of each player, then short ones from many labels.
+        """Long paths from one label of each player, then short ones from many labels.
 
         References
         ----------
         Codenotti, De Rossi and Pagan, arXiv 0811.3247, 2008.
         """
         n, m = played.problem.n, played.actions
-        most = int(work * n)
-        paths: list[AlmostComplementary] = []
-        for label in (0, n - 1):
-            paths.append(played.path(label))
-            yield paths[-1], most
-        while 2 * most <= GAME_WORK // (m * (n - m)) and any(path.ended is None for path in paths):
-            most *= 2
-            yield from ((path, most) for path in paths if path.ended is None)
+        most = max(int(work * n), GAME_WORK // (m * (n - m)))
+        yield from ((played.path(label), most) for label in (0, n - 1))
         labels = np.random.default_rng(self.search.asked.seed).permutation(n)
         yield from ((played.path(int(label)), n // 2) for label in labels[: int(SHORT_PATHS * work)])
 

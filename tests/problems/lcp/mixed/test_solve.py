@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from continuation.archive import open_archive
 from problems import lcp
 from problems.lcp import Outcome
-from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps, programs
+from problems.lcp.mixed_strategies import mixed_lcps, programs
 from problems.lcp.proof.farkas import farkas
 from problems.lcp.reference.enumeration import exhaust
 
@@ -33,13 +33,6 @@ def test_no_outcome_is_false_where_all_pieces_are_tried():
             assert problem.natural_residual(solution.x) <= 1e-12 * problem.scale(solution.x)
         seen.add((solution.outcome, solution.farkas is not None))
     assert len(seen) == 3  # solved, and unsolvable by either proof
-
-
-@settings(max_examples=60)
-@given(planted_mixed_lcps("row_sufficient"))
-def test_feasible_problems_of_a_row_sufficient_matrix_are_solved(planted):
-    problem, _ = planted
-    assert lcp.solve(problem).success
 
 
 @settings(max_examples=60)
