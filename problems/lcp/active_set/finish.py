@@ -77,14 +77,13 @@ class Finish:
                 return solved
         return None
 
-    def augmented(self, below: float, exhausted: Callable[[], object]) -> Array | None:
-        """A KKT point of a program by `guesses`, or None."""
+    def augmented(self, exhausted: Callable[[], object]) -> Array | None:
+        """The solution of a convex program by `guesses`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
         since, best = 0, np.inf
-        x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
-        for state, point in guesses(saddle, below, x, self.counts, factoring):
+        for state, point in guesses(saddle, self.counts, self.faces.factoring):
             solved = self.settle(state, AT_END, point)
             if solved is not None:
                 return solved

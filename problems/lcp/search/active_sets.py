@@ -1,6 +1,6 @@
 """Active sets: Newton's method on min(x, A x + q).
 
-If A is semidefinite or symmetric, rounds with A + shift I follow; for a program, the augmented Lagrangian.
+If A is semidefinite or symmetric, rounds with A + shift I follow; for a convex program, the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -71,14 +71,9 @@ class ActiveSets:
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
-        elif problem.primal and not problem.standard:
-            yield AUGMENTED, self._augmented(finish)
-
-    def _augmented(self, finish: Finish) -> bool:
-        search, n = self.search, self.search.problem.primal
-        below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
-        found = search.found(finish.augmented(below, lambda: search.exhausted))
-        return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
+        elif problem.primal and not problem.standard and facts.semidefinite:
+            found = search.found(finish.augmented(lambda: search.exhausted))
+            yield AUGMENTED, found or (finish.nearest is not None and to_precision(problem, finish.nearest))
 
 
 def zero_solves(problem: MixedLCP) -> bool:
