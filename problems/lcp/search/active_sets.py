@@ -1,6 +1,6 @@
 """Active sets: Newton's method on min(x, A x + q).
 
-If A is semidefinite or symmetric, rounds with A + shift I follow; for a convex program, the augmented Lagrangian.
+For a symmetric A in a box descent with A + shift I follows; for a convex program, the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -21,15 +21,14 @@ from problems.lcp.search.at_once import SETTLED, ZERO
 from problems.lcp.search.pivots import by_guess, pivotable
 from problems.lcp.search.search import Search
 
-SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
 """Most corrections for a Z-matrix, where each enlarges the active set."""
 
-PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
-"""Rounds of the proximal method where A is semidefinite, and of descent in a box."""
+DESCENT_ROUNDS = 200
+"""Most rounds of descent in a box."""
 
 
 @define(eq=False)
@@ -65,9 +64,6 @@ class ActiveSets:
             return
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
-        if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
-            unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
-            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, PROXIMAL_ROUNDS))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))

@@ -112,16 +112,6 @@ def test_an_archive_holds_nothing_of_what_the_finish_tried(tmp_path):
     np.testing.assert_array_equal(again.u, continuation.trace(homotopy).u)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_the_proximal_method_solves_rank_deficient_problems(seed):
-    rng = np.random.default_rng(seed)
-    M, x = rng.standard_normal((40, 20)), np.maximum(rng.standard_normal(40), 0.0)
-    problem = LCP(M @ M.T / 40, np.where(x == 0.0, np.abs(rng.standard_normal(40)), 0.0) - M @ M.T @ x / 40)
-    finish = Finish(Faces(Structure(problem)), 1e-12)
-    assert certify(problem, finish.proximal(state_of(problem.q < 0.0), 1e-3, 2)).solves(1e-12)
-    assert finish.certificate.solves(1e-12)
-
-
 def test_the_iteration_says_why_it_ended():
     skew, zero = faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), np.array([False, False])
     assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(np.array([True, False])), Policy(0)).ended is Ended.SETTLED
