@@ -12,7 +12,7 @@ from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
-from problems.lcp.active_set.iteration import AT_END, Ended, Policy, Tried, iterate
+from problems.lcp.active_set.iteration import AT_END, Ended, Policy, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
@@ -36,7 +36,7 @@ class Finish:
     faces: Faces
     tolerance: float
     counts: Counts = field(factory=Counts)
-    tried: Tried = field(factory=Tried)
+    tried: set[bytes] = field(factory=set)
     certificate: Certificate | None = field(default=None, init=False)
     nearest: Certificate | None = field(default=None, init=False)
     ended: Ended | None = field(default=None, init=False)

@@ -12,7 +12,7 @@ from continuation.counts import Counts
 from problems.lcp import LCP, KKTHomotopy, Structure, WangHomotopy, certify
 from problems.lcp.active_set.face import Faces, exchanging
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate, key_of
+from problems.lcp.active_set.iteration import Ended, Policy, iterate, key_of
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.data.problem import BETWEEN, LOWER
@@ -117,7 +117,7 @@ def test_the_iteration_says_why_it_ended():
     assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(np.array([True, False])), Policy(0)).ended is Ended.SETTLED
     assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(zero), Policy(0)).ended is Ended.STEPS
     assert iterate(faces([[0.0]], [-1.0]), state_of(np.array([True])), Policy(5)).ended is Ended.SINGULAR
-    known = Tried(known={key_of(state_of(zero))})
+    known = {key_of(state_of(zero))}
     assert iterate(skew, state_of(zero), Policy(5), tried=known).ended is Ended.TRIED
     # x1 enters, leaves and enters again: one change each.
     turning = iterate(faces([[-1.0]], [-1.0]), state_of(np.array([False])), Policy(50, patience=3))
