@@ -44,8 +44,7 @@ def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrate
     return LCP(A, np.array([draw(entries) for _ in A], dtype=float))
 
 
-@st.composite
-def feasible_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[LCP, Array]:
+def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
     """A problem and a strictly feasible integer start: x0 > 0 and A x0 + q > 0, exactly.
 
     Parameters
@@ -54,7 +53,12 @@ def feasible_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[LCP,
         One of `CLASSES`.
     n : int or strategy of int
     """
-    return _with_start(draw, draw(matrices(cls, n)))
+    return _feasible(matrices(cls, n))
+
+
+@st.composite
+def _feasible(draw: Draw, matrix: st.SearchStrategy[Array]) -> tuple[LCP, Array]:
+    return _with_start(draw, draw(matrix))
 
 
 def _with_start(draw: Draw, A: Array) -> tuple[LCP, Array]:

@@ -24,9 +24,6 @@ from problems.lcp.search.search import Search
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
-MOST_Z_STEPS = 1000
-"""Most corrections for a Z-matrix, where each enlarges the active set."""
-
 DESCENT_ROUNDS = 200
 """Most rounds of descent in a box."""
 
@@ -62,8 +59,7 @@ class ActiveSets:
         facts = search.facts  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
             return
-        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
-        yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
+        yield SETTLED, search.settle(first if finish.following is None else finish.following, Policy(steps, PATIENCE))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
@@ -80,9 +76,7 @@ def zero_solves(problem: MixedLCP) -> bool:
 def first_state(search: Search) -> State:
     """The state at the point nearest to zero, or for a convex function after projected gradient steps."""
     problem = search.problem
-    if not problem.standard:
-        convex = search.facts.symmetric and not search.facts.negative_diagonal
-        return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
-    # On a grid these join one by one otherwise (Chandrasekaran's method).
-    grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
-    return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)
+    if problem.standard:
+        return active_state(problem.q < 0.0)
+    convex = search.facts.symmetric and not search.facts.negative_diagonal
+    return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))

@@ -95,7 +95,7 @@ def test_the_cascade_refuses_matrices_of_another_kind():
 def test_a_path_with_the_finish_ends_exactly_and_sooner(make):
     homotopy = make(EXAMPLES[3].problem, EXAMPLES[3].x0)
     finish = Finish(Faces(homotopy.structure), 1e-14)
-    path, pure = continuation.trace(homotopy, finish=AlongPath.of(finish, homotopy)), continuation.trace(homotopy)
+    path, pure = continuation.trace(homotopy, finish=AlongPath(finish, homotopy)), continuation.trace(homotopy)
     assert path.status is continuation.Status.REACHED_TARGET
     assert "finish" in path.message
     assert EXAMPLES[3].problem.natural_residual(path.endpoint.y[:3]) <= 1e-14
@@ -106,7 +106,7 @@ def test_a_path_with_the_finish_ends_exactly_and_sooner(make):
 
 def test_an_archive_holds_nothing_of_what_the_finish_tried(tmp_path):
     homotopy = KKTHomotopy(EXAMPLES[3].problem, EXAMPLES[3].x0)
-    along = AlongPath.of(Finish(Faces(homotopy.structure), 1e-14), homotopy)
+    along = AlongPath(Finish(Faces(homotopy.structure), 1e-14), homotopy)
     continuation.trace(homotopy, finish=along, archive=tmp_path / "run.h5", budget=continuation.Budget(steps=3))
     again = resume(tmp_path / "run.h5", budget=continuation.Budget())
     np.testing.assert_array_equal(again.u, continuation.trace(homotopy).u)
