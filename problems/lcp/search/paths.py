@@ -110,7 +110,9 @@ class Paths:
 
     def _first(self, name: str) -> str:
         search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]
-        start, automatic = asked.x0, asked.homotopy == "auto"
+        automatic = asked.homotopy == "auto"
+        # For "auto" x0 names an active set.
+        start = None if automatic else asked.x0
         if search.exhausted:
             return ""
         if start is None and known.feasible:
@@ -121,11 +123,7 @@ class Paths:
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
-        if start is not None and problem.standard and not start.all():  # paths need positive starts
-            start = None
         homotopy = known.from_x0(problem, start, search.structure)
-        if automatic and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
-            homotopy = known.from_x0(problem, None, search.structure)
         preset = {"preset": FAST} if automatic else {}
         # The finish certifies ends.
         options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}

@@ -86,8 +86,8 @@ def solve(
         "auto" tries active sets, pivots, exclusion of faces and reflections, then paths. Or "kkt", "wang", "yu", "xu",
         "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
-        zeros and first tries the set x0 > A x0 + q.
+        A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" tries
+        the set x0 > A x0 + q alone, and accepts zeros.
     guess : Solution, optional
         Solution of a nearby problem: its active set is tried, then without bounds pivots from its data.
     finish : bool

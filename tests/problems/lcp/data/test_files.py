@@ -2,7 +2,6 @@
 
 import json
 
-import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -14,24 +13,9 @@ A = np.array([[2.0, -1.0, 0.0], [0.5, 0.0, 3.0], [0.0, 1e-300, -7.25]])
 Q = np.array([-1.0, 2.5, 1 / 3])
 
 
-def write_h5(path, group="/", sparse=False):
-    with h5py.File(path, "w") as file:
-        at = file.require_group(group)
-        at["q"] = Q
-        if sparse:
-            matrix = sp.csr_array(A)
-            parts = {"data": matrix.data, "indices": matrix.indices, "indptr": matrix.indptr, "shape": matrix.shape}
-            at.create_group("A").update(parts)
-        else:
-            at["A"] = A
-
-
 CONTAINERS = {
     "p.npz": lambda path: np.savez(path, A=A, q=Q),
     "p.json": lambda path: path.write_text(json.dumps({"A": A.tolist(), "q": Q.tolist()})),
-    "p.h5": write_h5,
-    "archive.h5": lambda path: write_h5(path, "problem"),
-    "sparse.h5": lambda path: write_h5(path, sparse=True),
 }
 
 
@@ -94,8 +78,6 @@ BAD = {
     "shapes": ("p.npz", npz(A=A, q=Q[:2]), r"path: q: expected 3 numbers, one a row of A, found 2, in"),
     "empty": ("p.npz", npz(A=np.zeros((0, 0)), q=np.zeros(0)), r"path: A: expected a square matrix, found shape"),
     "q a matrix": ("p.npz", npz(A=A, q=A), r"path: q: expected a vector of real numbers, found shape \(3, 3\)"),
-    "not h5": ("p.h5", text("hello"), r"path: expected a .h5 file"),
-    "h5 without": ("p.h5", lambda path: write_h5(path, "a/b/c/d/e"), r"path: expected a .h5 file.*none of A, q"),
     "not mtx": ("p.mtx", text("1 2"), r"path: expected a .mtx file"),
     "empty text": ("p.txt", text("# nothing\n"), r"path: expected a .txt file.*it is empty"),
     "text of words": ("p.txt", text("one two"), r"path: expected a .txt file.*'one'"),

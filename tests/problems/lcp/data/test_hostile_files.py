@@ -8,7 +8,6 @@ import random
 import resource
 import zipfile
 
-import h5py
 import numpy as np
 import pytest
 
@@ -137,60 +136,13 @@ def test_one_line_and_nothing_done(tmp_path, monkeypatch, name):
     assert not os.path.exists("executed")
 
 
-def parts(file, indices, indptr, shape=(2, 2)):
-    file["A"].attrs["shape"] = shape
-    for name, value in {"data": np.ones(2), "indices": indices, "indptr": indptr}.items():
-        file["A"][name] = value
-
-
-HARM = {
-    "an index outside": lambda file: parts(file, [0, 99], [0, 1, 2]),
-    "starts outside": lambda file: parts(file, [0, 1], [0, 5, 2]),
-    "starts that fall": lambda file: parts(file, [0, 1], [0, 2, -5, 2], (3, 3)),
-    "a large shape": lambda file: parts(file, [0, 1], [0, 1, 2], (10**9, 10**9)),
-    "no parts": lambda file: None,
-    "a link to itself": lambda file: file.__setitem__("problem", h5py.SoftLink("/problem")) or file.pop("A"),
-}
-
-
-@pytest.mark.parametrize("harm", HARM)
-def test_hdf5(tmp_path, harm):
-    with h5py.File(tmp_path / "p.h5", "w") as file:
-        file["q"] = Q
-        file.create_group("A")
-        HARM[harm](file)
-    with pytest.raises(InputError) as caught:
-        read_problem(tmp_path / "p.h5")
-    assert "\n" not in str(caught.value)
-
-
-def test_entries_that_nobody_stored(tmp_path):
-    """5 KB that claim 3e8 numbers are refused before room is made for them; what is small and not stored is zero."""
-    for n, shape in ((10**8, (2, 2)), (2, (2, 2))):
-        with h5py.File(tmp_path / "p.h5", "w") as file:
-            part = file.create_group("A")
-            part.create_dataset("data", (n,), "f8", chunks=(min(n, 1000),))
-            part.create_dataset("indices", (n,), "i4", chunks=(min(n, 1000),))
-            part["indptr"], part.attrs["shape"], file["q"] = np.array([0, 1, 2], "i4"), shape, Q
-        if n > 2:
-            with pytest.raises(InputError, match="A/data claims 800000000 bytes"):
-                read_problem(tmp_path / "p.h5")
-    assert read_problem(tmp_path / "p.h5").n == 2
-
-
 def test_a_packed_file_that_unfolds_to_much(tmp_path):
     np.savez_compressed(tmp_path / "p.npz", A=np.zeros((4200, 4200)), q=Q)
     with pytest.raises(InputError, match="claims 141"):
         read_problem(tmp_path / "p.npz")
 
 
-def stored(file):
-    with h5py.File(file, "w") as h5:
-        h5.update({"A": A, "q": Q})
-
-
 WHOLE = {
-    "h5": stored,
     "json": lambda file: file.write(json.dumps({"A": A.tolist(), "q": Q.tolist()}).encode()),
     "npz": lambda file: np.savez(file, A=A, q=Q),
     "packed.npz": lambda file: np.savez_compressed(file, A=A, q=Q),

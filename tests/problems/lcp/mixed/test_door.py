@@ -3,7 +3,6 @@
 import importlib.util
 import json
 
-import h5py
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -64,16 +63,13 @@ def written(file, data):
     """A file of that suffix, with the data; JSON has null where a bound is infinite."""
     if file.suffix == ".npz":
         np.savez(file, **data)
-    elif file.suffix == ".h5":
-        with h5py.File(file, "w") as root:
-            root.update(data)
     else:
         text = json.dumps({name: np.asarray(values).tolist() for name, values in data.items()})
         file.write_text(text.replace("-Infinity", "null").replace("Infinity", "null"))
     return file
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".json", ".h5"])
+@pytest.mark.parametrize("suffix", [".npz", ".json"])
 def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
     bounded = {"A": A, "q": Q, "lower": [0.0, -np.inf], "upper": [1.0, np.inf]}
     program = {"P": A, "c": Q, "G": np.ones((1, 2)), "h": [2.0], "rows_lower": [-np.inf], "lower": [0.0, 0.0]}
