@@ -19,7 +19,6 @@ ORDERS = st.integers(1, 4)
 
 _ENTRY = st.integers(-3, 3)
 POSITIVE = st.integers(1, 4)
-_NONNEGATIVE = st.integers(0, 3)
 
 
 def orders_of(n: Order) -> st.SearchStrategy[int]:
@@ -104,7 +103,7 @@ def _p(draw: Draw, n: int) -> Rows:
 
 
 def _p0(draw: Draw, n: int) -> Rows:
-    return _triangular(draw, n, _NONNEGATIVE) if draw(st.booleans()) else _scaled(draw, _psd(draw, n))
+    return _triangular(draw, n, st.integers(0, 3)) if draw(st.booleans()) else _scaled(draw, _psd(draw, n))
 
 
 def _nondegenerate(draw: Draw, n: int) -> Rows:
@@ -135,7 +134,7 @@ def _row_sufficient(draw: Draw, n: int) -> Rows:
 
 def _copositive(draw: Draw, n: int) -> Rows:
     """PSD + nonnegative + skew: all copositive matrices for n <= 4 (Diananda 1962)."""
-    return _add(_psd(draw, n), square(draw, n, _NONNEGATIVE))
+    return _add(_psd(draw, n), square(draw, n, st.integers(0, 3)))
 
 
 _BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {

@@ -30,9 +30,6 @@ EPS = float(np.finfo(float).eps)
 SINGULAR_CONDITION = 1e-14
 """Reciprocal condition of a singular face, whose solution has hardly a digit left."""
 
-DOUBTFUL_PIVOTS = 1e-6
-"""Ratio of extreme pivots below which the condition is estimated."""
-
 SINGULAR_SHIFT = 1e-8
 """Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
 
@@ -199,6 +196,6 @@ def _lu(block: Array) -> Factored | None:
     if factor is None:
         return None
     pivots = np.abs(factor.lu.diagonal())
-    # An estimate costs half a factorisation.
-    doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
+    # An estimate costs half a factorisation; the ratio of pivots loses at most half the digits of the condition.
+    doubtful = pivots.min() < np.sqrt(SINGULAR_CONDITION) * pivots.max()
     return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor

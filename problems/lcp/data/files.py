@@ -15,15 +15,13 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.archive.hdf5 import Allowance
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS
 from problems.lcp.data.models import MODEL_FORMATS, read_model
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, real_array, sound_sparse
-
-ROWS = 1 << 22
-"""Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
 
 CONTAINERS = (".npz", ".json")
 
@@ -135,8 +133,8 @@ def _named(contents: Mapping[str, Any], name: str, path: str | PathLike[str]) ->
         value = [NONE[name] if entry is None else entry for entry in value]
     if not sp.issparse(value):
         return real_array(name, value)
-    if max(value.shape) > max(ROWS, Path(path).stat().st_size):
-        raise ValueError(f"it claims the shape {value.shape}, and is too small for that")
+    # Empty rows take memory.
+    Allowance(Path(path).stat().st_size).take(f"its shape {value.shape}", 8 * max(value.shape))
     return sound_sparse(name, value)
 
 

@@ -159,16 +159,6 @@ class Structure:
         """Whether some a_ii < 0: then A is not copositive."""
         return bool(self.problem.A.diagonal().min() < 0.0)
 
-    @property
-    def said(self) -> str:
-        """The properties found, in words."""
-        parts = ["symmetric" if self.symmetric else "not symmetric"]
-        if "semidefinite" in vars(self):
-            parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
-        if self.negative_diagonal:
-            parts.append("a negative diagonal entry")
-        return ", ".join(parts)
-
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
         """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A.
 

@@ -56,7 +56,7 @@ class ActiveSets:
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
         first = first_state(search)
         yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
-        facts = search.facts  # costs a small solve
+        facts = search.structure  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
             return
         yield SETTLED, search.settle(first if finish.following is None else finish.following, Policy(steps, PATIENCE))
@@ -78,5 +78,5 @@ def first_state(search: Search) -> State:
     problem = search.problem
     if problem.standard:
         return active_state(problem.q < 0.0)
-    convex = search.facts.symmetric and not search.facts.negative_diagonal
+    convex = search.structure.symmetric and not search.structure.negative_diagonal
     return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))

@@ -106,7 +106,7 @@ class Paths:
         search = self.search
         if search.asked.homotopy != "auto":
             return (search.asked.homotopy,)
-        return ("kkt",) if search.problem.standard and search.facts.negative_diagonal else ("wang", "kkt")
+        return ("kkt",) if search.problem.standard and search.structure.negative_diagonal else ("wang", "kkt")
 
     def _first(self, name: str) -> str:
         search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]

@@ -21,9 +21,6 @@ from problems.lcp.search.search import Nearby, Search
 LARGEST_TABLE = 3000
 """Largest order that is pivoted: each pivot visits all 72 MB of the table."""
 
-PIVOT_WORK = LARGEST_TABLE**2
-"""Most pivots times order: one second at n = 1000, where a path takes ten."""
-
 COVERINGS = 5
 """Covering vectors for a quadratic program: 5 with entries 10^U(-3, 0) suffice on 40 indefinite box QPs."""
 
@@ -36,8 +33,8 @@ GAME_WORK = 1_000_000_000
 
 
 def most_pivots(n: int, per_order: float = 10.0) -> int:
-    """Pivots worth trying before a path, fewer per order for large n."""
-    return min(int(per_order * n), PIVOT_WORK // n)
+    """Pivots worth trying before a path, fewer per order for large n: a second at n = 1000, where a path takes ten."""
+    return min(int(per_order * n), LARGEST_TABLE**2 // n)
 
 
 def pivotable(search: Search) -> bool:

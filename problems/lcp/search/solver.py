@@ -251,10 +251,10 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    parts = [f"A is {search.facts.said}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
-        return " ".join(part for part in (*parts, settled, factored) if part)
+        return f"{settled} {factored}".rstrip()
+    parts = []
     if search.paths:
         parts.append(f"The first path: {search.paths[0].message}")
     tried = f"Restarts from random starts: {search.tried} (seed {search.asked.seed})."
