@@ -19,8 +19,8 @@ from problems.lcp.proof.verdict import confirmed
 
 PATIENCE = 5
 """Corrections in a row without a new low of changed indices, then the sets cycle; changes of multipliers that do not
-halve the residual. On 80 planted problems 2, 5, infinity take 5,210, 5,338, 5,989 factorisations, but on 24 monotone ones
-303, 278, 273."""
+halve the residual. On 80 planted problems 2, 5, infinity take 5,210, 5,338, 5,989 factorisations, but on 24 monotone
+ones 303, 278, 273."""
 
 
 @define(eq=False)
