@@ -86,7 +86,12 @@ class Structure:
     problem: MixedLCP | LCP = field(validator=lambda instance, attribute, value: require_problem(value))
 
     def of_same_matrix(self, problem: LCP) -> Structure:
-        """The structure of a problem with the same A, with what is known of A."""
+        """The structure of a problem with the same A, with what is known of A.
+
+        Parameters
+        ----------
+        problem : LCP
+        """
         other = object.__new__(Structure)
         vars(other).update(vars(self) | {"problem": problem})
         return other
