@@ -22,9 +22,8 @@ from continuation.linear.factoring import Factoring
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
-PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
-"""The first penalty (as published, times objective over violations), the largest, and its growth with each change of
-multipliers."""
+MOST_PENALTY, PENALTY_GROWTH = 1e8, 10.0
+"""The largest penalty, and its growth with each change of multipliers; the first is objective over violations."""
 
 STEPS_PER_CHANGE = 100
 """Most Newton steps per change."""
@@ -112,7 +111,7 @@ def guesses(saddle: Saddle, counts: Counts, factoring: Factoring) -> Iterator[tu
     values = np.append(saddle.R @ x + saddle.d, x)
     violated = values - np.clip(values, low, high)
     objective = abs(float(0.5 * x @ (saddle.P @ x) + saddle.c @ x))
-    sigma = min(PENALTY * max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST_PENALTY)
+    sigma = min(max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST_PENALTY)
     while True:
         found = _minimised(Penalised(saddle, low, high, sigma, weight), x, y, accurate, counts, factoring)
         if found is None:

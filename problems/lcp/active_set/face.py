@@ -33,9 +33,6 @@ SINGULAR_CONDITION = 1e-14
 SINGULAR_SHIFT = 1e-8
 """Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
 
-SHIFTED_CORRECTIONS = 4
-"""Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
-
 
 @frozen(eq=False)
 class Face:
@@ -60,8 +57,10 @@ class Face:
         x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
             x = np.where(self.active, near, x)
-        for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
-            x = self._corrected(x, self.q if self.exact and standard else self.w(x))
+        x = self._corrected(x, self.q if self.exact and standard else self.w(x))
+        if not self.exact:
+            # The first one leaves the ratio of the shift to the least singular value.
+            x = self._corrected(x, self.w(x))
         w = self.w(x)
         if not (finite(x) and finite(w)):
             return None
