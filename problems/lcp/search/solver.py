@@ -162,7 +162,8 @@ def solve(
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
         back.append(partial(unscaled, problem, scaled, tolerance))
         problem = scaled.problem
-    log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
+    title = f"Paths of a linear complementarity problem, n = {problem.n}"
+    log = None if archive is None else PathLog(as_file("archive", archive), title=title)
     with Silence(), one_thread, nullcontext() if log is None else log:
         if found is None and automatic and finish and not path and start is None and near is None:
             found = at_once(problem, tolerance)
@@ -188,11 +189,6 @@ def _check_homotopy(homotopy: Any, problem: MixedLCP) -> None:
     if homotopy != "auto" and not problem.standard and not HOMOTOPIES[homotopy].bounds:
         known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
-
-
-def _title(problem: MixedLCP) -> str:
-    bounds = "" if problem.standard else " with bounds"
-    return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
