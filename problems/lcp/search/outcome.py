@@ -45,7 +45,7 @@ class Outcome(Described):
     SOLVED_TO_PRECISION = (
         5,
         "Solved to working precision: x solves a problem whose entries differ from these in their last digits (for a "
-        "program, by the rounding of the largest of them). In exact arithmetic the face of x holds no solution, so the "
+        "program, by the rounding of the largest of them); in exact arithmetic the face of x holds no solution, so the "
         "data as given may have none.",
     )
 
