@@ -164,6 +164,13 @@ class Structure:
         """Whether some a_ii < 0: then A is not copositive."""
         return bool(self.problem.A.diagonal().min() < 0.0)
 
+    @cached_property
+    def z_matrix(self) -> bool:
+        """Whether off-diagonal entries are <= 0: in n steps active sets reach the least feasible element, or fail."""
+        A = self.problem.A
+        entries = A.data if self.problem.sparse else A
+        return bool(np.count_nonzero(entries > 0.0) == np.count_nonzero(A.diagonal() > 0.0))
+
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
         """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A.
 

@@ -24,6 +24,9 @@ from problems.lcp.search.search import Search
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
+MOST_Z_STEPS = 1000
+"""Most corrections for a Z-matrix, where each enlarges the active set."""
+
 DESCENT_ROUNDS = 200
 """Most rounds of descent in a box."""
 
@@ -59,7 +62,8 @@ class ActiveSets:
         facts = search.structure  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
             return
-        yield SETTLED, search.settle(first if finish.following is None else finish.following, Policy(steps, PATIENCE))
+        long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
+        yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
@@ -77,6 +81,8 @@ def first_state(search: Search) -> State:
     """The state at the point nearest to zero, or for a convex function after projected gradient steps."""
     problem = search.problem
     if problem.standard:
-        return active_state(problem.q < 0.0)
+        # On a grid where q is zero these join one by one otherwise (Chandrasekaran's method).
+        grid = problem.sparse and search.structure.z_matrix and float(problem.A.diagonal().min()) > 0.0
+        return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)
     convex = search.structure.symmetric and not search.structure.negative_diagonal
     return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
