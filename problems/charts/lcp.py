@@ -20,7 +20,7 @@ from problems.lcp import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.reference import min_newton, modulus
 from problems.paper import EXAMPLES
-from problems.scenes.rivals import Found, by_piqp, by_quantecon, by_reference, by_tables
+from problems.scenes.rivals import Found, by_piqp, by_quantecon, by_tables
 
 SOLVED_TO = 1e-6
 """Residual bound (`Certificate.solves`) for success."""
@@ -82,8 +82,8 @@ def interior(k: int, n: int) -> Counts:
 
 DIRECT = {
     "Lemke": ("", by_tables, pivots),
-    "modulus": ("", by_reference(modulus), lambda k, n: Counts(factorizations=1, solves=k, accepted=k)),
-    "min-Newton": ("", by_reference(min_newton), lambda k, n: Counts(factorizations=k, solves=k, accepted=k)),
+    "modulus": ("", modulus, lambda k, n: Counts(factorizations=1, solves=k, accepted=k)),
+    "min-Newton": ("", min_newton, lambda k, n: Counts(factorizations=k, solves=k, accepted=k)),
     "quantecon Lemke": ("quantecon", by_quantecon, pivots),
     "PIQP": ("piqp", by_piqp, interior),
 }

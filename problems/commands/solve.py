@@ -21,7 +21,7 @@ MOST_ROWS = 60
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
+    formats = f"{PROBLEM_FORMATS}; - for stdin"
     add_command(
         subparsers, run, "solve",
         argument("file", metavar="FILE", help=formats),
@@ -30,7 +30,7 @@ def register(subparsers: Subparsers) -> None:
         argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto"),
         argument("--x0", metavar="FILE", help="the start, x0 > 0; what A x0 + q lacks is relaxed away"),
         argument("--path", action="store_true", help="trace a path even where none is needed"),
-        argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist"),
+        argument("--archive", metavar="FILE", help="write the paths to this new HDF5 file; implies --path"),
         argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path"),
         argument("--tolerance", metavar="EPS", type=_tolerance, default=1e-8, help="default: 1e-8"),
         argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto"),

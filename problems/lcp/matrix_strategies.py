@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from hypothesis import strategies as st
 
 from continuation.arrays import Array
-from problems.lcp.classes.exact import principal_minors
 
 Order = int | st.SearchStrategy[int]
 Rows = list[list[int]]
@@ -19,12 +17,8 @@ Draw = st.DrawFn
 ORDERS = st.integers(1, 4)
 """Default orders."""
 
-MOST_MINORS = 8
-"""Largest order with all 2^n principal minors computed."""
-
 _ENTRY = st.integers(-3, 3)
 POSITIVE = st.integers(1, 4)
-_NONNEGATIVE = st.integers(0, 3)
 
 
 def orders_of(n: Order) -> st.SearchStrategy[int]:
@@ -84,29 +78,6 @@ def _k(draw: Draw, n: int) -> Rows:
     return _scaled(draw, rows)
 
 
-def _bordered(draw: Draw, n: int, last: Callable[[Draw, list[int], list[int]], int | None]) -> Rows:
-    """Add rows and columns; `last` draws the diagonal entry that the minors allow.
-
-    Per index set `last` gets the old and the bordered minor at entry zero; the new minor is entry * old + bordered.
-    """
-    rows: Rows = []
-    for k in range(n):
-        row, column = [draw(_ENTRY) for _ in range(k)], [draw(_ENTRY) for _ in range(k)]
-        entry = last(draw, *_affine_minors(rows, row, column))
-        if entry is None:
-            column = [0] * k
-            entry = last(draw, *_affine_minors(rows, row, column))
-        assert entry is not None, "a zero column leaves the minors entry * old"
-        rows = [[*old, c] for old, c in zip(rows, column, strict=True)] + [[*row, entry]]
-    return rows
-
-
-def _affine_minors(rows: Rows, row: Sequence[int], column: Sequence[int]) -> tuple[list[int], list[int]]:
-    minors = principal_minors([*([*old, c] for old, c in zip(rows, column, strict=True)), [*row, 0]])
-    half = len(minors) // 2
-    return minors[:half], minors[half:]
-
-
 def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
     """Diagonally dominant: principal submatrices are regular; P if the diagonal is positive."""
     rows = square(draw, n)
@@ -116,43 +87,28 @@ def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
     return rows
 
 
+def _triangular(draw: Draw, n: int, diagonal: st.SearchStrategy[int]) -> Rows:
+    """Principal minors are products of diagonal entries."""
+    rows = square(draw, n)
+    return [[draw(diagonal) if j == i else row[j] if j > i else 0 for j in range(n)] for i, row in enumerate(rows)]
+
+
 def _p(draw: Draw, n: int) -> Rows:
-    """Each diagonal entry exceeds -bordered / old."""
-    if n > MOST_MINORS:
-        dominant = draw(st.booleans())
-        return _dominant(draw, n, False) if dominant else _add(_psd(draw, n), _diagonal(draw, n, POSITIVE))
-
-    def last(draw: Draw, old: list[int], bordered: list[int]) -> int:
-        return max(-b // m for m, b in zip(old, bordered, strict=True)) + draw(POSITIVE)
-
-    return _bordered(draw, n, last)
+    kind = draw(st.sampled_from(("definite", "dominant", "triangular")))
+    if kind == "dominant":
+        return _dominant(draw, n, False)
+    if kind == "triangular":
+        return _triangular(draw, n, POSITIVE)
+    return _scaled(draw, _add(_psd(draw, n), _diagonal(draw, n, POSITIVE)))
 
 
 def _p0(draw: Draw, n: int) -> Rows:
-    """Like P, with equality; if no entry fits, the column is replaced."""
-    if n > MOST_MINORS:
-        return _psd(draw, n)
-
-    def last(draw: Draw, old: list[int], bordered: list[int]) -> int | None:
-        if any(m == 0 and b < 0 for m, b in zip(old, bordered, strict=True)):
-            return None
-        lowest = max(-(b // m) for m, b in zip(old, bordered, strict=True) if m)
-        return lowest + draw(_NONNEGATIVE)
-
-    return _bordered(draw, n, last)
+    return _triangular(draw, n, st.integers(0, 3)) if draw(st.booleans()) else _scaled(draw, _psd(draw, n))
 
 
 def _nondegenerate(draw: Draw, n: int) -> Rows:
-    """Each diagonal entry avoids -bordered / old."""
-    if n > MOST_MINORS:
-        return _dominant(draw, n, True)
-
-    def last(draw: Draw, old: list[int], bordered: list[int]) -> int:
-        forbidden = {Fraction(-b, m) for m, b in zip(old, bordered, strict=True)}
-        small = sorted(range(-len(old) - 5, len(old) + 6), key=lambda v: (abs(v), v < 0))
-        return draw(st.sampled_from([v for v in small if v not in forbidden][:8]))
-
-    return _bordered(draw, n, last)
+    entries = st.sampled_from((1, -1, 2, -2, 3))
+    return _triangular(draw, n, entries) if draw(st.booleans()) else _dominant(draw, n, True)
 
 
 def _n(draw: Draw, n: int) -> Rows:
@@ -178,7 +134,7 @@ def _row_sufficient(draw: Draw, n: int) -> Rows:
 
 def _copositive(draw: Draw, n: int) -> Rows:
     """PSD + nonnegative + skew: all copositive matrices for n <= 4 (Diananda 1962)."""
-    return _add(_psd(draw, n), square(draw, n, _NONNEGATIVE))
+    return _add(_psd(draw, n), square(draw, n, st.integers(0, 3)))
 
 
 _BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {

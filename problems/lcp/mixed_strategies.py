@@ -6,15 +6,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program, from_qp
-from problems.lcp.strategies import ORDERS, Draw, Order, matrices
+from problems.lcp.matrix_strategies import ORDERS, POSITIVE, Draw, Order, matrices
 
 KINDS = ("lower", "upper", "box", "free", "fixed")
 """Kinds of bounds."""
-
-_END = st.integers(-3, 3)
-_WIDTH = st.integers(1, 4)
 
 
 @st.composite
@@ -31,11 +28,11 @@ def bounds(draw: Draw, n: int, kinds: tuple[str, ...] = KINDS) -> tuple[Array, A
     for i in range(n):
         kind = draw(st.sampled_from(kinds))
         if kind in ("lower", "box", "fixed"):
-            lower[i] = draw(_END)
+            lower[i] = draw(st.integers(-3, 3))
         if kind == "upper":
-            upper[i] = draw(_END)
+            upper[i] = draw(st.integers(-3, 3))
         elif kind in ("box", "fixed"):
-            upper[i] = lower[i] + (draw(_WIDTH) if kind == "box" else 0)
+            upper[i] = lower[i] + (draw(POSITIVE) if kind == "box" else 0)
     return lower, upper
 
 
@@ -57,25 +54,6 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
 
 
 @st.composite
-def planted_mixed_lcps(
-    draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str, ...] = KINDS
-) -> tuple[MixedLCP, Array]:
-    """A problem with bounds and an exact integer solution x."""
-    A = draw(matrices(cls, n))
-    lower, upper = draw(bounds(len(A), kinds))
-    x, w = np.empty(len(A)), np.zeros(len(A))
-    for i, (low, high) in enumerate(zip(lower, upper)):
-        ends = [s for s, end in ((LOWER, low), (UPPER, high)) if np.isfinite(end)]
-        where = draw(st.sampled_from([BETWEEN, *ends]))
-        inside = st.integers(int(low) if np.isfinite(low) else int(min(high, 0)) - 3,
-                             int(high) if np.isfinite(high) else int(max(low, 0)) + 3)  # fmt: skip
-        x[i] = draw(inside) if where == BETWEEN else low if where == LOWER else high
-        if where != BETWEEN:
-            w[i] = -int(where) * draw(st.integers(0, 4))
-    return MixedLCP(A, w - A @ x, lower, upper), x
-
-
-@st.composite
 def programs(draw: Draw, n: Order = ORDERS, convex: bool = True) -> Program:
     """Feasible quadratic programs with integer data, rows and bounds of all kinds.
 
@@ -92,9 +70,7 @@ def programs(draw: Draw, n: Order = ORDERS, convex: bool = True) -> Program:
     rows = draw(st.integers(0, 3))
     G = np.array([draw(st.integers(-3, 3)) for _ in range(rows * size)], dtype=float).reshape(rows, size)
     c = np.array([draw(st.integers(-4, 4)) for _ in range(size)], dtype=float)
-    if not rows:
-        return from_qp(P, c, lower=lower, upper=upper)
+    below, above = (np.array([draw(st.sampled_from((0.0, 1.0, np.inf))) for _ in range(rows)]) for _ in range(2))
     level = G @ np.array(middle)
-    below = np.array([draw(st.sampled_from((0.0, 1.0, np.inf))) for _ in range(rows)])
-    above = np.array([draw(st.sampled_from((0.0, 1.0, np.inf))) for _ in range(rows)])
-    return from_qp(P, c, G, level + above, lower=lower, upper=upper, rows_lower=level - below)
+    sides = {"G": G, "h": level + above, "rows_lower": level - below} if rows else {}
+    return from_qp(P, c, lower=lower, upper=upper, **sides)

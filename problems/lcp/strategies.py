@@ -11,13 +11,11 @@ from problems.lcp.matrix_strategies import CLASSES, ORDERS, POSITIVE, Draw, Entr
 
 __all__ = [
     "CLASSES",
-    "LARGE",
     "ORDERS",
     "Draw",
     "Order",
     "badly_scaled_lcps",
     "feasible_lcps",
-    "large_lcps",
     "lcps",
     "matrices",
     "near_singular_lcps",
@@ -46,48 +44,6 @@ def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrate
     return LCP(A, np.array([draw(entries) for _ in A], dtype=float))
 
 
-LARGE = ("P", "PSD", "K", "any")
-"""Classes for `large_lcps`."""
-
-
-def large_lcps(cls: str = "P", n: Order = 300) -> st.SearchStrategy[tuple[LCP, Array]]:
-    """A large problem and a solution up to rounding, from one seed, in milliseconds.
-
-    P: diagonally dominant; PSD: of rank n // 2 plus a skew part; K: dominant, tridiagonal; any: normal entries.
-
-    Parameters
-    ----------
-    cls : str
-        One of `LARGE`.
-    n : int or strategy of int
-
-    Raises
-    ------
-    ValueError
-        For an unknown class.
-    """
-    if cls not in LARGE:
-        raise ValueError(f"cls: expected one of {', '.join(LARGE)}, found {cls!r}")
-    return st.builds(_large, st.just(cls), orders_of(n), st.integers(0, 2**32 - 1))
-
-
-def _large(cls: str, n: int, seed: int) -> tuple[LCP, Array]:
-    generator = np.random.default_rng(seed)
-    A = generator.standard_normal((n, n))
-    if cls == "P":
-        A[np.diag_indices(n)] = np.abs(A).sum(axis=1) + 1.0
-    elif cls == "PSD":
-        factor = generator.standard_normal((n // 2, n))
-        A = factor.T @ factor + (A - A.T)
-    elif cls == "K":
-        off = -np.abs(A[0, 1:])
-        A = np.diag(off, 1) + np.diag(off, -1)
-        A[np.diag_indices(n)] = 0.1 - A.sum(axis=1)
-    values, basic = generator.uniform(0.5, 2.0, n), generator.random(n) < 0.5
-    x, w = np.where(basic, values, 0.0), np.where(basic, 0.0, values)
-    return LCP(A, w - A @ x), x
-
-
 def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
     """A problem and a strictly feasible integer start: x0 > 0 and A x0 + q > 0, exactly.
 
@@ -102,7 +58,10 @@ def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tupl
 
 @st.composite
 def _feasible(draw: Draw, matrix: st.SearchStrategy[Array]) -> tuple[LCP, Array]:
-    A = draw(matrix)
+    return _with_start(draw, draw(matrix))
+
+
+def _with_start(draw: Draw, A: Array) -> tuple[LCP, Array]:
     x0, w0 = (np.array([draw(POSITIVE) for _ in A], dtype=float) for _ in range(2))
     return LCP(A, w0 - A @ x0), x0
 
@@ -124,10 +83,8 @@ def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> s
     ValueError
         For an unknown kind, or a class with "many".
     """
-    if kind == "strict":
-        return _planted(matrices(cls, n), degenerate=False)
-    if kind == "degenerate":
-        return _planted(matrices(cls, n), degenerate=True)
+    if kind in ("strict", "degenerate"):
+        return _planted(matrices(cls, n), kind == "degenerate")
     if kind != "many":
         raise ValueError(f"kind: expected strict, degenerate or many, found {kind!r}")
     if cls != "any":
@@ -180,11 +137,11 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
     i = draw(st.integers(0, order - 1))
     A[i] = sum(draw(st.integers(-1, 1)) * A[j] for j in range(order) if j != i)
     A[i, draw(st.integers(0, order - 1))] += 2.0 ** -draw(st.integers(10, 40))
-    x0, w0 = (np.array([draw(POSITIVE) for _ in A], dtype=float) for _ in range(2))
-    return LCP(A, w0 - A @ x0), x0
+    return _with_start(draw, A)
 
 
-def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
+@st.composite
+def badly_scaled_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[LCP, Array]:
     """A strictly feasible problem in units from 2^-26 to 2^26, with its start.
 
     Powers of two scale exactly.
@@ -195,12 +152,7 @@ def badly_scaled_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[
         One of `CLASSES`.
     n : int or strategy of int
     """
-    return _badly_scaled(feasible_lcps(cls, n))
-
-
-@st.composite
-def _badly_scaled(draw: Draw, case: st.SearchStrategy[tuple[LCP, Array]]) -> tuple[LCP, Array]:
-    problem, x0 = draw(case)
+    problem, x0 = draw(feasible_lcps(cls, n))
     powers = st.integers(-26, 26)
     left, right = (np.array([2.0 ** draw(powers) for _ in x0]) for _ in range(2))
     return LCP(left[:, None] * problem.A * right, left * problem.q), x0 / right

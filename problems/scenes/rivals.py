@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 
 from continuation.arrays import Array
 from problems.lcp.data.program import Program
-from problems.lcp.reference import ReferenceResult, lemke
+from problems.lcp.reference import lemke
 from problems.scenes.scene import Rival, conditions
 
 TOLERANCE = 1e-10
@@ -41,18 +41,9 @@ def by_quantecon(problem: Any) -> Found:
     return _arrived(result.z, result.success, f"status {result.status}", result.num_iter)
 
 
-def by_reference(method: Callable[[Any], ReferenceResult]) -> Callable[[Any], Found]:
-    """Wrap a reference method."""
-
-    def solve(problem: Any) -> Found:
-        result = method(conditions(problem))
-        return _arrived(result.x, result.solved, result.message, result.iterations)
-
-    return solve
-
-
-by_tables = by_reference(lemke)
-"""Lemke's method (numpy tableau)."""
+def by_tables(problem: Any) -> Found:
+    """Lemke's method (numpy tableau)."""
+    return lemke(conditions(problem))
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:

@@ -22,9 +22,8 @@ from continuation.linear.factoring import Factoring
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
-PENALTY, MOST_PENALTY, PENALTY_GROWTH = 20.0, 1e8, 10.0
-"""The first penalty (as published, times objective over violations), the largest, and its growth with each change of
-multipliers."""
+MOST_PENALTY, PENALTY_GROWTH = 1e8, 10.0
+"""The largest penalty, and its growth with each change of multipliers; the first is objective over violations."""
 
 STEPS_PER_CHANGE = 100
 """Most Newton steps per change."""
@@ -103,41 +102,34 @@ class Penalised:
         return float(at[last] - slopes[last] / curvatures[last] if curvatures[last] > 0.0 else at[last])
 
 
-def guesses(
-    saddle: Saddle, below: float, x: Array, counts: Counts, factoring: Factoring
-) -> Iterator[tuple[State, Array]]:
-    """Yield active sets and points near their solutions, one per change of multipliers.
-
-    `below` exceeds what makes P positive semidefinite.
-    """
-    problem, n, m = saddle.problem, x.size, saddle.d.size
+def guesses(saddle: Saddle, counts: Counts, factoring: Factoring) -> Iterator[tuple[State, Array]]:
+    """Yield active sets and points near their solutions, one per change of multipliers; P is positive semidefinite."""
+    problem, m, n = saddle.problem, saddle.d.size, saddle.c.size
     low = np.append(np.zeros(m), problem.lower[:n])
     high = np.append(np.where(saddle.free, 0.0, np.inf), problem.upper[:n])
-    one = Penalised(saddle, low, high, 0.0, 1.0)
-    y, violated = np.zeros(m + n), one.values(x) - np.clip(one.values(x), low, high)
+    x, y, accurate, weight = problem.near_zero[:n], np.zeros(m + n), 1.0, PENALTY_GROWTH
+    values = np.append(saddle.R @ x + saddle.d, x)
+    violated = values - np.clip(values, low, high)
     objective = abs(float(0.5 * x @ (saddle.P @ x) + saddle.c @ x))
-    sigma = min(PENALTY * max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST_PENALTY)
-    accurate, centre, weight = 1.0, x, 1.0 / below if below > 0.0 else PENALTY_GROWTH
+    sigma = min(max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)), MOST_PENALTY)
     while True:
-        found = _minimised(Penalised(saddle, low, high, sigma, weight), x, y, centre, accurate, counts, factoring)
+        found = _minimised(Penalised(saddle, low, high, sigma, weight), x, y, accurate, counts, factoring)
         if found is None:
             return
         x, t = found
-        nearest = np.clip(t, low, high)
-        y = sigma * (t - nearest)
+        y = sigma * (t - np.clip(t, low, high))
         state = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
         # A violated row holds; other multipliers are zero.
         state[:m] = np.where(saddle.free | (state[:m] == LOWER), BETWEEN, LOWER)
         yield np.roll(state, n), problem.clipped(np.append(x, -y[:m]))
-        centre, accurate, sigma = x, accurate / PENALTY_GROWTH, min(PENALTY_GROWTH * sigma, MOST_PENALTY)
-        weight = weight if below > 0.0 else min(PENALTY_GROWTH * weight, MOST_PENALTY)
+        accurate = accurate / PENALTY_GROWTH
+        sigma, weight = (min(PENALTY_GROWTH * value, MOST_PENALTY) for value in (sigma, weight))
 
 
 def _minimised(
-    one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts, factoring: Factoring
+    one: Penalised, x: Array, y: Array, accurate: float, counts: Counts, factoring: Factoring
 ) -> tuple[Array, Array] | None:
-    saddle, pieces = one.saddle, b""
-    factor = None
+    saddle, centre, pieces, factor = one.saddle, x, b"", None
     for _ in range(STEPS_PER_CHANGE):
         t = one.values(x) + y / one.sigma
         force = one.sigma * (t - np.clip(t, one.low, one.high))
@@ -150,13 +142,12 @@ def _minimised(
         key = active.tobytes()
         if factor is None or key != pieces:
             counts.factorizations += 1
-            hessian = one.hessian(active)
+            hessian, pieces = one.hessian(active), key
             factor = factoring.factor(hessian) if sp.issparse(hessian) else factor_cholesky(hessian)
-            pieces = key
         if factor is None:
             return None
         d = factor.solve(-gradient)
-        dv = one.values(d) - one.values(np.zeros(d.size))
+        dv = np.append(saddle.R @ d, d)
         slope = float(gradient @ d)
         if not slope < 0.0:
             break

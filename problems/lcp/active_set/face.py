@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import ClassVar
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
-from scipy.linalg import qr, solve_triangular
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
 
@@ -31,17 +29,8 @@ EPS = float(np.finfo(float).eps)
 SINGULAR_CONDITION = 1e-14
 """Reciprocal condition of a singular face, whose solution has hardly a digit left."""
 
-DOUBTFUL_PIVOTS = 1e-6
-"""Ratio of extreme pivots below which the condition is estimated."""
-
 SINGULAR_SHIFT = 1e-8
 """Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
-
-FACES_KEPT = 8
-"""Faces kept for the next q: a motion to and fro visits few."""
-
-SHIFTED_CORRECTIONS = 4
-"""Corrections with a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
@@ -67,8 +56,10 @@ class Face:
         x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
             x = np.where(self.active, near, x)
-        for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
-            x = self._corrected(x, self.q if self.exact and standard else self.w(x))
+        x = self._corrected(x, self.q if self.exact and standard else self.w(x))
+        if not self.exact:
+            # The first one leaves the ratio of the shift to the least singular value.
+            x = self._corrected(x, self.w(x))
         w = self.w(x)
         if not (finite(x) and finite(w)):
             return None
@@ -92,51 +83,6 @@ class Face:
         return corrected
 
 
-@frozen(eq=False)
-class LeastNorm:
-    """The shortest of the x nearest to A x = rhs, for a dense A of any rank (Golub and Van Loan, section 5.5.5).
-
-    ``rows A columns = left triangle' right'``, where `left` and `right` have orthonormal columns.
-    """
-
-    left: Array
-    triangle: Array
-    right: Array
-    rows: Array
-    columns: Array
-    sign: ClassVar[int] = 1
-
-    @classmethod
-    def of(cls, matrix: Array, near: Array) -> LeastNorm | None:
-        """Factor by pivoted QR, cut at the rank, and QR of the transpose; None for rank zero.
-
-        Lengths are relative to a positive `near`, so that a small x_i moves less than a large one (Mehrotra and Ye,
-        Math. Programming 62, 1993).
-        """
-        sizes, positive = np.abs(matrix), bool((near > 0.0).all())
-        rows = _inverse_powers((sizes * near if positive else sizes).max(axis=1))
-        columns = near if positive else _inverse_powers((rows[:, None] * sizes).max(axis=0))
-        left, r, order = qr(rows[:, None] * matrix * columns, mode="economic", pivoting=True, check_finite=False)
-        pivots = np.abs(r.diagonal())
-        rank = int(np.count_nonzero(pivots > EPS * len(matrix) * pivots[0]))
-        if not rank:
-            return None
-        right = np.empty((len(matrix), rank))
-        right[order], triangle = qr(r[:rank].T, mode="economic", check_finite=False)
-        return cls(left[:, :rank], triangle, right, rows, columns)
-
-    def solve(self, rhs: Array) -> Array:
-        """The x for one right-hand side."""
-        along = solve_triangular(self.triangle, self.left.T @ (self.rows * rhs), trans=1, check_finite=False)
-        x: Array = self.columns * (self.right @ along)
-        return x
-
-
-def _inverse_powers(sizes: Array) -> Array:
-    """Powers of two next to the inverses; ones for zeros."""
-    return np.ldexp(1.0, -np.frexp(np.where(sizes > 0.0, sizes, 1.0))[1])
-
-
 def exchanging(method: str = "auto") -> Factoring:
     """Factorisations of faces, at last by SuperLU with row exchanges."""
     return Factoring(method, weak_pivots=False)
@@ -144,20 +90,16 @@ def exchanging(method: str = "auto") -> Factoring:
 
 @frozen(eq=False)
 class Faces:
-    """The faces of one problem.
-
-    `current` is the problem if its q is not the structure's.
-    """
+    """The faces of one problem; `kept` is one of a problem with the same A."""
 
     structure: Structure
-    current: MixedLCP | None = None
-    kept: dict[bytes, Face] | None = None
     factoring: Factoring = field(factory=exchanging)
+    kept: Face | None = None
 
     @property
     def problem(self) -> MixedLCP:
         """The problem."""
-        return self.structure.problem if self.current is None else self.current
+        return self.structure.problem
 
     def face(
         self,
@@ -165,26 +107,14 @@ class Faces:
         shift: float = 0.0,
         centre: Array | None = None,
         regular: bool = False,
-        near: Array | None = None,
     ) -> Face | None:
         """The factored face of a state; None if its equations have no factors, or if `regular` and they are singular.
 
         With a `centre` the face is that of the proximal problem, A + shift I and q - shift centre.
         """
-        if self.kept is None or shift or centre is not None:
-            return self._made(state, shift, centre, regular, near)
-        key = state.tobytes()
-        face = self.kept.pop(key, None) or self._made(state, shift, centre, regular, near)
-        if face is None:
-            return None
-        self.kept[key] = face
-        if len(self.kept) > FACES_KEPT:
-            self.kept.pop(next(iter(self.kept)))
-        same = face.problem is self.problem
-        return face if same else evolve(face, problem=self.problem, q=self.problem.q)
-
-    def _made(self, state: State, shift: float, centre: Array | None, regular: bool, near: Array | None) -> Face | None:
-        problem = self.problem
+        problem, kept = self.problem, self.kept
+        if kept is not None and not shift and centre is None and np.array_equal(state, kept.state):
+            return evolve(kept, problem=problem, q=problem.q)
         active = state == BETWEEN
         inside = active.nonzero()[0]
         q = problem.q if centre is None else problem.q - shift * centre
@@ -196,8 +126,6 @@ class Faces:
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
             factor, exact = self._sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
-            if problem.standard and not (exact or regular or shift or problem.sparse):
-                factor = self._nearest(inside, near) or factor
             inverse = None if factor is None else factor.solve
         return None if inverse is None else Face(problem, state, active, inverse, exact or centre is not None, shift, q)
 
@@ -216,27 +144,6 @@ class Faces:
             return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
         return (_cholesky if definite else _lu)(block), False
-
-    def _nearest(self, inside: NDArray[np.intp], near: Array | None) -> Factored | None:
-        """An LCP's shortest corrections from a point, if they solve the equations of the singular face.
-
-        Otherwise the shifted solution grows along a null vector, whose signs tell which x_i leave.
-        """
-        problem = self.problem
-        if self.structure.symmetric and self.structure.semidefinite:
-            return None
-        x = np.zeros(problem.n)
-        if near is not None:
-            x[inside] = near[inside]
-        rows = problem.A[inside]
-        block = rows[:, inside]
-        factor = LeastNorm.of(block, x[inside])
-        if factor is None:
-            return None
-        off = rows @ x + problem.q[inside]
-        terms = np.abs(rows) @ np.abs(x) + np.abs(problem.q[inside])
-        consistent = np.abs(block @ factor.solve(off) - off) <= SINGULAR_SHIFT * terms
-        return factor if consistent.all() else None
 
     def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
         eye = sp.eye_array(block.shape[0])
@@ -287,6 +194,6 @@ def _lu(block: Array) -> Factored | None:
     if factor is None:
         return None
     pivots = np.abs(factor.lu.diagonal())
-    # An estimate costs half a factorisation.
-    doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
+    # An estimate costs half a factorisation; the ratio of pivots loses at most half the digits of the condition.
+    doubtful = pivots.min() < np.sqrt(SINGULAR_CONDITION) * pivots.max()
     return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor

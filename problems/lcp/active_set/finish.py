@@ -12,17 +12,15 @@ from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
-from problems.lcp.active_set.iteration import AT_END, Ended, Policy, Tried, iterate
+from problems.lcp.active_set.iteration import AT_END, Ended, Policy, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
 PATIENCE = 5
-"""Corrections in a row without a new low of changed indices, then the sets cycle. On 80 planted problems 2, 5, infinity
-take 5,210, 5,338, 5,989 factorisations, but on 24 monotone ones 303, 278, 273."""
-
-MORE_MULTIPLIERS = 5
-"""Changes of multipliers that may fail to halve the residual."""
+"""Corrections in a row without a new low of changed indices, then the sets cycle; changes of multipliers that do not
+halve the residual. On 80 planted problems 2, 5, infinity take 5,210, 5,338, 5,989 factorisations, but on 24 monotone
+ones 303, 278, 273."""
 
 
 @define(eq=False)
@@ -30,17 +28,18 @@ class Finish:
     """Tries active sets of one problem, each once, for all its paths.
 
     `nearest` is the judged point with least normwise residual that is no solution. `ended` and `following` tell why the
-    last iteration ended, and its next state.
+    last iteration ended, and its next state; `solved_on` is the face of the solution.
     """
 
     faces: Faces
     tolerance: float
     counts: Counts = field(factory=Counts)
-    tried: Tried = field(factory=Tried)
+    tried: set[bytes] = field(factory=set)
     certificate: Certificate | None = field(default=None, init=False)
     nearest: Certificate | None = field(default=None, init=False)
     ended: Ended | None = field(default=None, init=False)
     following: State | None = field(default=None, init=False)
+    solved_on: Face | None = field(default=None, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -76,20 +75,19 @@ class Finish:
                 return solved
         return None
 
-    def augmented(self, below: float, exhausted: Callable[[], object]) -> Array | None:
-        """A KKT point of a program by `guesses`, or None."""
+    def augmented(self, exhausted: Callable[[], object]) -> Array | None:
+        """The solution of a convex program by `guesses`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None
         since, best = 0, np.inf
-        x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
-        for state, point in guesses(saddle, below, x, self.counts, factoring):
+        for state, point in guesses(saddle, self.counts, self.faces.factoring):
             solved = self.settle(state, AT_END, point)
             if solved is not None:
                 return solved
             now = self.problem.relative_residual(point)
             since, best = (0, now) if now < 0.5 * best else (since + 1, best)
-            if since > MORE_MULTIPLIERS or exhausted():
+            if since > PATIENCE or exhausted():
                 break
         return None
 
@@ -124,6 +122,7 @@ class Finish:
             elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
                 best = certified(self.problem, zeros)
         if self._kept(best):
+            self.solved_on = face
             return best.x, best.w, True
         return x, self.problem.w(x), False
 

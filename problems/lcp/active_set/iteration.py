@@ -13,7 +13,7 @@ from collections.abc import Callable
 from enum import Enum
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.counts import Counts
@@ -52,14 +52,6 @@ AT_END = Policy(steps=2)
 """The last corrections of a method, whose set is right but for rounding."""
 
 
-@define(eq=False)
-class Tried:
-    """The active sets tried on one problem; none is tried twice."""
-
-    last: State | None = None
-    known: set[bytes] = field(factory=set)
-
-
 def key_of(state: State) -> bytes:
     """A short key of a state."""
     key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
@@ -83,7 +75,7 @@ def iterate(
     near: Array | None = None,
     shift: float | None = None,
     judge: Judge | None = None,
-    tried: Tried | None = None,
+    tried: set[bytes] | None = None,
     counts: Counts | None = None,
 ) -> Iterated:
     """Correct an active set until it is right or given up.
@@ -98,17 +90,16 @@ def iterate(
     while len(changes) - min(singular, policy.singular or 0) <= policy.steps:
         if tried is not None:
             key = key_of(state)
-            if key in tried.known or key + x.tobytes() in tried.known:
+            if key in tried or key + x.tobytes() in tried:
                 return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(state, shift or 0.0, centre, policy.singular == 0, x)
+        face = faces.face(state, shift or 0.0, centre, policy.singular == 0)
         singular += face is None or not face.exact
         if policy.singular == 0 and singular:
             return Iterated(Ended.SINGULAR, state, x)
         if tried is not None:
-            tried.known.add(key if face is None or face.exact else key + x.tobytes())
-            tried.last = state
+            tried.add(key if face is None or face.exact else key + x.tobytes())
         point = None if face is None else face.point(x)
         if face is None or point is None:
             return Iterated(Ended.SINGULAR, state, x)

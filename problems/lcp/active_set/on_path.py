@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from attrs import define
+from attrs import define, field
 
 from continuation.arrays import Array
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.homotopies.kkt import KKTHomotopy
-from problems.lcp.homotopies.starts import natural_units
 
 SPACING = 0.4
-"""The finish is tried each time that the parameter has fallen by this factor, if the median product x z1 (or x y) is
-below natural units. On 80 planted problems 0.2, 0.4 and 0.6 take 6,099, 5,567 and 5,844 factorisations."""
+"""The finish is tried each time that the parameter has fallen by this factor. On 80 planted problems 0.2, 0.4 and 0.6
+take 6,099, 5,567 and 5,844 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
 """Of 25 stacks (n = 40 to 496) 21 are solved in 3 s if singular faces count as steps, 23 if not."""
@@ -23,19 +20,15 @@ ON_PATH = Policy(steps=4, singular=12)
 
 @define(eq=False)
 class AlongPath:
-    """A homotopy's `finish`: tries now and then, as lambda falls, to solve the LCP from the path's point."""
+    """The `finish` of a homotopy whose first n unknowns are x: tries to solve the LCP now and then, as lambda falls."""
 
     finish: Finish
     homotopy: Any
-    next_lam: float
+    next_lam: float = field(init=False)
 
-    @classmethod
-    def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
-        """Make it for a homotopy whose first n unknowns are x."""
-        products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
-        x, w = natural_units(homotopy.problem)
-        natural = float(x * w / np.median(products)) if products.size else 1.0
-        return cls(finish, homotopy, min(SPACING, natural) * float(homotopy.start()[1]))
+    @next_lam.default
+    def _first(self) -> float:
+        return SPACING * float(self.homotopy.start()[1])
 
     def __call__(self, y: Array, lam: float) -> Array | None:
         """The path's end at the certified solution, or None."""

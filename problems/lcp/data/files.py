@@ -1,13 +1,13 @@
 """Reads LCPs and vectors from files, with one-line errors.
 
-Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
+Containers (.npz, .json) hold named arrays, ``A`` and ``q``; other formats one array.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
@@ -15,22 +15,18 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from continuation.archive.hdf5 import Allowance
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS, read_hdf5
+from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS
 from problems.lcp.data.models import MODEL_FORMATS, read_model
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
-from problems.options import finite_vector, sound_sparse
+from problems.options import finite_vector, real_array, sound_sparse
 
-ROWS = 1 << 22
-"""Most rows of a sparse matrix, or its file's bytes if more: empty rows take memory."""
-
-_CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
+CONTAINERS = (".npz", ".json")
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
 """Bounds that JSON's null stands for."""
-
-_HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
 
 class InputError(ValueError):
@@ -48,123 +44,98 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path` names a ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` file with A, q, and optionally lower, upper
-    (JSON's null is infinite; HDF5: at the root, in group ``problem``, or ``file.h5:/group``); with `q` also A alone as
-    ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q beside A. Raises
-    `InputError`.
+    `path` names a ``.npz`` or ``.json`` file with A, q, and optionally lower, upper (JSON's null is infinite); with `q`
+    also A alone as ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q
+    beside A. Raises `InputError`.
     """
     contents = _contents("path", path)
-    A = _named(contents, "A", "path", path)
-    if q is None:
-        if ALONE in contents:
-            raise InputError("path", f"expected A and q, found one array in {_shown(path)}; give q in its own file")
-        vector = _named(contents, "q", "path", path)
-    else:
-        vector = _named(_contents("q", q), "q", "q", q)
-    try:
-        problem: MixedLCP = LCP(A, _flat(vector))
-        if any(name in contents for name in BOUNDS):
-            ends: list[Any] = [None if k not in contents else _flat(_named(contents, k, "path", path)) for k in BOUNDS]
-            problem = MixedLCP(A, _flat(vector), *ends)
+    if q is None and ALONE in contents:
+        raise InputError("path", f"expected A and q, found one array in {str(path)!r}; give q in its own file")
+    with _in_files(path=path, **({} if q is None else {"q": q})):
+        A, of_q = _named(contents, "A", path), (contents, "q", path) if q is None else (_contents("q", q), "q", q)
+        given = {name: _flat(_named(contents, name, path)) for name in BOUNDS if name in contents}
+        vector = _flat(_named(*of_q))
+        problem: MixedLCP = MixedLCP(A, vector, **given) if given else LCP(A, vector)
         if problem.n == 0:
             raise ValueError("A: expected a square matrix, found shape (0, 0)")
-        return problem
-    except (ValueError, TypeError, OverflowError) as error:
-        at_q = q is not None and str(error).startswith("q:")
-        argument, file = ("q", q) if at_q else ("path", path)
-        raise InputError(argument, f"{str(error).removeprefix('q: ') if at_q else error}, in {_shown(file)}") from None
+    return problem
 
 
 def read_program(path: str | PathLike[str]) -> Program | None:
     """Read a program; None if the file holds none.
 
-    `path` names a ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``,
-    ``.mps``, ``.lp`` (need highspy). Raises `InputError`.
+    `path` names a ``.npz`` or ``.json`` with c and optional arguments of `from_qp`; or ``.qps``, ``.mps``, ``.lp``
+    (need highspy). Raises `InputError`.
     """
-    if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
-        try:
+    suffix = Path(path).suffix.lower()
+    with _in_files(path=path):
+        if suffix in MODEL_FORMATS and Path(path).is_file():
             return read_model(fspath(path))
-        except (ValueError, ImportError) as error:
-            raise InputError("path", f"{error}, in {_shown(path)}") from None
-    if not _CONTAINERS.search(fspath(path)):
-        return None
-    contents = _contents("path", path)
-    if "c" not in contents or "q" in contents or "A" in contents:
-        return None
-    given: dict[str, Any] = {name: None for name in PROGRAM if name in contents}
-    for name in given:
-        given[name] = _named(contents, name, "path", path)
-        if name not in ("P", "G", "A_eq"):
-            given[name] = _flat(given[name])
-    try:
+        contents = _contents("path", path) if suffix in CONTAINERS else {}
+        if "c" not in contents or "q" in contents or "A" in contents:
+            return None
+        given = {name: _named(contents, name, path) for name in PROGRAM if name in contents}
+        given = {name: value if name in ("P", "G", "A_eq") else _flat(value) for name, value in given.items()}
         return from_lp(**given) if "P" not in given else from_qp(**given)
-    except (ValueError, TypeError, OverflowError) as error:
-        raise InputError("path", f"{error}, in {_shown(path)}") from None
 
 
 def read_matrix(path: str | PathLike[str]) -> Matrix:
     """Read A alone, unchecked; raises `InputError`."""
-    return _named(_contents("path", path), "A", "path", path)
+    with _in_files(path=path):
+        return _named(_contents("path", path), "A", path)
 
 
 def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
     """Read `size` finite numbers; raises `InputError`."""
-    value = _flat(_named(_contents(name, path), name, name, path))
+    with _in_files(**{name: path}):
+        return finite_vector(name, _flat(_named(_contents(name, path), name, path)), size)
+
+
+@contextmanager
+def _in_files(**files: str | PathLike[str]) -> Iterator[None]:
+    """Raise errors as `InputError` of the argument that they name, else of the first."""
     try:
-        return finite_vector(name, value, size)
-    except (ValueError, TypeError, OverflowError) as error:
-        raise InputError(name, f"{str(error).removeprefix(f'{name}: ')}, in {_shown(path)}") from None
+        yield
+    except InputError:
+        raise
+    except (ValueError, TypeError, OverflowError, ImportError) as error:
+        named = str(error).partition(":")[0]
+        argument = named if named in files else next(iter(files))
+        said = str(error).removeprefix(f"{argument}: ")
+        raise InputError(argument, f"{said}, in {str(files[argument])!r}") from None
 
 
 def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
-    file, group = _parted(path)
+    file = fspath(path)
     suffix = Path(file).suffix.lower()
     if not Path(file).exists():
-        raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
+        raise InputError(argument, f"expected a file, found nothing at {file!r}")
     if not Path(file).is_file():
-        raise InputError(argument, f"expected a file, found a directory or a device at {_shown(file)}")
+        raise InputError(argument, f"expected a file, found a directory or a device at {file!r}")
     if suffix not in READERS:
         known = ", ".join(READERS)
-        raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
+        raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {file!r}")
     try:
         # Claimed sizes may overflow when multiplied.
         with np.errstate(over="ignore"):
-            return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
+            return READERS[suffix](file)
     except Exception as error:
         reason = str(error) or type(error).__name__
-        complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
+        complaint = f"expected a {suffix} file, found one that cannot be read: {file!r} ({reason})"
         raise InputError(argument, complaint) from None
 
 
-def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
-    text = fspath(path)
-    grouped = _HDF5_GROUP.fullmatch(text)
-    return (grouped["file"], grouped["group"]) if grouped else (text, None)
-
-
-def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
+def _named(contents: Mapping[str, Any], name: str, path: str | PathLike[str]) -> Matrix:
     if name not in contents and ALONE not in contents:
-        found = ", ".join(sorted(contents)) or "nothing"
-        raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
+        raise ValueError(f"expected an array {name}, found {', '.join(sorted(contents)) or 'nothing'}")
     value = contents.get(name, contents.get(ALONE))
     if isinstance(value, list) and name in NONE:
         value = [NONE[name] if entry is None else entry for entry in value]
-    try:
-        if sp.issparse(value):
-            if max(value.shape) > max(ROWS, Path(_parted(path)[0]).stat().st_size):
-                raise ValueError(f"it claims the shape {value.shape}, and is too small for that")
-            return sound_sparse(name, value)
-        array = np.asarray(value)
-        return array.astype(float) if array.dtype == object else array
-    except (ValueError, TypeError, OverflowError) as error:
-        said = str(error)
-        if not said.startswith(f"{name}: "):
-            said = f"{name}: expected real numbers in rows of one length, found others ({error})"
-        raise InputError(argument, f"{said} in {_shown(path)}") from None
-
-
-def _shown(path: str | PathLike[str] | None) -> str:
-    return repr(str(path))
+    if not sp.issparse(value):
+        return real_array(name, value)
+    # Empty rows take memory.
+    Allowance(Path(path).stat().st_size).take(f"its shape {value.shape}", 8 * max(value.shape))
+    return sound_sparse(name, value)
 
 
 def _flat(value: Matrix) -> Matrix:

@@ -85,6 +85,17 @@ class Structure:
 
     problem: MixedLCP | LCP = field(validator=lambda instance, attribute, value: require_problem(value))
 
+    def of_same_matrix(self, problem: LCP) -> Structure:
+        """The structure of a problem with the same A, with what is known of A.
+
+        Parameters
+        ----------
+        problem : LCP
+        """
+        other = object.__new__(Structure)
+        vars(other).update(vars(self) | {"problem": problem})
+        return other
+
     @property
     def n(self) -> int:
         """The order of A."""
@@ -153,41 +164,12 @@ class Structure:
         """Whether some a_ii < 0: then A is not copositive."""
         return bool(self.problem.A.diagonal().min() < 0.0)
 
-    @property
-    def z_matrix(self) -> bool:
-        """Whether off-diagonal entries are <= 0.
-
-        Then active sets reach the least feasible element within n steps, or fail.
-        """
-        return self._off_diagonal[1] <= 0.0
-
-    @property
-    def nonnegative(self) -> bool:
-        """Whether all entries are >= 0, as for bimatrix games."""
-        return self._off_diagonal[0] >= 0.0 and not self.negative_diagonal
-
     @cached_property
-    def _off_diagonal(self) -> tuple[float, float]:
-        A, n = self.problem.A, self.n
-        if self.problem.sparse:
-            entries = A.tocoo()
-            values = entries.data[entries.row != entries.col]
-        else:
-            values = A.ravel()[1:].reshape(n - 1, n + 1)[:, :-1] if n > 1 else np.zeros(0)
-        return float(values.min(initial=0.0)), float(values.max(initial=0.0))
-
-    @property
-    def said(self) -> str:
-        """The properties found, in words."""
-        parts = ["symmetric" if self.symmetric else "not symmetric"]
-        if "semidefinite" in vars(self):
-            parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
-        named = {
-            "Z": self.z_matrix,
-            "nonnegative": self.nonnegative,
-            "a negative diagonal entry": self.negative_diagonal,
-        }
-        return ", ".join([*parts, *(name for name, holds in named.items() if holds)])
+    def z_matrix(self) -> bool:
+        """Whether off-diagonal entries are <= 0: in n steps active sets reach the least feasible element, or fail."""
+        A = self.problem.A
+        entries = A.data if self.problem.sparse else A
+        return bool(np.count_nonzero(entries > 0.0) == np.count_nonzero(A.diagonal() > 0.0))
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
         """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A.

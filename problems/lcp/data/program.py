@@ -145,7 +145,8 @@ def from_qp(
     P = _matrix("P", P, n)
     if P.shape[0] != n:
         raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
-    _check_symmetric(P)
+    if abs(P - P.T).sum() != 0.0:
+        raise ValueError("P: expected a symmetric matrix, found another; give (P + P') / 2")
     if not sp.issparse(P):
         P.flags.writeable = False
     if (G is None) != (h is None and rows_lower is None):
@@ -216,16 +217,6 @@ def _matrix(name: str, value: Any, columns: int) -> Matrix:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
     check_finite(name, matrix)
     return matrix
-
-
-def _check_symmetric(P: Matrix) -> None:
-    if not sp.issparse(P) and np.array_equal(P, P.T):
-        return
-    difference = sp.coo_array(P - P.T)
-    if difference.nnz and difference.data.any():
-        k = int(np.argmax(np.abs(difference.data)))
-        i, j = int(difference.row[k]), int(difference.col[k])
-        raise ValueError(f"P: expected a symmetric matrix, found P[{i}, {j}] unlike P[{j}, {i}]; give (P + P') / 2")
 
 
 def _optimality(P: Matrix, B: Matrix, G: Matrix, row: NDArray[np.intp], sign: Array) -> Matrix:

@@ -9,8 +9,7 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.pivoting.compiled import available, kernel
-from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
+from problems.lcp.pivoting.dictionary import Dictionary
 
 REBUILT_AFTER = 100
 """Pivots, besides the order, that cost as much as a new table."""
@@ -55,30 +54,11 @@ class AlmostComplementary:
             self.ended = Ended.RAY
             return
         self.left(now.pivot(row, column))
-        self._counted(1)
-
-    def _counted(self, pivots: int) -> None:
-        self._since += pivots
+        self._since += 1
         if self._since >= REBUILT_AFTER + self.n and self.ended is None:
             self._since = 0
             if not all(one.rebuilt() >= PATH_LEFT for one in self.dictionaries):
                 self.ended = Ended.PATH_LEFT
-
-    @property
-    def compiled(self) -> bool:
-        """Whether numba is available and quicker."""
-        return available() and all(one.compilable for one in self.dictionaries)
-
-    def _steps(self, most: int) -> None:
-        both = self.dictionaries[0], self.dictionaries[-1]
-        kept = (tuple(getattr(one, name) for one in both) for name in ("table", "basic", "nonbasic", "places"))
-        done, entering, leaving = kernel()(
-            *kept, (int(both[0].rows[0]), int(both[1].rows[0])), self.entering, (min(self.stop), max(self.stop)),
-            self.n, min(most, REBUILT_AFTER + self.n - self._since), (ZERO_PIVOT, TIE),
-        )  # fmt: skip
-        self.pivots, self.entering = self.pivots + done, int(entering)
-        self.ended = Ended.RAY if leaving < 0 else Ended.REACHED if leaving in self.stop else None
-        self._counted(done)
 
     def left(self, leaving: int) -> None:
         """Go on with the complement of the variable that left."""
@@ -93,10 +73,7 @@ class AlmostComplementary:
         while self.ended is None:
             if self.pivots >= most:
                 return Ended.PIVOTS
-            if self.compiled:
-                self._steps(most - self.pivots)
-            else:
-                self.step()
+            self.step()
         return self.ended
 
     @property

@@ -68,11 +68,6 @@ class Dictionary:
         return other
 
     @property
-    def compilable(self) -> bool:
-        """Whether numba's pivots are quicker."""
-        return min(self._table.shape) > 1 and self._table.size <= LARGE
-
-    @property
     def table(self) -> Array:
         """The table after all pivots."""
         self._put_in()

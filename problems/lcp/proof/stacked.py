@@ -9,7 +9,7 @@ from continuation.arrays import Array
 from problems.lcp.proof.certificate import ROUND_OFF
 from problems.lcp.proof.compensated import LARGEST_TERMS, error_bound, summed
 from problems.lcp.proof.off import DROWNED
-from problems.lcp.proof.pieces import all_faces, drift, identity, in_doubt, inverses
+from problems.lcp.proof.pieces import drift, identity, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 
 POINT_CORRECTIONS = 2
@@ -61,10 +61,3 @@ def judged(
         clear = (on == active) & near & (on | (w - bound > 4.0 * moved.max(axis=1, keepdims=True) * size))
         solves &= clear.all(axis=1) | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
     return solves, x, np.abs(np.minimum(x, w)).max(axis=1), worst
-
-
-def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
-    """Faces that may hold a solution, shape (k, 2^n); `q` of shape (k, n)."""
-    k, n = q.shape
-    states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
-    return in_doubt(np.repeat(A, 2**n, axis=0), np.repeat(q, 2**n, axis=0), states).reshape(k, 2**n)

@@ -1,5 +1,5 @@
 """Reference methods: Lemke's pivots, modulus iteration, damped min-Newton."""
 
-from problems.lcp.reference.methods import ReferenceResult, lemke, min_newton, modulus
+from problems.lcp.reference.methods import lemke, min_newton, modulus
 
-__all__ = ["ReferenceResult", "lemke", "min_newton", "modulus"]
+__all__ = ["lemke", "min_newton", "modulus"]

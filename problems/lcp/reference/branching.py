@@ -98,9 +98,10 @@ class Branching:
         values[basic] = constants
         zero = ROUNDED_TO_ZERO * largest(constants)
         x, w = values[:n], values[n:]
-        between = np.minimum(x, w) > zero
-        if between.any():
-            self._branch(node, between.nonzero()[0])
+        between = np.minimum(x, w)
+        if between.max() > zero:
+            i = int(between.argmax())
+            self._put(node, i, x_first=bool(x[i] < w[i]))
             return True
         if self.accepts(x > w):
             self.accepted = True
@@ -119,21 +120,6 @@ class Branching:
         if group is not None:
             self._groups.append(group)
         return group is not None
-
-    def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
-        """Fix the pair whose children's cost bounds differ most."""
-        dictionary, n = node.dictionary, self.problem.n
-        places = np.empty(2 * n + 1, dtype=np.intp)
-        places[dictionary.basic] = np.arange(n + 1)
-        table = dictionary.table
-        rows = places[np.concatenate([between, between + n])]
-        falling, costs = -table[rows, :n], np.maximum(table[n, :n], 0.0)
-        possible = ~node.fixed[dictionary.nonbasic] & (falling > ROUNDED_TO_ZERO)
-        least = np.where(possible, costs / np.where(possible, falling, 1.0), np.inf).min(axis=1)
-        # An infeasible child has infinite cost.
-        of_x, of_w = np.nan_to_num(least * table[rows, n]).reshape(2, -1)
-        k = int(np.abs(of_x - of_w).argmax())
-        self._put(node, int(between[k]), bool(of_x[k] < of_w[k]))
 
     def _put(self, node: Node, i: int, x_first: bool) -> None:
         n = self.problem.n

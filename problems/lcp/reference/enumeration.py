@@ -41,11 +41,6 @@ class ExactSolution:
         """X in floats, correctly rounded, shape (n,)."""
         return np.array([float(v) for v in self.x])
 
-    @property
-    def strictly_complementary(self) -> bool:
-        """Whether x_i + w_i > 0 for every i."""
-        return all(a + b > 0 for a, b in zip(self.x, self.w, strict=True))
-
 
 @frozen
 class Enumeration:

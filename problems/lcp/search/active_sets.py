@@ -1,6 +1,6 @@
 """Active sets: Newton's method on min(x, A x + q).
 
-If A is semidefinite or symmetric, rounds with A + shift I follow; for a program, the augmented Lagrangian.
+For a symmetric A in a box descent with A + shift I follows; for a convex program, the augmented Lagrangian.
 """
 
 from __future__ import annotations
@@ -21,15 +21,14 @@ from problems.lcp.search.at_once import SETTLED, ZERO
 from problems.lcp.search.pivots import by_guess, pivotable
 from problems.lcp.search.search import Search
 
-SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 
 MOST_Z_STEPS = 1000
 """Most corrections for a Z-matrix, where each enlarges the active set."""
 
-PROXIMAL_ROUNDS, DESCENT_ROUNDS = 2, 200
-"""Rounds of the proximal method where A is semidefinite, and of descent in a box."""
+DESCENT_ROUNDS = 200
+"""Most rounds of descent in a box."""
 
 
 @define(eq=False)
@@ -60,25 +59,17 @@ class ActiveSets:
             yield SETTLED, search.settle(guess(problem, finish.faces.factoring, finish.counts), Policy(steps))
         first = first_state(search)
         yield SETTLED, search.settle(first, Policy(steps=0, singular=0))
-        facts = search.facts  # costs a small solve
+        facts = search.structure  # costs a small solve
         if finish.ended is Ended.SINGULAR and pivotable(search) and not facts.symmetric:
             return
         long = Policy(min(problem.n, MOST_Z_STEPS)) if facts.z_matrix else Policy(steps, PATIENCE)
         yield SETTLED, search.settle(first if finish.following is None else finish.following, long)
-        if not facts.negative_diagonal if facts.symmetric else search.facts.semidefinite:
-            unit = float(np.mean(problem.A.diagonal())) or float(np.mean(abs(problem.A).max(axis=1)))
-            yield SHIFTED, search.found(finish.proximal(first, 1e-3 * unit, PROXIMAL_ROUNDS))
         if facts.symmetric and np.isfinite(problem.lower).all() and np.isfinite(problem.upper).all():
             shift = 1.1 * below_zero(problem.A)
             yield DESCENDED, search.found(finish.proximal(first, shift, DESCENT_ROUNDS))
-        elif problem.primal and not problem.standard:
-            yield AUGMENTED, self._augmented(finish)
-
-    def _augmented(self, finish: Finish) -> bool:
-        search, n = self.search, self.search.problem.primal
-        below = 0.0 if search.facts.semidefinite else 1.1 * below_zero(search.problem.A[:n][:, :n])
-        found = search.found(finish.augmented(below, lambda: search.exhausted))
-        return found or (finish.nearest is not None and to_precision(search.problem, finish.nearest))
+        elif problem.primal and not problem.standard and facts.semidefinite:
+            found = search.found(finish.augmented(lambda: search.exhausted))
+            yield AUGMENTED, found or (finish.nearest is not None and to_precision(problem, finish.nearest))
 
 
 def zero_solves(problem: MixedLCP) -> bool:
@@ -89,9 +80,9 @@ def zero_solves(problem: MixedLCP) -> bool:
 def first_state(search: Search) -> State:
     """The state at the point nearest to zero, or for a convex function after projected gradient steps."""
     problem = search.problem
-    if not problem.standard:
-        convex = search.facts.symmetric and not search.facts.negative_diagonal
-        return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))
-    # On a grid these join one by one otherwise (Chandrasekaran's method).
-    grid = problem.sparse and search.facts.z_matrix and float(problem.A.diagonal().min()) > 0.0
-    return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)
+    if problem.standard:
+        # On a grid where q is zero these join one by one otherwise (Chandrasekaran's method).
+        grid = problem.sparse and search.structure.z_matrix and float(problem.A.diagonal().min()) > 0.0
+        return active_state(problem.q <= 0.0 if grid else problem.q < 0.0)
+    convex = search.structure.symmetric and not search.structure.negative_diagonal
+    return projected_state(problem) if convex else problem.states(problem.near_zero, problem.w(problem.near_zero))

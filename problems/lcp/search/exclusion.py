@@ -86,8 +86,10 @@ class Exclusion:
             assert self.tree is not None
             if search.proof is None:
                 return f"The complementary faces were enumerated in groups, by {self.tree.nodes} linear programs."
-        elif not self.sought and (self.tree is None or not self.tree.open) and self._affordable():
-            self.sought, search.proof = True, infeasibility(search.problem)
+        elif not self.sought and (self.tree is None or not self.tree.open):
+            A = search.problem.A
+            self.sought = A.shape[0] * (A.nnz if search.problem.sparse else A.size) <= LARGEST_PROOF
+            search.proof = infeasibility(search.problem) if self.sought else search.proof
         if search.proof is not None:
             return "A linear program gave the proof."
         if not work or search.finish is None or not decidable(search.problem, LARGEST_DECIDED):
@@ -108,7 +110,3 @@ class Exclusion:
         if search.proof is None:
             taken(search, found)
         return True
-
-    def _affordable(self) -> bool:
-        problem = self.search.problem
-        return bool(problem.n * (problem.A.nnz if problem.sparse else problem.n**2) <= LARGEST_PROOF)

@@ -15,10 +15,10 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
 from problems.lcp.data.spread import extreme
-from problems.lcp.proof.certificate import certify
+from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, to_precision
-from problems.lcp.reference.enumeration import decidable, exhaust
+from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.exclusion import TRIED, decide
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
@@ -28,19 +28,18 @@ def answer(search: Search, message: str) -> Solution:
     """The answer; `message` says what was done."""
     end, proof = search.best(), search.proof
     outcome = _outcome(search, end)
-    rest = (
-        None if end is None else end.certificate,
-        tuple(search.paths),
-        -1 if end is None else end.path,
-        search.counts,
-        search.seconds,
-        proof if isinstance(proof, Farkas) else None,
-        search.exhaustion,
-        proof if isinstance(proof, FloatFarkas) else None,
-    )
-    found = Solution(search.problem, outcome, "", *rest)
-    message = " ".join(part for part in (found.sentence, found.proof, message) if part)
-    return Solution(search.problem, outcome, message, *rest)
+    found = Solution(
+        search.problem, outcome, "",
+        certificate=None if end is None else end.certificate,
+        paths=tuple(search.paths),
+        best=-1 if end is None else end.path,
+        counts=search.counts,
+        seconds=search.seconds,
+        farkas=proof if isinstance(proof, Farkas) else None,
+        exhaustion=search.exhaustion,
+        float_farkas=proof if isinstance(proof, FloatFarkas) else None,
+    )  # fmt: skip
+    return evolve(found, message=" ".join(part for part in (str(outcome), found.proof, message) if part))
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
@@ -83,56 +82,56 @@ def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
     return balanced(problem)
 
 
-def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
+def unscaled(problem: MixedLCP, scaled: Scaled, tolerance: float, found: Solution) -> Solution:
     """The answer in the given units."""
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
-    rounded = _rounded(found, tolerance)
-    found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
     # `Solution.farkas` computes its vector on demand.
-    exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
+    exact, nearly, tried = found.farkas if found.exhaustion is None else None, found.float_farkas, found.exhaustion
     if exact is not None:
-        moved = exact.in_units(problem, scaled.rows)
-        if moved is None or not moved.gap < 0:
-            message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
-            return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
-        found = evolve(found, farkas=moved)
-    tried = found.exhaustion
+        exact = exact.in_units(problem, scaled.rows)
     if tried is not None and tried.groups is not None:
-        found = evolve(found, exhaustion=evolve(tried, groups=tried.groups.in_units(scaled.rows)))
+        tried = evolve(tried, groups=tried.groups.in_units(scaled.rows))
     if nearly is not None:
-        found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
-    if found.x is None:
-        return found
-    return _at(found, scaled.x(found.x), tolerance, rounded)
+        nearly = nearly.in_units(scaled.rows)
+    x = None if found.x is None else scaled.x(found.x)
+    return _moved(found, problem, x, tolerance, said, exact, nearly, tried)
 
 
-def with_fixed(small: WithoutFixed, rest: Solution, tolerance: float) -> Solution:
+def with_fixed(small: WithoutFixed, tolerance: float, rest: Solution) -> Solution:
     """The answer with fixed unknowns put back."""
     problem = small.whole
     fixed = [f"x[{i}]" for i in np.flatnonzero(problem.fixed)]
     more = f" and {len(fixed) - 5} more" if len(fixed) > 5 else ""
     said = f"Fixed, and eliminated: {', '.join(fixed[:5])}{more}."
-    rounded = _rounded(rest, tolerance)
     proof = infeasibility(problem) if rest.farkas is not None or rest.float_farkas is not None else None
-    found = evolve(
-        rest, problem=problem, message=f"{rest.message} {said}",
-        exhaustion=None if rest.exhaustion is None else exhaust(problem),
-        farkas=proof if isinstance(proof, Farkas) else None,
-        float_farkas=proof if isinstance(proof, FloatFarkas) else None,
+    found = _moved(
+        rest, problem, None if rest.x is None else small.x(rest.x), tolerance, said,
+        proof if isinstance(proof, Farkas) else None,
+        proof if isinstance(proof, FloatFarkas) else None,
+        None if rest.exhaustion is None else exhaust(problem),
     )  # fmt: skip
-    exhausted = found.exhaustion is not None and not found.exhaustion.solvable
-    if found.outcome is Outcome.UNSOLVABLE and found.farkas is None and not exhausted:
-        message = f"{Outcome.NOT_FOUND} Its proof fails for the rounding of what fixed unknowns add. {found.message}"
-        found = evolve(found, outcome=Outcome.NOT_FOUND, message=message)
-    if rest.x is None:
-        return found
-    found = _at(found, small.x(rest.x), tolerance, rounded)
     # Elimination rounded q.
     if found.outcome is Outcome.SOLVED and found.certificate is not None and problem.n <= LARGEST_DECIDED:
         found = found if found.certificate.exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
     return found
+
+
+def _moved(
+    found: Solution, problem: MixedLCP, x: Array | None, tolerance: float, said: str,
+    farkas: Farkas | None, float_farkas: FloatFarkas | None, exhaustion: Exhaustion | None,
+) -> Solution:  # fmt: skip
+    """The answer to another form of the problem, with its proofs; its outcome is judged again."""
+    rounded = _rounded(found, tolerance)
+    proved = (farkas is not None and farkas.gap < 0) or (exhaustion is not None and not exhaustion.solvable)
+    found = evolve(
+        found, problem=problem, message=f"{found.message} {said}".rstrip(),
+        farkas=farkas, float_farkas=float_farkas, exhaustion=exhaustion,
+    )  # fmt: skip
+    if found.outcome is Outcome.UNSOLVABLE and not proved:
+        return _not_found(found, "Its proof fails for the digits that were rounded.", None)
+    return found if x is None else _at(found, x, tolerance, rounded)
 
 
 def stored_as(problem: MixedLCP, found: Solution) -> Solution:
@@ -173,20 +172,22 @@ def _rounded(found: Solution, tolerance: float) -> bool:
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
-    if (
-        not found.solved
-        or (rounded and certificate is not None)
-        or (certificate is not None and confirmed(found.problem, certificate, tolerance))
-    ):
+    right = certificate is not None and (rounded or confirmed(found.problem, certificate, tolerance))
+    if not found.solved or right:
         return evolve(found, certificate=certificate)
-    if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:
+    small = x[x > 0.0].min(initial=math.inf)
+    if not bad.any() and small > np.finfo(float).tiny:
         off = math.nan if certificate is None else certificate.relative_residual
         why = "q drowns in the rounding of x" if off <= tolerance else f"the point misses the tolerance, by {off:.1e}"
-        message = f"{Outcome.NOT_FOUND} In the units given {why}."
-        return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
-    i = int(np.argmax(bad)) if bad.any() else int(np.argmin(np.where(x > 0.0, x, np.inf)))
-    message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."
-    return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
+        return _not_found(found, f"In the units given {why}.", certificate)
+    i = int(np.argmax(bad if bad.any() else x == small))
+    why = f"There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."
+    return _not_found(found, why, certificate)
+
+
+def _not_found(found: Solution, why: str, certificate: Certificate | None) -> Solution:
+    message = f"{Outcome.NOT_FOUND} {why} {found.message}"
+    return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=message, farkas=None)
 
 
 def _size(value: float) -> str:

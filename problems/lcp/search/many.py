@@ -15,21 +15,16 @@ from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.linear.threads import one_thread
 from problems.lcp.data.problem import LCP
-from problems.lcp.pivoting.lockstep import lemke_bases
-from problems.lcp.proof.pieces import all_faces
-from problems.lcp.proof.stacked import faces_in_doubt, judged
+from problems.lcp.proof.stacked import judged
 from problems.lcp.search.outcome import Outcome
 from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
-"""Largest order pivoted together: n = 20 takes a tenth of `solve`'s time."""
+"""Largest order solved together: n = 20 takes a tenth of `solve`'s time."""
 
-LARGEST_ALL_FACES = 8
-"""Largest order with all faces tried together: n = 8 takes 1.6 ms, where `solve` takes 4 ms."""
-
-TABLE_ENTRIES = 1 << 16
-"""Table entries of a batch, which fit the cache."""
+ENTRIES = 1 << 16
+"""Matrix entries of a batch, which fit the cache."""
 
 
 @frozen(eq=False)
@@ -73,8 +68,7 @@ def solve_many(
 ) -> Answers:
     """Solve k problems LCP(q_i, A_i) of one order, or LCP(q_i, A) for one matrix.
 
-    Up to order 20 Lemke's method runs on all together. Up to order 8 all faces of the rest are tried, which finds a
-    solution or proves that none exists. `solve` treats the others singly.
+    Up to order 20 block principal pivots run on all together. `solve` treats the others singly.
 
     Parameters
     ----------
@@ -97,26 +91,22 @@ def solve_many(
 
     References
     ----------
-    Lemke, Management Science 11, 1965; Cottle, Pang and Stone, Algorithm 4.4.5.
+    Judice and Pires, Comput. Oper. Res. 21, 1994.
     """
     matrices, constants = _stacks(A, q)
     solve(LCP(np.eye(1), np.ones(1)), tolerance=tolerance, budget=budget)
     if executor is not None:
         instance_with("executor", executor, ("map",), "a concurrent.futures.Executor")
     k, n = constants.shape
-    together = max(TABLE_ENTRIES // max(n * (n + 2), 1), 1)
+    together = max(ENTRIES // max(n * n, 1), 1)
     one = partial(_answers, tolerance=tolerance, budget=budget)
     parts = [slice(begin, begin + together) for begin in range(0, max(k, 1), together)]
     given = [matrices[part] for part in parts], [constants[part] for part in parts]
     found = list(map(one, *given) if executor is None else executor.map(one, *given))
-    singly = [answers.singly + part.start for answers, part in zip(found, parts)]
-    return Answers(
-        np.concatenate([answers.x for answers in found]),
-        np.concatenate([answers.outcome for answers in found]),
-        np.concatenate([answers.residual for answers in found]),
-        np.concatenate([answers.relative_residual for answers in found]),
-        np.concatenate(singly),
-    )
+    singly = np.concatenate([answers.singly + part.start for answers, part in zip(found, parts)])
+    names = ("x", "outcome", "residual", "relative_residual")
+    whole = {name: np.concatenate([getattr(answers, name) for answers in found]) for name in names}
+    return Answers(**whole, singly=singly)
 
 
 def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
@@ -136,29 +126,45 @@ def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> 
     x, outcome = np.full((k, n), np.nan), np.full(k, Outcome.NOT_FOUND, dtype=np.int8)
     residual, relative = np.full(k, np.inf), np.full(k, np.inf)
     left = np.ones(k, dtype=bool)
-
-    def settle(which: NDArray[np.intp], active: NDArray[np.bool_]) -> None:
-        solves, *found = judged(A[which], q[which], active, tolerance)
-        good = which[solves]
-        x[good], residual[good], relative[good] = (values[solves] for values in found)
+    if 0 < n <= LARGEST_TOGETHER:
+        with np.errstate(all="ignore"):
+            active, found = block_pivots(A, q)
+            solves, *values = judged(A[found], q[found], active[found], tolerance)
+        good = found[solves]
+        x[good], residual[good], relative[good] = (value[solves] for value in values)
         outcome[good], left[good] = Outcome.SOLVED, False
-
-    with np.errstate(all="ignore"):
-        if 0 < n <= LARGEST_TOGETHER:
-            active, ended = lemke_bases(A, q)
-            settle(np.flatnonzero(ended), active[ended])
-        if 0 < n <= LARGEST_ALL_FACES:
-            rest, size = np.flatnonzero(left), max(k >> n, 1)
-            for which in (rest[begin : begin + size] for begin in range(0, rest.size, size)):
-                doubtful = faces_in_doubt(A[which], q[which])
-                none = which[~doubtful.any(axis=1)]
-                outcome[none], left[none] = Outcome.UNSOLVABLE, False
-                held = doubtful.any(axis=1)
-                settle(which[held], all_faces(n)[doubtful[held].argmax(axis=1)])
     singly = np.flatnonzero(left)
     for i in singly:
-        found = solve(LCP(A[i], q[i]), tolerance=tolerance, budget=budget)
-        outcome[i], residual[i], relative[i] = found.outcome, found.residual, found.relative_residual
-        if found.x is not None and found.solved:
-            x[i] = found.x
+        one = solve(LCP(A[i], q[i]), tolerance=tolerance, budget=budget)
+        outcome[i], residual[i], relative[i] = one.outcome, one.residual, one.relative_residual
+        if one.x is not None and one.solved:
+            x[i] = one.x
     return Answers(x, outcome, residual, relative, singly)
+
+
+def block_pivots(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
+    """Active sets of many problems, and for which problems they are right but for rounding.
+
+    All wrong indices change, or the last one alone if their number has not fallen four times; so P-matrices need
+    finitely many changes. 2 n + 10 are made.
+    """
+    k, n = q.shape
+    active, left, right = q < 0.0, np.arange(k), np.zeros(k, dtype=bool)
+    fewest, vain = np.full(k, n + 1), np.zeros(k, dtype=np.intp)
+    for _ in range(2 * n + 10):
+        now = active[left]
+        faces = np.where(now[:, :, None], A[left], np.eye(n))
+        try:
+            x = np.linalg.solve(faces, np.where(now, -q[left], 0.0)[..., None])
+        except np.linalg.LinAlgError:
+            left = left[np.linalg.slogdet(faces)[0] != 0.0]
+            continue
+        wrong = np.where(now, x[..., 0] <= 0.0, (A[left] @ x)[..., 0] + q[left] < 0.0)
+        number = wrong.sum(axis=1)
+        right[left[number == 0]] = True
+        vain[left] = np.where(number < fewest[left], 0, vain[left] + 1)
+        fewest[left] = np.minimum(fewest[left], number)
+        last = np.arange(n) == n - 1 - wrong[:, ::-1].argmax(axis=1)[:, None]
+        active[left] = now ^ np.where((vain[left] > 3)[:, None], last, wrong)
+        left = left[number > 0]
+    return active, np.flatnonzero(right)

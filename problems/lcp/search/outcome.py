@@ -27,25 +27,26 @@ class Outcome(Described):
 
     SOLVED = (
         0,
-        "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, "
-        "verified in twice the working precision.",
+        "Solved: x is between its bounds (x >= 0), and w has the signs that these ask for, to the tolerance, each row "
+        "relative to its own terms, verified in twice the working precision.",
     )
     STATIONARY = (
         1,
         "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
         "other solutions may exist.",
     )
-    UNSOLVABLE = 2, "The LCP has no solution, which is proved exactly."
+    UNSOLVABLE = 2, "The problem has no solution, which is proved exactly."
     NOT_FOUND = 3, "No solution was found, and none is excluded."
     INFEASIBLE_TO_PRECISION = (
         4,
-        "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
-        "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
+        "To working precision no x between the bounds gives w the signs that a solution has, complementary or not: a "
+        "multiplier y with q'y < 0 says so but for rounding. A change of A in its last digits makes that a proof.",
     )
     SOLVED_TO_PRECISION = (
         5,
-        "Solved to working precision: x solves an LCP whose entries differ from these in "
-        "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
+        "Solved to working precision: x solves a problem whose entries differ from these in their last digits (for a "
+        "program, by the rounding of the largest of them); in exact arithmetic the face of x holds no solution, so the "
+        "data as given may have none.",
     )
 
     def __str__(self) -> str:
@@ -60,26 +61,10 @@ class Outcome(Described):
         return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
-_WITH_BOUNDS = {
-    Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each "
-    "row relative to its own terms, verified in twice the working precision.",
-    Outcome.UNSOLVABLE: "The problem has no solution, which is proved exactly.",
-    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x between the bounds gives w the signs that a solution "
-    "has, complementary or not: a multiplier says so but for rounding.",
-}
-_ROUNDED = (
-    "Solved to working precision: x solves a program whose data differ from these by the round-off of the largest of "
-    "them, in balanced units. Relative to its own terms a row is off by more, as where a side of it is rounding in "
-    "place of a zero; so the data as given may have no solution."
-)
-_PROOFS_WITH_BOUNDS = {
-    "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds gives w the signs of a solution.",
-    "exhaustion": "None of the complementary pieces holds a solution: all were tried, with error bounds or exactly.",
-}
 _PROOFS = {
-    "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
-    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried, with error bounds or exactly.",
-    "groups": "None of the 2^n complementary faces holds a solution: Farkas vectors, verified with error bounds or "
+    "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds (x >= 0) has w with these signs.",
+    "exhaustion": "None of the complementary faces holds a solution: all were tried, with error bounds or exactly.",
+    "groups": "None of the complementary faces holds a solution: Farkas vectors, verified with error bounds or "
     "exactly, exclude them in groups.",
     "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
@@ -137,7 +122,7 @@ class Solution:
             return ""
         grouped = self.exhaustion is not None and self.exhaustion.groups is not None
         kind = "farkas" if self._farkas is not None else "groups" if grouped else "exhaustion"
-        return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[kind]
+        return _PROOFS[kind]
 
     @property
     def farkas(self) -> Farkas | None:
@@ -148,14 +133,6 @@ class Solution:
         with np.errstate(all="ignore"):
             proof = infeasibility(self.problem)
         return proof if isinstance(proof, Farkas) else None
-
-    @property
-    def sentence(self) -> str:
-        """The outcome's sentence for this problem."""
-        rounded = self.outcome is Outcome.SOLVED_TO_PRECISION and self.problem.primal > 0
-        if rounded and self.certificate is not None and not self.certificate.solves():
-            return _ROUNDED
-        return str(self.outcome) if self.problem.standard else _WITH_BOUNDS.get(self.outcome, str(self.outcome))
 
     def __repr__(self) -> str:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"

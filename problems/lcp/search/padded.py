@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from attrs import evolve, frozen
@@ -11,6 +11,8 @@ from continuation.arrays import Array
 from continuation.path import LocatedEvent, Path, Step
 from continuation.step.tracer import Observer, Tracer
 from problems.lcp.data.problem import MixedLCP
+
+P = TypeVar("P", Step, LocatedEvent)
 
 
 @frozen(eq=False)
@@ -26,16 +28,24 @@ class Padded:
         return cls(observer, (3 if problem.standard else 6) * problem.n)
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """Pass on the step."""
-        self.observer.step(tracer, evolve(step, u=self._filled(step.u), tangent=self._filled(step.tangent)))
+        """Pass on the step; the observer sees padded events."""
+        path = tracer.path
+        events, path.events = path.events, [self._padded(event) for event in path.events]
+        try:
+            self.observer.step(tracer, self._padded(step))
+        finally:
+            path.events = events
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
         """Pass on the event."""
-        self.observer.event(tracer, evolve(event, u=self._filled(event.u), tangent=self._filled(event.tangent)))
+        self.observer.event(tracer, self._padded(event))
 
     def end(self, tracer: Tracer) -> None:
         """Pass on the end."""
         self.observer.end(tracer)
+
+    def _padded(self, point: P) -> P:
+        return evolve(point, u=self._filled(point.u), tangent=self._filled(point.tangent))
 
     def _filled(self, u: Array) -> Array:
         if u.size - 1 == self.unknowns:

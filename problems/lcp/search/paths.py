@@ -15,29 +15,24 @@ from attrs import define, evolve
 from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg
 from continuation.correctors import BorderedNewton
-from continuation.path import Path, Step
+from continuation.path import Path
 from continuation.predictors import Hermite
-from continuation.status import Kind, Status
+from continuation.status import Status
 from continuation.step.presets import FAST, Preset
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish, with_zeros
-from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
 from problems.lcp.homotopies.starts import random_start
-from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import stationary
 from problems.lcp.search.padded import Padded
 from problems.lcp.search.search import Candidate, Search
-
-RESTART_STEPS = 60
-"""Most steps of a restart, besides n: of 144 solving paths one took nearly as many. The first path gets twice as many.
-"""
 
 LARGEST_MADE_DENSE = 500
 """Largest order at which paths make sparse matrices dense, as they fill: with 5 % entries (n = 200) a path takes a
@@ -45,10 +40,6 @@ tenth of the time."""
 
 LOOSE = Tolerance(relative=5e-2)
 """Last increment of a restart: the finish is exact."""
-
-Patience = Callable[[Step], str]
-"""Maps a step to the reason to give up, or ""."""
-
 
 SEARCH = Preset(
     "SEARCH",
@@ -64,28 +55,22 @@ def follow(
     homotopy: LCPHomotopy,
     finish: Finish | None,
     budget: Budget,
-    patience: Patience = lambda step: "",
+    exhausted: Callable[[], str],
     observers: tuple[Observer, ...] = (),
     **options: Any,
 ) -> Path:
-    """Trace a path and try the finish along it. The reason of `patience` becomes its message."""
+    """Trace a path and try the finish along it. What is exhausted becomes its message."""
     before = 0 if finish is None else finish.counts.factorizations
-    along = None if finish is None else AlongPath.of(finish, homotopy)
+    along = None if finish is None else AlongPath(finish, homotopy)
     tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
-    for step in tracer:
-        if reason := patience(step):
+    for _ in tracer:
+        if reason := exhausted():
             tracer.give_up(reason)
             break
     if finish is not None:
         tracer.path.counts.factorizations += finish.counts.factorizations - before
         finish.counts.factorizations = before
     return tracer.path
-
-
-def unending(step: Step, longest: float) -> str:
-    """The reason to give up so long a path, or ""."""
-    late = step.kind == Kind.REGULAR and step.index >= longest
-    return f"it has not ended after {step.index} steps" if late else ""
 
 
 def light(path: Path) -> None:
@@ -121,11 +106,13 @@ class Paths:
         search = self.search
         if search.asked.homotopy != "auto":
             return (search.asked.homotopy,)
-        return ("kkt",) if search.problem.standard and search.facts.negative_diagonal else ("wang", "kkt")
+        return ("kkt",) if search.problem.standard and search.structure.negative_diagonal else ("wang", "kkt")
 
     def _first(self, name: str) -> str:
         search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]
-        start, automatic = asked.x0, asked.homotopy == "auto"
+        automatic = asked.homotopy == "auto"
+        # For "auto" x0 names an active set.
+        start = None if automatic else asked.x0
         if search.exhausted:
             return ""
         if start is None and known.feasible:
@@ -136,19 +123,11 @@ class Paths:
                 if error.certificate is not None and error.certificate.no_feasible_point:
                     search.proof = error.certificate
                 return str(error)
-        if start is not None and problem.standard and not start.all():  # paths need positive starts
-            start = None
         homotopy = known.from_x0(problem, start, search.structure)
-        if automatic and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
-            homotopy = known.from_x0(problem, None, search.structure)
-        # Leave time for restarts.
-        hurried = name == "kkt" and automatic and asked.restarts > 0 and search.finish is not None and not asked.options
-        longest = 2.0 * (RESTART_STEPS + problem.n) if hurried else np.inf
         preset = {"preset": FAST} if automatic else {}
         # The finish certifies ends.
         options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}
-        self.add(follow(homotopy, search.finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
-                        self._observers(), **options))  # fmt: skip
+        self.add(follow(homotopy, search.finish, self._left(), lambda: search.exhausted, self._observers(), **options))
         return f"Solved by the path of the {name} homotopy." if search.solved else ""
 
     def add(self, path: Path) -> None:
@@ -165,24 +144,17 @@ class Paths:
         search, problem = self.search, self.search.problem
         x = problem.clipped(path.endpoint.y[: problem.n])
         end = certify(problem, x)
-        if not arrived:
+        if not arrived or search.confirmed(end):
             return end
-        if not search.confirmed(end):
-            # Only zeros move: a stationary point stays one.
-            zeros = certify(problem, x, search.tolerance)
-            zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
-            end = min(end, zeros, key=lambda one: one.relative_residual)
-        finish = search.finish
-        if finish is None or end.relative_residual <= ROUND_OFF:
-            return end
-        polished = finish.settle(problem.states(x, end.w), Policy(steps=0), x)
-        return finish.certificate if polished is not None and finish.certificate is not None else end
+        # Only zeros move: a stationary point stays one.
+        zeros = certify(problem, x, search.tolerance)
+        zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
+        return min(end, zeros, key=lambda one: one.relative_residual)
 
     def _restarted(self, name: str, count: int) -> int:
         """Trace paths until one solves; return their number. The k-th depends on the seed and k alone."""
-        search, asked, structure, parts, longest = self.search, self.search.asked, self.search.structure, {}, np.inf
-        if search.finish is not None:
-            parts, longest = {"tolerance": LOOSE}, RESTART_STEPS + search.problem.n
+        search, asked, structure = self.search, self.search.asked, self.search.structure
+        parts = {} if search.finish is None else {"tolerance": LOOSE}
         for k in range(count):
             if search.exhausted:
                 return k
@@ -190,8 +162,7 @@ class Paths:
             homotopy = HOMOTOPIES[name].at(search.problem, start, structure, refine=search.finish is None)
             options = {"preset": SEARCH, "examine": search.finish is None, **parts, **asked.options}
             finish = None if search.finish is None else Finish(Faces(structure), search.tolerance)
-            path = follow(homotopy, finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
-                          self._observers(), **options)  # fmt: skip
+            path = follow(homotopy, finish, self._left(), lambda: search.exhausted, self._observers(), **options)
             self.add(path)
             if search.solved:
                 return k + 1

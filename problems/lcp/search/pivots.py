@@ -21,9 +21,6 @@ from problems.lcp.search.search import Nearby, Search
 LARGEST_TABLE = 3000
 """Largest order that is pivoted: each pivot visits all 72 MB of the table."""
 
-PIVOT_WORK = LARGEST_TABLE**2
-"""Most pivots times order: one second at n = 1000, where a path takes ten."""
-
 COVERINGS = 5
 """Covering vectors for a quadratic program: 5 with entries 10^U(-3, 0) suffice on 40 indefinite box QPs."""
 
@@ -36,8 +33,8 @@ GAME_WORK = 1_000_000_000
 
 
 def most_pivots(n: int, per_order: float = 10.0) -> int:
-    """Pivots worth trying before a path, fewer per order for large n."""
-    return min(int(per_order * n), PIVOT_WORK // n)
+    """Pivots worth trying before a path, fewer per order for large n: a second at n = 1000, where a path takes ten."""
+    return min(int(per_order * n), LARGEST_TABLE**2 // n)
 
 
 def pivotable(search: Search) -> bool:
@@ -66,9 +63,8 @@ class Pivots:
         paths = self._lemke(problem, work) if played is None else self._lemke_howson(played, work)
         for path, most in paths:
             if reached(self.search, path, most):
-                compiled = " (pivots compiled by numba)" if path is not None and path.compiled else ""
                 method = "Lemke's method" if played is None else "the method of Lemke and Howson"
-                return f"By {method}{compiled}, before any path."
+                return f"By {method}, before any path."
         return ""
 
     def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:
@@ -83,21 +79,15 @@ class Pivots:
         yield covering(problem, np.full(problem.n, unit)), most
 
     def _lemke_howson(self, played: Game, work: float) -> Iterator[tuple[AlmostComplementary, int]]:
-        """Ever longer paths from one label of each player, then short ones from many labels.
+        """Long paths from one label of each player, then short ones from many labels.
 
         References
         ----------
         Codenotti, De Rossi and Pagan, arXiv 0811.3247, 2008.
         """
         n, m = played.problem.n, played.actions
-        most = int(work * n)
-        paths: list[AlmostComplementary] = []
-        for label in (0, n - 1):
-            paths.append(played.path(label))
-            yield paths[-1], most
-        while 2 * most <= GAME_WORK // (m * (n - m)) and any(path.ended is None for path in paths):
-            most *= 2
-            yield from ((path, most) for path in paths if path.ended is None)
+        most = max(int(work * n), GAME_WORK // (m * (n - m)))
+        yield from ((played.path(label), most) for label in (0, n - 1))
         labels = np.random.default_rng(self.search.asked.seed).permutation(n)
         yield from ((played.path(int(label)), n // 2) for label in labels[: int(SHORT_PATHS * work)])
 

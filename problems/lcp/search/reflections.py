@@ -114,7 +114,7 @@ class Sets:
 
 def reflectable(search: Search) -> bool:
     """Whether projections are affordable and A is not semidefinite."""
-    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.facts.semidefinite
+    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.structure.semidefinite
 
 
 @define(eq=False)

@@ -115,11 +115,6 @@ class Search:
         """The budget over the default one, at most 1."""
         return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
 
-    @cached_property
-    def facts(self) -> Structure:
-        """The matrix's properties, which the message then reports."""
-        return self.structure
-
     @property
     def solved(self) -> bool:
         """Whether the last end is a solution."""

@@ -22,15 +22,12 @@ from problems.lcp.pivoting.starts import unit_of
 from problems.lcp.search.at_once import at_once
 from problems.lcp.search.judge import answer, units_of_its_own, unscaled
 from problems.lcp.search.outcome import Solution
-from problems.lcp.search.pivots import LARGEST_TABLE, from_nearby
+from problems.lcp.search.pivots import from_nearby, pivotable
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
 
 NEARBY = "Solved by the active set of a problem nearby, corrected."
-
-WARM = Policy(steps=1)
-"""Corrections before pivots: the slowest step of a stack of boxes takes 5 ms with 0 to 2, 9 ms with 4."""
 
 
 @define(eq=False)
@@ -38,7 +35,7 @@ class Solver:
     """Solves LCP(q, A) for one matrix and one q after another.
 
     Each q is tried on the given or the previous active set, then by pivots from the previous q, then by `solve`.
-    Factors and the scaling of A are kept.
+    What is known of A is kept.
 
     Parameters
     ----------
@@ -58,12 +55,12 @@ class Solver:
 
     A: Matrix = field(converter=square_matrix)
     tolerance: float = field(default=1e-10, validator=lambda instance, attribute, value: check_tolerance(value))
-    _scaled: Scaled | None = field(default=None, init=False)
     _first: LCP | None = field(default=None, init=False)
+    _scaled: Scaled | None = field(default=None, init=False)
     _structure: Structure | None = field(default=None, init=False)
-    _kept: dict[bytes, Face] = field(factory=dict, init=False)
     _active: Mask | None = field(default=None, init=False)
-    _bases: list[tuple[Array, Mask]] = field(factory=list, init=False)
+    _last: tuple[Array, Mask] | None = field(default=None, init=False)
+    _face: Face | None = field(default=None, init=False)
 
     @one_thread
     def solve(self, q: Any, active: Any = None, **options: Any) -> Solution:
@@ -97,14 +94,15 @@ class Solver:
             found = solve(problem, tolerance=self.tolerance, **options)
         if found.solved and found.x is not None:
             self._active = found.x > 0.0
-            # The last basis may be singular.
-            self._bases[1:] = [(problem.q, self._active)]
+            # A basis from pivots is regular where that set may be singular.
+            self._last = self._last or (problem.q, self._active)
         return found
 
     def _nearby(self, problem: LCP, guess: Mask | None) -> Solution | None:
         if self._structure is None:
-            self._learn(problem)
-        assert self._structure is not None
+            scaled = units_of_its_own(problem, roughly=True)
+            self._scaled = scaled if scaled is not None and scaled.exact else None
+            self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
         scaled, current = self._scaled, problem
         if scaled is not None:
             moved = np.ldexp(problem.q, scaled.rows)
@@ -114,33 +112,22 @@ class Solver:
             current = scaled.problem.with_q(moved)
         found = at_once(current, self.tolerance, guess, NEARBY)
         if found is None:
-            finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
-            search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
-            message = NEARBY
-            if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
-                if not self._pivoted(search):
+            structure = self._structure.of_same_matrix(current)
+            finish = Finish(Faces(structure, kept=self._face), self.tolerance)
+            search, message = Search(structure, finish, self.tolerance, Budget(steps=math.inf)), NEARBY
+            if not search.settle(active_state(current.q < 0.0 if guess is None else guess), Policy(steps=1)):
+                q, basis = self._last or (None, None)
+                rows = 0 if scaled is None else scaled.rows
+                d = np.full(problem.n, unit_of(current)) if q is None else np.ldexp(q, rows) - current.q
+                last = from_nearby(search, d, basis) if pivotable(search) else None
+                if last is None:
+                    self._last = None
                     return None
-                message = "Solved by pivots along a path from a problem nearby."
+                self._last, message = (problem.q, last), "Solved by pivots along a path from a problem nearby."
+            self._face = finish.solved_on or self._face
             found = answer(search, message)
-        found = found if scaled is None else unscaled(problem, scaled, found, self.tolerance)
+        found = found if scaled is None else unscaled(problem, scaled, self.tolerance, found)
         return found if found.solved else None
-
-    def _pivoted(self, search: Search) -> bool:
-        """Pivot from the q before."""
-        problem, rows = search.problem, 0 if self._scaled is None else self._scaled.rows
-        assert isinstance(problem, LCP)
-        begins: list[tuple[Array, Mask | None]] = [(np.ldexp(q, rows) - problem.q, at) for q, at in self._bases[::-1]]
-        begins.append((np.full(problem.n, unit_of(problem)), None))
-        for d, basis in begins if problem.n <= LARGEST_TABLE else ():
-            if (last := from_nearby(search, d, basis)) is not None:
-                self._bases = [(np.ldexp(problem.q, -rows), last)]
-                return True
-        return False
-
-    def _learn(self, problem: LCP) -> None:
-        scaled = units_of_its_own(problem, roughly=True)
-        self._scaled = scaled if scaled is not None and scaled.exact else None
-        self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
 
 
 def _mask(active: Any, n: int) -> Mask:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from functools import partial
 from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
@@ -14,14 +15,12 @@ from attrs import evolve
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
 from continuation.arguments.checks import check_flag
-from continuation.arrays import Array, largest
+from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
 from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
-from continuation.path import Path, Step
-from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Faces, exchanging
 from problems.lcp.active_set.finish import Finish
@@ -29,7 +28,7 @@ from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
 from problems.lcp.data.spread import extreme
-from problems.lcp.homotopies import KKTHomotopy, Structure
+from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
@@ -47,7 +46,6 @@ from problems.lcp.search.judge import (
     with_fixed,
 )
 from problems.lcp.search.outcome import Outcome, Solution
-from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Asked, Nearby, Search
 from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, settled_by
 from problems.lcp.search.work import default_budget
@@ -88,8 +86,8 @@ def solve(
         "auto" tries active sets, pivots, exclusion of faces and reflections, then paths. Or "kkt", "wang", "yu", "xu",
         "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" accepts
-        zeros and first tries the set x0 > A x0 + q.
+        A positive start, for "kkt" perhaps infeasible; at a feasible one z1 = z2 = e, the paper's start. "auto" tries
+        the set x0 > A x0 + q alone, and accepts zeros.
     guess : Solution, optional
         Solution of a nearby problem: its active set is tried, then without bounds pivots from its data.
     finish : bool
@@ -106,7 +104,7 @@ def solve(
     tolerance : float
         For `Certificate.solves`, which every solution passes.
     archive : path, optional
-        A new HDF5 file for all traced paths. Without paths it holds the solution as the KKT path's end.
+        A new HDF5 file for all traced paths; implies `path`.
     progress : bool
         One progress bar per path (needs tqdm).
     sparse : str
@@ -128,51 +126,49 @@ def solve(
     ----------
     Dutta, Das and Jana (see `KKTHomotopy`).
     """
+    back: list[Callable[[Solution], Solution]] = []
     if isinstance(problem, Program):
-        return of_program(problem, solve(problem.problem, homotopy, **_given(locals()), **options))
+        back.append(partial(of_program, problem))
+        problem = problem.problem
     require_problem(problem)
-    if problem.standard and not isinstance(problem, LCP):
-        problem = LCP(problem.A, problem.q, primal=problem.primal)
-    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
-        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
-        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
     automatic = homotopy == "auto"
-    if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
-        known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
-        raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
+    _check_homotopy(homotopy, problem)
     check_method("sparse", sparse)
     _check_arguments(tolerance, restarts, seed, budget, options, finish=finish, path=path, progress=progress)
-    if problem.n == 0:
-        return _nothing(problem, archive)
+    path = path or archive is not None
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
     if not problem.standard and problem.fixed.any():
         small = without_fixed(problem)
-        left = _given(locals())
-        left["x0"] = None if start is None else start[small.kept]
-        left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
-        left["archive"] = archive if small.kept.size else None
-        return with_fixed(small, solve(small.problem, homotopy, **left, **options), tolerance)
+        back.append(partial(with_fixed, small, tolerance))
+        start = None if start is None else start[small.kept]
+        near = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
+        problem = small.problem
+    if problem.standard and not isinstance(problem, LCP):
+        problem = LCP(problem.A, problem.q, primal=problem.primal)
     if problem.sparse and problem.n <= LARGEST and sparse == "auto":
-        dense = evolve(problem, A=problem.A.toarray())
-        return stored_as(problem, solve(dense, homotopy, **_given(locals()), **options))
+        back.append(partial(stored_as, problem))
+        problem = evolve(problem, A=problem.A.toarray())
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
-    scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
-    beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
-    if beyond:
-        scaled = None
-    if scaled is not None:
+    scaled = None
+    if problem.n and (automatic or extreme(problem)):
+        scaled = units_of_its_own(problem, automatic and finish and not path)
+    found = _nothing(problem, archive) if problem.n == 0 else None
+    if scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED):
+        found = beyond_floats(problem, tolerance)
+    elif scaled is not None:
         start = None if start is None else scaled.u(start)
         near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    current = problem if scaled is None else scaled.problem
-    log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
+        back.append(partial(unscaled, problem, scaled, tolerance))
+        problem = scaled.problem
+    title = f"Paths of a linear complementarity problem, n = {problem.n}"
+    log = None if archive is None else PathLog(as_file("archive", archive), title=title)
     with Silence(), one_thread, nullcontext() if log is None else log:
-        found = beyond_floats(problem, tolerance) if beyond else None
         if found is None and automatic and finish and not path and start is None and near is None:
-            found = at_once(current, tolerance)
+            found = at_once(problem, tolerance)
         if found is None:
-            structure = Structure(current)
+            structure = Structure(problem)
             tried = Finish(Faces(structure, factoring=exchanging(sparse)), tolerance) if finish else None
             asked = Asked(homotopy, start, near, restarts, seed, path, log, progress, dict(options))
             budget = default_budget(problem) if budget is None else budget
@@ -181,19 +177,18 @@ def solve(
             found = answer(search, _account(search, settled))
             if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION:
                 found = exactly(search, found)
-        found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
-        if log is not None and not found.paths:
-            _archive_without_path(log, found)
-        return found
+        for step in reversed(back):
+            found = step(found)
+    return found
 
 
-def _given(arguments: dict[str, Any]) -> dict[str, Any]:
-    return {name: arguments[name] for name in solve.__kwdefaults__ or ()}
-
-
-def _title(problem: MixedLCP) -> str:
-    bounds = "" if problem.standard else " with bounds"
-    return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
+def _check_homotopy(homotopy: Any, problem: MixedLCP) -> None:
+    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
+        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
+        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
+    if homotopy != "auto" and not problem.standard and not HOMOTOPIES[homotopy].bounds:
+        known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
+        raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
@@ -252,10 +247,10 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 
 def _account(search: Search, settled: str) -> str:
-    parts = [f"A is {search.facts.said}."] if "facts" in vars(search) else []
     factored = "" if search.finish is None else str(search.finish.faces.factoring)
     if settled:
-        return " ".join(part for part in (*parts, settled, factored) if part)
+        return f"{settled} {factored}".rstrip()
+    parts = []
     if search.paths:
         parts.append(f"The first path: {search.paths[0].message}")
     tried = f"Restarts from random starts: {search.tried} (seed {search.asked.seed})."
@@ -265,16 +260,3 @@ def _account(search: Search, settled: str) -> str:
     if (best := search.best()) is not None:
         parts.append(f"The relative residual of the best point is {best.certificate.relative_residual:.1e}.")
     return " ".join([*parts, factored]).rstrip()
-
-
-def _archive_without_path(log: PathLog, found: Solution) -> None:
-    homotopy = KKTHomotopy(found.problem)
-    path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
-    end = found.certificate
-    if end is not None:
-        y = homotopy.at_solution(end.x)
-        u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
-        observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
-        path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
-        path.status = Status.REACHED_TARGET
-    show(path, homotopy, Padded.of(log, found.problem))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from continuation.budget import Budget
 from problems.lcp.data.problem import MixedLCP
 
@@ -21,9 +19,5 @@ def default_budget(problem: MixedLCP) -> Budget:
     n^2 / 5000); sparse 6.3 to 180 (n = 900 to 10,000), within a factor of 5 of 0.35 (1 + n / 50).
     """
     size = problem.n / 50.0 if problem.sparse else problem.n**2 / 5000.0
-    return _budget(max(round(FACTORIZATIONS / (1.0 + size)), LEAST_WORK))
-
-
-@lru_cache(maxsize=32)
-def _budget(limit: int) -> Budget:
+    limit = max(round(FACTORIZATIONS / (1.0 + size)), LEAST_WORK)
     return Budget(steps=limit, factorizations=limit)

@@ -88,7 +88,6 @@ def test_a_planted_solution_solves_and_is_of_its_kind(kind, data):
         (lambda: mine.planted_lcps("many", "P"), "cls: .*'P'"),
         (lambda: mine.matrices("Q"), "cls: expected one of any, P, .*found 'Q'"),
         (lambda: mine.matrices("P", 3, entries=st.floats(-1.0, 1.0)), "entries: expected none for the class P"),
-        (lambda: mine.large_lcps("N"), "cls: expected one of P, PSD, K, any"),
     ],
 )
 def test_what_is_unknown_is_refused(make, message):
@@ -129,12 +128,3 @@ def test_entries_of_ones_own(data):
     assert np.abs(A).max() <= 1.0
     Z = data.draw(mine.matrices("Z", 4, entries=st.floats(-1.0, 1.0)))
     assert classes.is_z(Z).holds
-
-
-@pytest.mark.parametrize("cls", mine.LARGE)
-@given(data=st.data())
-@settings(max_examples=3, database=None)
-def test_large_problems_have_the_solution_that_they_come_with(cls, data):
-    problem, x = data.draw(mine.large_lcps(cls, 400))
-    assert problem.n == 400
-    assert problem.natural_residual(x) < 1e-9

@@ -4,13 +4,11 @@ from copy import deepcopy
 from decimal import Decimal
 from fractions import Fraction
 
-import h5py
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 from problems.lcp import LCP
-from problems.lcp.data.files import InputError, read_problem
 
 A, Q = [[2.0, 1.0], [1.0, 2.0]], [-5.0, -6.0]
 
@@ -82,23 +80,3 @@ def test_sound_matrices_and_numbers_in_any_form(case):
     if sp.issparse(given):
         assert (found.format, found.has_sorted_indices) == ("csr", True)
         assert np.array_equal(given.toarray(), before.toarray()), "the caller's matrix is left alone"
-
-
-@pytest.mark.parametrize("kind", ["soft", "external", "virtual", "elsewhere"])
-def test_an_hdf5_file_shows_only_what_is_in_it(tmp_path, kind):
-    secret = str(tmp_path / "secret.h5")
-    with h5py.File(secret, "w") as file:
-        file["A"] = np.array(A)
-    (tmp_path / "raw").write_bytes(np.array(A).tobytes())
-    layout = h5py.VirtualLayout((2, 2), "f8")
-    layout[:] = h5py.VirtualSource(secret, "A", (2, 2))
-    with h5py.File(tmp_path / "p.h5", "w") as file:
-        file["B"], file["q"] = np.array(A), np.array(Q)
-        if kind == "virtual":
-            file.create_virtual_dataset("A", layout)
-        elif kind == "elsewhere":
-            file.create_dataset("A", (2, 2), "f8", external=[(str(tmp_path / "raw"), 0, 32)])
-        else:
-            file["A"] = h5py.SoftLink("/B") if kind == "soft" else h5py.ExternalLink(secret, "/A")
-    with pytest.raises(InputError, match=r"path: .*(a link to somewhere else|stored outside of the file)"):
-        read_problem(tmp_path / "p.h5")

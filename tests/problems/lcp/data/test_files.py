@@ -1,9 +1,7 @@
 """Problems from files: every format gives the same problem, and every defect one line that names it."""
 
-import io
 import json
 
-import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -15,33 +13,15 @@ A = np.array([[2.0, -1.0, 0.0], [0.5, 0.0, 3.0], [0.0, 1e-300, -7.25]])
 Q = np.array([-1.0, 2.5, 1 / 3])
 
 
-def write_h5(path, group="/", sparse=False):
-    with h5py.File(path, "w") as file:
-        at = file.require_group(group)
-        at["q"] = Q
-        if sparse:
-            matrix = sp.csr_array(A)
-            parts = {"data": matrix.data, "indices": matrix.indices, "indptr": matrix.indptr, "shape": matrix.shape}
-            at.create_group("A").update(parts)
-        else:
-            at["A"] = A
-
-
 CONTAINERS = {
     "p.npz": lambda path: np.savez(path, A=A, q=Q),
     "p.json": lambda path: path.write_text(json.dumps({"A": A.tolist(), "q": Q.tolist()})),
-    "p.mat": lambda path: scipy.io.savemat(path, {"A": A, "q": Q}),
-    "sparse.mat": lambda path: scipy.io.savemat(path, {"A": sp.csc_array(A), "q": Q[:, None]}),
-    "p.h5": write_h5,
-    "archive.h5": lambda path: write_h5(path, "problem"),
-    "groups.hdf5:/a/b": lambda path: write_h5(path, "a/b"),
-    "sparse.h5": lambda path: write_h5(path, sparse=True),
 }
 
 
 @pytest.mark.parametrize("name", CONTAINERS)
 def test_every_container_gives_the_same_numbers(tmp_path, name):
-    CONTAINERS[name](tmp_path / name.partition(":")[0])
+    CONTAINERS[name](tmp_path / name)
     problem = read_problem(f"{tmp_path}/{name}")
     assert problem.sparse == name.startswith("sparse")
     np.testing.assert_array_equal(problem.A.toarray() if problem.sparse else problem.A, A)
@@ -67,12 +47,6 @@ def test_every_form_of_a_vector(tmp_path, vector):
     np.testing.assert_array_equal(read_vector("q", tmp_path / vector, 3), Q)
 
 
-def npy(array):
-    file = io.BytesIO()
-    np.save(file, array)
-    return file.getvalue()
-
-
 def npz(**arrays):
     return lambda path: np.savez(path, **arrays)
 
@@ -88,14 +62,13 @@ BAD = {
     "no extension": ("p", text("A"), r"path: expected one of .*, found no extension"),
     "not an npz": ("p.npz", text("hello"), r"path: expected a .npz file, found one that cannot be read"),
     "empty npz": ("p.npz", text(""), r"path: expected a .npz file, found one that cannot be read"),
-    "an npy called npz": ("p.npz", lambda path: path.write_bytes(npy(A)), r"it holds one array"),
     "pickle": ("p.npz", npz(A=np.array([[None]]), q=Q), r"path: expected a .npz file.*allow_pickle"),
-    "names": ("p.npz", npz(M=A, q=Q), r"path: expected an array A, found M, q in"),
-    "no q": ("p.npz", npz(A=A), r"path: expected an array q, found A in"),
+    "names": ("p.npz", npz(M=A, q=Q), r"path: expected an array A, found M, q, in"),
+    "no q": ("p.npz", npz(A=A), r"path: expected an array q, found A, in"),
     "q elsewhere": ("p.npy", lambda path: np.save(path, A), r"path: expected A and q, found one array in"),
     "broken json": ("p.json", text('{"A": ['), r"path: expected a .json file, found one that cannot be read"),
     "json number": ("p.json", text("3"), r"it holds 3, not an object with A and q"),
-    "ragged": ("p.json", text('{"A": [[1, 2], [3]], "q": [1, 2]}'), r"path: A: expected real numbers in rows of"),
+    "ragged": ("p.json", text('{"A": [[1, 2], [3]], "q": [1, 2]}'), r"path: A: expected real numbers"),
     "words": ("p.json", text('{"A": [["one"]], "q": [1]}'), r"path: A: expected real numbers"),
     "huge integer": ("p.json", text('{"A": [[1%s]], "q": [1]}' % ("0" * 400)), r"path: A: expected real numbers"),
     "NaN": ("p.npz", npz(A=np.array([[np.nan]]), q=Q[:1]), r"path: A: expected finite numbers, found nan"),
@@ -105,10 +78,6 @@ BAD = {
     "shapes": ("p.npz", npz(A=A, q=Q[:2]), r"path: q: expected 3 numbers, one a row of A, found 2, in"),
     "empty": ("p.npz", npz(A=np.zeros((0, 0)), q=np.zeros(0)), r"path: A: expected a square matrix, found shape"),
     "q a matrix": ("p.npz", npz(A=A, q=A), r"path: q: expected a vector of real numbers, found shape \(3, 3\)"),
-    "not a mat": ("p.mat", text("hello"), r"path: expected a .mat file"),
-    "not h5": ("p.h5", text("hello"), r"path: expected a .h5 file"),
-    "h5 without": ("p.h5", lambda path: write_h5(path, "a/b/c/d/e"), r"path: expected a .h5 file.*none of A, q"),
-    "no group": ("p.h5:/elsewhere", write_h5, "no group /elsewhere"),
     "not mtx": ("p.mtx", text("1 2"), r"path: expected a .mtx file"),
     "empty text": ("p.txt", text("# nothing\n"), r"path: expected a .txt file.*it is empty"),
     "text of words": ("p.txt", text("one two"), r"path: expected a .txt file.*'one'"),
@@ -118,7 +87,7 @@ BAD = {
 @pytest.mark.parametrize(("name", "write", "message"), BAD.values(), ids=BAD)
 def test_bad_files_are_named_in_one_line(tmp_path, name, write, message):
     if write is not None:
-        write(tmp_path / name.partition(":")[0])
+        write(tmp_path / name)
     with pytest.raises(InputError, match=message) as caught:
         read_problem(tmp_path / name)
     assert "\n" not in str(caught.value)
@@ -130,7 +99,7 @@ def test_bad_files_are_named_in_one_line(tmp_path, name, write, message):
     [
         ("x0.npy", 4, lambda path: np.save(path, Q), r"x0: expected 4 numbers, found 3, in"),
         ("x0.npy", 2, lambda path: np.save(path, [1.0, np.nan]), r"x0: expected finite numbers, found nan at index 1"),
-        ("x0.npz", 3, npz(y=Q), r"x0: expected an array x0, found y in"),
+        ("x0.npz", 3, npz(y=Q), r"x0: expected an array x0, found y, in"),
         ("x0.npy", 3, lambda path: None, r"x0: expected a file, found nothing"),
     ],
 )

@@ -66,7 +66,7 @@ def test_a_singular_face_with_one_point_is_complete(problem, x, faces):
     (solution,) = found.solutions
     assert solution.x == x
     assert found.complete
-    assert faces is None or (solution.faces, solution.strictly_complementary) == (faces, False)
+    assert faces is None or solution.faces == faces
 
 
 @given(lcps("any", ORDERS))

@@ -22,13 +22,13 @@ SINGULAR = LCP(np.kron(np.eye(2), [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5,
 @pytest.fixture
 def made(monkeypatch):
     """The active sets of the faces that were factored."""
-    states, make = [], Faces._made
+    states, make = [], Faces.face
 
     def counted(self, state, *rest):
         states.append(state.tobytes())
         return make(self, state, *rest)
 
-    monkeypatch.setattr(Faces, "_made", counted)
+    monkeypatch.setattr(Faces, "face", counted)
     return states
 
 

@@ -37,19 +37,6 @@ def test_starts_are_centred_positive_and_at_their_distance(seed):
     assert 0.4 <= second[0] / first[0] <= 2.5
 
 
-def test_the_first_path_leaves_time_for_others(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.paths.RESTART_STEPS", 4.5 - PLANTED)
-    monkeypatch.setattr("problems.lcp.search.reflections.Sets.of", lambda problem: None)
-    monkeypatch.setattr("problems.lcp.search.exclusion.LARGEST_TREE", 0)
-    problem = next(p for p in map(planted, range(50)) if lcp.solve(p, restarts=0).paths)
-    assert "it has not ended after 9 steps" in lcp.solve(problem, restarts=1).paths[0].message
-    # A path that is asked for, or its steps, is followed to its end.
-    small = continuation.CONSERVATIVE
-    for options in ({"restarts": 0}, {"finish": False}, {"preset": small}, {"finish": False, "preset": small}):
-        found = lcp.solve(problem, **{"restarts": 1, "path": True, **options})
-        assert "it has not ended" not in found.paths[0].message
-
-
 def test_restarts_are_the_same_again_and_depend_on_the_seed():
     problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
     first, again, other = (lcp.solve(problem, "kkt", restarts=300, seed=seed) for seed in (5, 5, 6))

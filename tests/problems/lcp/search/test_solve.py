@@ -131,6 +131,15 @@ def test_a_large_sparse_problem_is_never_made_dense():
     assert solution.relative_residual <= 1e-14
 
 
+def test_an_obstacle_that_is_touched_by_zeros_alone_needs_no_path():
+    """Of an M-matrix with q = 0 on half of a line; the first step of an American put is such a problem."""
+    n = 199
+    A = sp.diags_array([-0.42, 1.84, -0.41], offsets=[-1, 0, 1], shape=(n, n), format="csr")
+    found = lcp.solve(lcp.LCP(A, np.where(np.arange(n) < n // 2, 1e-3, 0.0) - 0.5 * (np.arange(n) == n // 2)))
+    assert found.outcome is Outcome.SOLVED
+    assert not found.paths
+
+
 def test_a_path_is_traced_where_one_is_asked_for():
     for problem in (PD, lcp.LCP(np.eye(2), [1.0, 2.0]), lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])):
         plain, wanted = lcp.solve(problem), lcp.solve(problem, path=True)
