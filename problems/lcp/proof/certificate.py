@@ -118,28 +118,6 @@ class Certificate:
         """max_i |min(x_i, w_i)|, in the problem's units."""
         return float(np.abs(self.problem.natural_map(self.x, self.w)).max(initial=0.0))
 
-    @property
-    @_quiet
-    def negative_x(self) -> float:
-        """Largest violation of bounds by x."""
-        return float(np.maximum(self.problem.lower - self.x, self.x - self.problem.upper).max(initial=0.0))
-
-    @property
-    @_quiet
-    def negative_w(self) -> float:
-        """Largest violation of signs by w."""
-        below, above = np.isinf(self.problem.upper), np.isinf(self.problem.lower)
-        return float(np.maximum(np.where(below, -self.w, 0.0), np.where(above, self.w, 0.0)).max(initial=0.0))
-
-    @property
-    @_quiet
-    def complementarity(self) -> float:
-        """max_i |x_i w_i|; with bounds, distances replace x_i."""
-        above, below = self.x - self.problem.lower, self.problem.upper - self.x
-        distance = np.where(np.isinf(below) | ((self.w > 0.0) & np.isfinite(above)), above, below)
-        products = np.where((distance == 0.0) | (self.w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * self.w))
-        return float(products.max(initial=0.0))
-
     def solves(self, tolerance: float = 1e-10) -> bool:
         """Whether the relative residual and `drowned` are small.
 
@@ -203,15 +181,16 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     if not (problem.standard and worst <= ROUND_OFF and least(x) >= 0.0):
         off = _counted(problem, terms, x, _defects(problem, terms, x, relative))
         worst = largest(off)
-    return Certificate(problem, x, terms.in_units(terms.w), worst, drowned_part(problem, terms, off), terms)
+    return Certificate(problem, x, terms.whole, worst, drowned_part(problem, terms, off), terms)
 
 
 def _defects(problem: MixedLCP, terms: Terms, x: Array, relative: Array) -> Array:
     above = x - problem.lower
-    shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
+    shares = shares_in_rows(problem.A, terms, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         below = problem.upper - x
-        relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
+        asked = (below < 0.0) | (relative < -ROUND_OFF)
+        relative = np.maximum(relative, -shares_in_rows(problem.A, terms, below, asked))
     return np.abs(np.minimum(shares, relative))
 
 
@@ -219,7 +198,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """Defects; zero where rounding of subnormal x_j explains them."""
     if largest(off) <= ROUND_OFF:
         return off
-    asked = (off > ROUND_OFF) & (np.abs(terms.in_units(terms.w)) < x.size * MOST_MADE_UP)
+    asked = (off > ROUND_OFF) & (np.abs(terms.whole) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
@@ -299,8 +278,8 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
     every = np.ones(problem.n, dtype=bool)
-    above = shares_in_rows(terms, x, x - problem.lower, every)
-    below = shares_in_rows(terms, x, problem.upper - x, every)
+    above = shares_in_rows(problem.A, terms, x - problem.lower, every)
+    below = shares_in_rows(problem.A, terms, problem.upper - x, every)
     nearest = np.where(above <= below, LOWER, UPPER)
     state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
     state = np.where(problem.fixed, LOWER, state)

@@ -94,7 +94,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
-        if moved is None or not moved.gap < 0:
+        if moved is None:
             message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
             return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
         found = evolve(found, farkas=moved)

@@ -133,8 +133,7 @@ class Paths:
                 assert isinstance(problem, LCP)
                 start = strictly_feasible_start(problem)
             except NoStrictlyFeasiblePoint as error:
-                if error.certificate is not None and error.certificate.no_feasible_point:
-                    search.proof = error.certificate
+                search.proof = error.certificate or search.proof
                 return str(error)
         if start is not None and problem.standard and not start.all():  # paths need positive starts
             start = None
