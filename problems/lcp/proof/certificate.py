@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from functools import cached_property
 
@@ -304,22 +303,14 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
     exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
-    wrong = _wrong_sign(problem, state, exact_x, exact_w)
-    if wrong:
-        return ExactCertificate(False, exact_x, exact_w, chosen, f"The exact point of the active set has {wrong}.")
+    if not _right_signs(problem, state, exact_x, exact_w):
+        message = "The exact point of the active set violates a bound or the sign of some w_i."
+        return ExactCertificate(False, exact_x, exact_w, chosen, message)
     message = f"Solves the {'LCP' if problem.standard else 'problem'} exactly, checked in rational arithmetic."
     return ExactCertificate(True, exact_x, exact_w, chosen, message)
 
 
-def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    for i, value in enumerate(x):
-        low, high = problem.lower[i], problem.upper[i]
-        if low > -math.inf and value < Fraction(low):
-            return f"x[{i}] < {low:g}"
-        if high < math.inf and value > Fraction(high):
-            return f"x[{i}] > {high:g}"
-    for i, value in enumerate(w):
-        wrong = (value < 0) if state[i] == LOWER else (value > 0)
-        if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
-            return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
-    return ""
+def _right_signs(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> bool:
+    # Python compares fractions with floats exactly.
+    rows = zip(x, w, state.tolist(), problem.lower.tolist(), problem.upper.tolist())
+    return all(low <= v <= high and (low == high or s == BETWEEN or -s * r >= 0) for v, r, s, low, high in rows)
