@@ -10,7 +10,6 @@ has terms of second order left.
 
 from __future__ import annotations
 
-from functools import cached_property
 from math import perm
 from typing import ClassVar
 
@@ -70,12 +69,16 @@ class ByProducts:
         fixed = slabs, form, size_Y[:, :, :-1], form.rounding(alpha, beta, t)
         image = np.matmul(left, middle), up_by(room, m + 8)
         if not slabs.offset.any():
-            return Bounds(*fixed, *image, plain)
+            return Bounds(*fixed, *image, largest(*image, slabs.offset), plain)
         E, F, H = (np.matmul(left, G[:, k]) for k in (1, 2, 3))
+        both, wide = (np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in image)
+        both[:, :, 1:] -= np.matmul(E, image[0])
+        wide[:, :, 1:] += np.matmul(np.abs(E), image[1] + gamma * np.abs(image[0]))
+        misfit = largest(both, up_by(wide + gamma * np.abs(both), m + 8), slabs.offset)
         second = np.abs(F - np.matmul(E, E))
         E, F, H = np.abs(E), t * np.abs(F), t * t * np.abs(H)
         through_E = plain + t * (gamma * E + F + H)
-        return Bounds(*fixed, *image, plain + t * (t * second + H), E, through_E, E + 2.0 * F + 3.0 * H)
+        return Bounds(*fixed, *image, misfit, plain + t * (t * second + H), E, through_E, E + 2.0 * F + 3.0 * H)
 
 
 @frozen(eq=False, slots=False)
@@ -92,6 +95,8 @@ class Bounds:
         Rounding of G'.
     image, room : ndarray, shape (slabs, N + 1, 7)
         Coefficients of Y_0 H(p), and their radii.
+    misfit : ndarray
+        Bounds |Y(s) H(p(s))|.
     off : ndarray
         Bounds |I - Y(s) G'| but for the terms with x E.
     E, through_E, turning : ndarray
@@ -104,6 +109,7 @@ class Bounds:
     lost: Array
     image: Array
     room: Array
+    misfit: Array
     off: Array
     E: Array | None = None
     through_E: Array | None = None
@@ -124,19 +130,11 @@ class Bounds:
 
     def _along(self, order: int) -> Array:
         """Bound of |Y(s)| times a derivative of H(p(s))."""
-        length = self.image.shape[2] - order
-        factors = np.array([float(perm(k + order, order)) for k in range(length)])
-        powers = factors * self.t[:, :, None] ** np.arange(float(length))
-        found, room = self.image[:, :, order:] * powers, (self.room[:, :, order:] * powers).sum(axis=2)
-        places = np.vander((2.0 * np.arange(PARTS) + 1.0) / PARTS - 1.0, length, increasing=True)
-        steep = np.matmul(np.abs(found), np.arange(float(length)) / PARTS + 64.0 * EPS)
-        return self._lifted(up_by(np.abs(np.matmul(found, places.T)).max(axis=2) + steep + room, 64))
-
-    @cached_property
-    def misfit(self) -> Array:
-        """|Y(s) H(p(s))|."""
-        with np.errstate(all="ignore"):
-            return self._along(0)
+        count = self.image.shape[2] - order
+        factors = np.array([float(perm(k + order, order)) for k in range(count)])
+        return self._lifted(
+            largest(self.image[:, :, order:] * factors, self.room[:, :, order:] * factors, self.slabs.offset)
+        )
 
     def spread(self, x: Array, radius: Array) -> Array:
         """See `Judged.spread`."""
@@ -198,3 +196,13 @@ class Bounds:
             v = up_by(self._along(2) + 2.0 * self._turned(drift) + self._pushed(more), 8)
             again = self._solved(v, radius, tube)[:, -1:]
             return slope, two * second + Ends(-again, again)
+
+
+def largest(image: Array, room: Array, offset: Array) -> Array:
+    """Bound of polynomials with coefficients within `room` of `image`, last axis, up to `offset` from zero."""
+    count = image.shape[2]
+    powers = offset[:, None, None] ** np.arange(float(count))
+    found = image * powers
+    places = np.vander((2.0 * np.arange(PARTS) + 1.0) / PARTS - 1.0, count, increasing=True)
+    steep = np.matmul(np.abs(found), np.arange(float(count)) / PARTS + 64.0 * EPS)
+    return up_by(np.abs(np.matmul(found, places.T)).max(axis=2) + steep + (room * powers).sum(axis=2), 64)
