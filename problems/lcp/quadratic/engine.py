@@ -22,9 +22,6 @@ from continuation.certificate.engine import Judged, inverses, times, up_by
 from continuation.numbers.ends import Ends, accumulated, thin
 from problems.lcp.quadratic.form import Quadratic
 
-CACHED_NUMBERS = 100_000
-"""Numbers in an array of matrices; a few such arrays fit in cache."""
-
 PARTS = 32
 """Parts of a slab for the size of H along the cubic, of which a sum of coefficients is several times too large, and for
 the signs of the parameter's derivatives."""
@@ -42,10 +39,6 @@ class ByProducts:
     form: Quadratic
     exact: ClassVar[bool] = True
     most: ClassVar[int] = 4
-
-    def together(self, m: int) -> int:
-        """See `Engine`."""
-        return max(1, CACHED_NUMBERS // (m * m))
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """See `Engine`; valid for all radii."""
