@@ -77,7 +77,13 @@ class Quadratic:
     second: Affine
 
     def image(self, value: Ends, alpha: Ends, beta: Ends) -> Ends:
-        """Coefficients of H, shape (slabs, N, 7), from those of `plain`, `first`, `second`, shape (slabs, 4, N)."""
+        """Coefficients of H along cubics, shape (slabs, N, 7).
+
+        Parameters
+        ----------
+        value, alpha, beta : Ends, shape (slabs, 4, N)
+            Coefficients of `plain`, `first`, `second`.
+        """
         products = alpha[:, :, None] * beta[:, None, :]
         count, n = alpha.shape[0], alpha.shape[2]
         flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))
@@ -87,7 +93,13 @@ class Quadratic:
         return total + Ends(lower, upper)
 
     def derivatives(self, a: Array, b: Array) -> Array:
-        """Coefficients of H', shape (slabs, 4, N, N + 1), from those of `first` and `second`, shape (slabs, 4, N)."""
+        """Coefficients of H', shape (slabs, 4, N, N + 1).
+
+        Parameters
+        ----------
+        a, b : ndarray, shape (slabs, 4, N)
+            Coefficients of `first` and `second`.
+        """
         out: Array = a[..., None] * self.second.matrix + b[..., None] * self.first.matrix
         out[:, 0] += self.plain.matrix
         return out
@@ -95,7 +107,12 @@ class Quadratic:
     def rounding(self, alpha: Ends, beta: Ends, offset: Array) -> Array:
         """Bound of the errors of `derivatives` along slabs, and of products with them, shape (slabs, N, N + 1).
 
-        `alpha`, `beta`: coefficients of `first` and `second`; `offset`, shape (slabs, 1, 1): of the parameter.
+        Parameters
+        ----------
+        alpha, beta : Ends, shape (slabs, 4, N)
+            Coefficients of `first` and `second`.
+        offset : ndarray, shape (slabs, 1, 1)
+            Largest distance of the parameter from the middle.
         """
         powers, gamma = offset ** np.arange(4.0), accumulated(self.plain.matrix.shape[1] + 16)
         out = gamma * self.plain.size + self.plain.error
@@ -109,7 +126,13 @@ class Quadratic:
         return out
 
     def products(self, x: Array, radius: Array) -> Array:
-        """Bound of |2 Q(d, x)| for |d| <= radius; x >= 0, both of shape (slabs, N + 1)."""
+        """Bound of |2 Q(d, x)| for |d| <= radius.
+
+        Parameters
+        ----------
+        x, radius : ndarray, shape (slabs, N + 1)
+            Nonnegative.
+        """
         first, second = self.first.size.T, self.second.size.T
         crossed = (radius @ first) * (x @ second) + (x @ first) * (radius @ second)
         return up_by(crossed * (1.0 + SUM_ROUNDING) ** 2, 2 * x.shape[1])
