@@ -107,7 +107,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tu
     if cells is None:
         tubes, gaps = TubeSearch(engine, homotopy, path, look).run()
     elif not len(cells):
-        tubes, gaps = Tubes(cells, np.zeros(0, bool), np.zeros(0, bool), []), []
+        tubes, gaps = Tubes(cells, np.zeros(0, bool), []), []
     else:
         tubes = check(engine, cells, look)
         gaps = [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~tubes.proved].tolist()]
@@ -165,8 +165,7 @@ class TubeSearch:
                 if isinstance(why, Node):
                     pending += [(a, why, left - 1 + singular), (why, b, left - 1 + singular)]
                 else:
-                    undefined = "the residual has no value, or is not decided, on a box around it"
-                    gaps.append(Gap(a.place, b.place, undefined if found.undefined[k] else why))
+                    gaps.append(Gap(a.place, b.place, why))
             done.append(found.take(np.flatnonzero(settled)))
         whole = Tubes.joined(done)
         return whole.take(np.argsort(whole.cells.place[:, 0], kind="stable")), gaps

@@ -11,6 +11,10 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs
 from continuation.numbers.ends import TINIEST, Ends, accumulated
 
+BATCH = 100_000
+"""Numbers in an array of matrices of a batch: a few such arrays fit in cache; with four times as many a proof takes a
+third longer."""
+
 
 class Judged(Protocol):
     """Bounds on slabs."""
@@ -70,16 +74,6 @@ class Engine(Protocol):
         """Most slabs of a cell; beyond, a new point costs less."""
         ...
 
-    def together(self, m: int) -> int:
-        """Slabs for one batch.
-
-        Parameters
-        ----------
-        m : int
-            N + 1.
-        """
-        ...
-
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for radii up to `radius`.
 
@@ -105,9 +99,9 @@ class SupportsProofEngine(Protocol):
         ...
 
 
-def together(engine: Engine, cells: Cells) -> list[Index]:
+def together(cells: Cells) -> list[Index]:
     """Batches of cells by number of slabs."""
-    most = engine.together(cells.radius.shape[1])
+    most = max(1, BATCH // cells.radius.shape[1] ** 2)
     groups = (np.cumsum(cells.slabs) - cells.slabs) // most
     return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
 

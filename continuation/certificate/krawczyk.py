@@ -26,9 +26,6 @@ from continuation.numbers.boxes import along_curve, derivatives, with_gradient
 from continuation.numbers.ends import Ends, Mask, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
-RESIDUAL_NUMBERS = 500_000
-"""Numbers in one array: 4 MB, or 64 MB if slabs are cut into `most`."""
-
 DIRECTIONS_THAT_PAY = 16
 """Unknowns up to which second derivatives pay: they save nine boxes of ten with 10 (exponential-cosine), none with 30
 (Bratu), where the proof takes eight times as long."""
@@ -65,10 +62,6 @@ class ByIntervals:
             parts = [self.image(u.moved(partial(_boxes, half))).c for half in halves]
             stores = [lengthened(part, max(map(len, parts))) for part in parts]
             return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), u.algebra)
-
-    def together(self, m: int) -> int:
-        """Limited by `RESIDUAL_NUMBERS`."""
-        return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
     def judge(self, slabs: Slabs, radius: Array) -> Bounded:
         """As `Engine.judge`, with Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W, x = s - m.

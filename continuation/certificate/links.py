@@ -55,7 +55,7 @@ class Nodes:
 
 def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
     """Points of the curve near an end of each cell, or the curve within `half` of s, shape (cells,)."""
-    parts = together(engine, cells)
+    parts = together(cells)
     return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
 
 

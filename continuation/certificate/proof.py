@@ -42,10 +42,6 @@ def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
     return tuple(sorted(out, key=lambda gap: (gap.begin, gap.end)))
 
 
-SHOWN = 4
-"""Gaps listed in a sentence."""
-
-
 @frozen(eq=False, repr=False)
 class Proof:
     """A proof that a traced path is one curve, or the proved parts.
@@ -111,8 +107,7 @@ class Proof:
         if self.complete:
             turns = len(self.turning_points)
             return f"Proved: one curve through all points, {turns} turning points, {self.boxes} boxes. {self.end}"
-        more = f"; and {len(self.gaps) - SHOWN} more" if len(self.gaps) > SHOWN else ""
-        return "Not proved " + "; ".join(str(gap) for gap in self.gaps[:SHOWN]) + more
+        return "Not proved " + "; ".join(map(str, self.gaps))
 
     @property
     def shadow(self) -> Cells:

@@ -9,7 +9,7 @@ from continuation.arrays import EPS, Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Observe, Piece, pieces
-from continuation.certificate.links import INFLATION, NODE_ULPS, largest_by_cell, settled
+from continuation.certificate.links import INFLATION, NODE_ULPS, settled
 from continuation.numbers.ends import Mask
 
 LEAST_RADIUS = 1e-6
@@ -34,13 +34,11 @@ def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
 class Tubes:
     """Cells with test results.
 
-    `undefined`, shape (cells,): whether the residual is undefined or undecided in the last box. `pieces`: by cell and
-    observed number.
+    `pieces`: by cell and observed number.
     """
 
     cells: Cells
     proved: Mask
-    undefined: Mask
     pieces: list[list[list[Piece]]]
 
     @classmethod
@@ -49,13 +47,12 @@ class Tubes:
         return cls(
             joined([part.cells for part in parts]),
             np.concatenate([part.proved for part in parts]),
-            np.concatenate([part.undefined for part in parts]),
             [cell for part in parts for cell in part.pieces],
         )
 
     def take(self, index: Index) -> Tubes:
         """Select cells."""
-        return Tubes(self.cells.take(index), self.proved[index], self.undefined[index], [self.pieces[k] for k in index])
+        return Tubes(self.cells.take(index), self.proved[index], [self.pieces[k] for k in index])
 
     def numbers(self) -> list[list[Piece]]:
         """Pieces by observed number, in cells."""
@@ -68,14 +65,14 @@ class Tubes:
 
 def search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Find radii and slabs; `cells.radius` holds unit lengths."""
-    return Tubes.joined([_search(engine, cells.take(place), look) for place in together(engine, cells)])
+    return Tubes.joined([_search(engine, cells.take(place), look) for place in together(cells)])
 
 
 def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
     least = LEAST_RADIUS * scale + NODE_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
-    proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
+    proved = np.zeros(count, bool)
     known: list[list[list[Piece]]] = [[] for _ in range(count)]
     pending = np.arange(count)
     for _ in range(engine.most):
@@ -91,7 +88,6 @@ def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
             for k in np.flatnonzero(good):
                 known[pending[k]] = seen[k]
         proved[pending] = good
-        undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Exact bounds would not change.
         wider = np.isfinite(wanted).all(axis=1) & (kappa < CONTRACTING) & (not engine.exact)
         slabs[pending] *= np.where(good | wider, 1, 2)
@@ -105,7 +101,7 @@ def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     if not engine.exact and proved.any():  # one batch
         for k, found in zip(np.flatnonzero(proved), check(engine, cells.take(proved), look).pieces):
             known[k] = found
-    return Tubes(cells, proved, undefined, known)
+    return Tubes(cells, proved, known)
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
@@ -117,11 +113,11 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
 def check(engine: Engine, cells: Cells, look: Observe) -> Tubes:
     """Test cells with their own tubes."""
     found = []
-    for place in together(engine, cells):
+    for place in together(cells):
         some = cells.take(place)
         parts = slabs_of(some)
         radius = some.radius[parts.owner]
         judged = engine.judge(parts, radius)
         good = _every(contracts(parts, judged, radius), parts.owner, len(some))
-        found.append(Tubes(some, good, ~good, pieces(look, judged, parts, radius, len(some))))
+        found.append(Tubes(some, good, pieces(look, judged, parts, radius, len(some))))
     return Tubes.joined(found)

@@ -3,8 +3,6 @@
 from continuation.numbers import Jet, JetDomainError
 from continuation.numbers.derivatives import (
     derivative_along,
-    directional_derivatives,
-    evaluate,
     jacobian,
     path_series,
     second_derivatives,
@@ -13,6 +11,5 @@ from continuation.numbers.derivatives import (
 )
 
 __all__ = [
-    "Jet", "JetDomainError", "derivative_along", "directional_derivatives", "evaluate", "jacobian", "path_series",
-    "second_derivatives", "taylor", "variable",
+    "Jet", "JetDomainError", "derivative_along", "jacobian", "path_series", "second_derivatives", "taylor", "variable",
 ]  # fmt: skip

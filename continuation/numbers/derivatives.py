@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from math import factorial
 from typing import Any
 
 import numpy as np
@@ -35,22 +34,6 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     return line
 
 
-def evaluate(jet: Jet, s: Any) -> Array:
-    """The polynomial's value at `s`, shape ``(*s.shape, *jet.shape)``.
-
-    Parameters
-    ----------
-    jet : Jet
-    s : array_like
-    """
-    s = np.asarray(s, dtype=float)
-    s = s.reshape((*s.shape, *(1,) * jet.ndim))
-    out = np.zeros_like(s)
-    for coefficient in jet.c[::-1]:
-        out = out * s + coefficient
-    return np.asarray(out)
-
-
 def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -> Array:
     """Coefficients of s -> f(x0 + s * direction).
 
@@ -75,31 +58,6 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
         If `f` has no Taylor series.
     """
     return np.asarray(_image(f, variable(x0, direction, order)))
-
-
-def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:
-    """Derivatives of s -> f(x + s v) at 0, of orders 0 to `order`.
-
-    Parameters
-    ----------
-    f : callable
-        As in `taylor`.
-    x, v : array_like
-        `v` is broadcast.
-    order : int
-
-    Returns
-    -------
-    ndarray, (order + 1, *shape of f)
-
-    Raises
-    ------
-    TypeError, JetDomainError
-        As in `taylor`.
-    """
-    c = taylor(f, x, order, v)
-    factorials = np.array([float(factorial(k)) for k in range(len(c))])
-    return np.asarray(c * factorials.reshape(-1, *(1,) * (c.ndim - 1)))
 
 
 def jacobian(f: Callable[[Any], Any], x: Any) -> Array:

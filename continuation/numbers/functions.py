@@ -58,12 +58,6 @@ def _norm(x: Any, ord: Any = None, axis: Any = None, *, keepdims: bool = False) 
     return np.sqrt(_sum(np.square(x), axis, keepdims=keepdims))
 
 
-def _cumsum(a: Any, axis: Any = None) -> Any:
-    a = gather(a) if axis is not None else gather(a).ravel()
-    along = normalize_axis_index(axis or 0, a.ndim)
-    return wrap(added(lambda x: np.cumsum(x, axis=along + a.OWN), a.c, a.shape[along]), a.algebra)
-
-
 def _diff(a: Any, n: int = 1, axis: int = -1) -> Any:
     a = gather(a)
     before, c = (slice(None),) * (normalize_axis_index(axis, a.ndim) + a.OWN), a.c
@@ -82,23 +76,9 @@ def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
 
 def _dot(a: Any, b: Any) -> Any:
     a, b = gather(a), gather(b)
-    if a.ndim == 0 or b.ndim == 0:
-        return a * b
-    return a @ b if b.ndim <= 2 else _tensordot(a, b, axes=(-1, -2))
-
-
-def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
-    a, b = gather(a), gather(b)
-    if isinstance(axes, int):
-        axes = (range(a.ndim - axes, a.ndim), range(axes))
-    left, right = normalize_axis_tuple(axes[0], a.ndim), normalize_axis_tuple(axes[1], b.ndim)
-    if [a.shape[k] for k in left] != [b.shape[k] for k in right]:
-        raise ValueError(f"numpy.tensordot: axes {axes} of shapes {a.shape} and {b.shape} do not pair")
-    rows, columns = ascii_letters[: a.ndim], list(ascii_letters[a.ndim : a.ndim + b.ndim])
-    for k, j in zip(left, right):
-        columns[j] = rows[k]
-    free = [x for x in (*rows, *columns) if (x in rows) != (x in columns)]
-    return _einsum(f"{rows},{''.join(columns)}->{''.join(free)}", a, b)
+    if b.ndim > 2:
+        raise next(x for x in (a, b) if isinstance(x, Truncated)).unknown("numpy.dot with more than two axes")
+    return a * b if a.ndim == 0 or b.ndim == 0 else a @ b
 
 
 def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
@@ -191,12 +171,9 @@ def _each(rule: Callable[[Any], Any], *arys: Any) -> Any:
 
 
 def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) -> Any:
-    if mode not in ("constant", "edge", "wrap", "reflect", "symmetric"):
-        raise array.unknown(f"numpy.pad with mode={mode!r}")
-    values = keywords.pop("constant_values", 0)
-    padded = _moved(np.pad)(array, pad_width, mode, **keywords)
-    filling = np.pad(np.zeros(array.shape), pad_width, constant_values=values)
-    return padded + filling if filling.any() else padded
+    if keywords or mode not in ("constant", "edge", "wrap", "reflect", "symmetric"):
+        raise array.unknown(f"numpy.pad with mode={mode!r} and {', '.join(keywords) or 'no keywords'}")
+    return _moved(np.pad)(array, pad_width, mode)
 
 
 FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
@@ -204,15 +181,11 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
     np.mean: _mean,
     np.prod: _prod,
     np.linalg.norm: _norm,
-    np.cumsum: _cumsum,
-    np.trace: lambda a, offset=0, axis1=0, axis2=1: _sum(np.diagonal(a, offset, axis1, axis2), -1),
-    np.diff: _diff,
     np.bincount: _bincount,
+    np.diff: _diff,
     np.dot: _dot,
-    np.inner: lambda a, b: a * b if np.ndim(a) == 0 or np.ndim(b) == 0 else _tensordot(a, b, axes=(-1, -1)),
     np.vdot: lambda a, b: gather(a).reshape(-1) @ gather(b).reshape(-1),
     np.outer: lambda a, b: gather(a).reshape(-1, 1) * gather(b).reshape(1, -1),
-    np.tensordot: _tensordot,
     np.einsum: _einsum,
     np.concatenate: _concatenate,
     np.stack: _stack,

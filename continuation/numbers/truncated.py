@@ -21,7 +21,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {}
 """Rules by numpy function, filled by the package: `functions` imports `Truncated`."""
 
 
-METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.cumsum, np.dot)
+METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.dot)
 
 
 class Truncated(NDArrayOperatorsMixin):

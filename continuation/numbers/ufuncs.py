@@ -99,13 +99,7 @@ def _variable_power(algebra: Algebra, a: Store, b: Store) -> Store:
 
 
 def _hypot(algebra: Algebra, a: Store, b: Store) -> Store:
-    if isinstance(a, Ends):
-        return compose(algebra, series.sqrt, _add(algebra, *(compose(algebra, series.square, x) for x in (a, b))))
-    size = np.hypot(a[:1], b[:1])
-    series.demand(size != 0, "numpy.hypot", "both leading coefficients are 0")
-    a, b = a / size, b / size
-    squares = _add(algebra, product(algebra, operator.mul, a, a), product(algebra, operator.mul, b, b))
-    return np.asarray(size * compose(algebra, series.sqrt, squares))
+    return compose(algebra, series.sqrt, _add(algebra, *(_multiply(algebra, x, x) for x in (a, b))))
 
 
 def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:

@@ -20,7 +20,7 @@ from continuation.linear.silence import without_warnings
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure, scaled_band
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
-from problems.lcp.proof.compensated import accurate_w
+from problems.lcp.proof.compensated import row_terms
 
 Mask = NDArray[np.bool_]
 
@@ -75,7 +75,7 @@ class Face:
     @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
         """Correct x once, with accurate w."""
-        return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
+        return self._corrected(x, row_terms(self.problem, x).whole if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
         corrected = x.copy()

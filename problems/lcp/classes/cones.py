@@ -11,14 +11,17 @@ from fractions import Fraction
 from attrs import evolve
 
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
-from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
+from problems.lcp.classes.membership import (
+    CPS,
+    MOST_CASES,
+    Evidence,
+    Membership,
+    matrix_class,
+    show_set,
+    show_vector,
+    undecided,
+)
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point, positive_point
-
-LARGEST_SUPPORTS = 10
-"""Largest order of tests with one linear program per index set (0.02 s)."""
-
-LARGEST_STAR = 8
-"""Largest order of the E0^s test, n linear programs per index set (0.03 s)."""
 
 Build = Callable[[ExactMatrix, Indices], list[Constraint]]
 
@@ -35,8 +38,8 @@ def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
 
 
 def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
-    if matrix.n > LARGEST_SUPPORTS:
-        return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
+    if 2**matrix.n > MOST_CASES:
+        return undecided(name, 2**matrix.n, cited)
     for support in map(indices, index_sets(matrix.n)):
         found = positive_point(build(matrix, support), len(support))
         if found is not None:
@@ -131,15 +134,9 @@ def is_almost_copositive(matrix: ExactMatrix) -> Membership:
     """Almost C0: not copositive, but all principal submatrices of order n - 1 are."""
     cited = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
     plain = is_copositive(matrix)
-    if plain.holds is None:
-        return undecided("almost copositive", matrix.n, LARGEST_SUPPORTS, cited)
-    if plain.holds:
-        return Membership("almost copositive", False, Evidence("A is copositive of order n too"), cited)
-    alpha = plain.certificate.indices or ()
-    almost = len(alpha) == matrix.n
-    start = "copositive up to order n - 1, and" if almost else f"the principal submatrix of {show_set(alpha)} is not:"
-    certificate = evolve(plain.certificate, sentence=f"{start} {plain.certificate}")
-    return Membership("almost copositive", almost, certificate, cited)
+    # The support found is one of the smallest.
+    almost = plain.holds if plain.holds is None else len(plain.certificate.indices or ()) == matrix.n
+    return evolve(plain, name="almost copositive", holds=almost, cited=cited)
 
 
 @matrix_class
@@ -149,8 +146,8 @@ def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
     Jana, Das and Sinha also require E0.
     """
     cited = "Dutta, Das and Jana, section 2; Jana, Das and Sinha, On semimonotone star matrices, 2018, ask for E0 too"
-    if matrix.n > LARGEST_STAR:
-        return undecided("E0^s", matrix.n, LARGEST_STAR, cited)
+    if (cases := matrix.n * 2**matrix.n) > MOST_CASES:
+        return undecided("E0^s", cases, cited)
     for mask in index_sets(matrix.n):
         support = indices(mask)
         base = _homogeneous_solution(matrix, support)
@@ -161,9 +158,7 @@ def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
                 value = matrix.transpose.image(x)[i]
                 sentence = f"x = {show_vector(x)} has x'Ax = 0 and Ax >= 0, but (A'x)_{i} = {value}"
                 return Membership("E0^s", False, Evidence(sentence, support, vector=x), cited)
-    also = "is" if is_semimonotone(matrix).holds else "is not"
-    sentence = f"every solution x of LCP(0, A) has A'x <= 0; A {also} E0"
-    return Membership("E0^s", True, Evidence(sentence), cited)
+    return Membership("E0^s", True, Evidence("every solution x of LCP(0, A) has A'x <= 0"), cited)
 
 
 @matrix_class

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -178,25 +178,3 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
         previous = head
     sign = 1 if previous > 0 else -1
     return [[sign * v for v in row[m:]] for row in work], sign * previous
-
-
-def consistent(rows: Sequence[IntRow]) -> bool:
-    """Whether equations [coefficients, right-hand side] have a solution."""
-    work, previous = [list(row) for row in rows], 1
-    for k in range(len(work[0]) - 1):
-        pivot = next((row for row in work if row[k]), None)
-        if pivot is not None:
-            work.remove(pivot)
-            work = [[(pivot[k] * v - row[k] * t) // previous for v, t in zip(row, pivot)] for row in work]
-            previous = pivot[k]
-    return not any(row[-1] for row in work)
-
-
-def simplest(vector: Sequence[Fraction], accepts: Callable[[Sequence[Fraction]], bool]) -> tuple[Fraction, ...]:
-    """A positive multiple of the vector in the smallest integers that `accepts` allows."""
-    largest = max(abs(v) for v in vector)
-    for bits in range(24):
-        rounded = tuple(Fraction(round(v * 2**bits / largest)) for v in vector)
-        if accepts(rounded):
-            return rounded
-    return tuple(vector)

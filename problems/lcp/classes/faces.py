@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.classes.exact import Indices, IntRow, consistent, over_common_denominator, solve
+from problems.lcp.classes.exact import Indices, IntRow, over_common_denominator, solve
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point
 from problems.lcp.data.problem import MixedLCP
 
@@ -60,8 +60,6 @@ def piece_point(
     only = True
     if solved is None:
         equations = [(rows[i], sides[i]) for i in inside]
-        if not consistent([[*row, side] for row, side in equations]):
-            return None
         units = [[int(j == i) for j in inside] for i in inside]
         signs += [at_least(one, low) for one, i in zip(units, inside) if (low := bounds[i][0]) is not None]
         signs += [at_most(one, high) for one, i in zip(units, inside) if (high := bounds[i][1]) is not None]

@@ -12,8 +12,6 @@ from attrs import frozen
 
 from problems.lcp.classes.exact import ExactMatrix
 
-Rows = tuple[tuple[int, ...], ...]
-
 CPS = "Cottle, Pang and Stone, The Linear Complementarity Problem, 1992"
 
 
@@ -30,15 +28,12 @@ class Evidence:
         The deciding minor, quadratic form, entry or bound.
     vector : tuple of Fraction, optional
         The deciding vector.
-    perturbation : pair of integer matrices, optional
-        B and C of a sequence A + t B + t^2 C.
     """
 
     sentence: str
     indices: tuple[int, ...] | None = None
     value: Fraction | None = None
     vector: tuple[Fraction, ...] | None = None
-    perturbation: tuple[Rows, Rows] | None = None
 
     def __str__(self) -> str:
         return self.sentence
@@ -118,9 +113,13 @@ def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], M
     return of
 
 
-def undecided(name: str, n: int, limit: int, cited: str) -> Membership:
-    """The answer beyond the limit of a test."""
-    sentence = f"the exact test is exponential in n and stops at n = {limit}, found n = {n}"
+MOST_CASES = 4096
+"""Most minors or linear programs of a test: some 0.1 s, order 12 where there is one for each index set."""
+
+
+def undecided(name: str, cases: int, cited: str) -> Membership:
+    """The answer of a test that has too many cases."""
+    sentence = f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}"
     return Membership(name, None, Evidence(sentence), cited)
 
 

@@ -9,18 +9,14 @@ from typing import Any
 from attrs import evolve
 
 from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
-from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, over_common_denominator, simplest, solve
-from problems.lcp.classes.faces import face_point
-from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_vector
+from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, solve
+from problems.lcp.classes.membership import CPS, MOST_CASES, Evidence, Membership, matrix_class, show_vector
 from problems.lcp.classes.minors import is_p, is_z
-from problems.lcp.classes.simplex import Point, at_least, at_most, feasible_point, positive_point
+from problems.lcp.classes.simplex import Point, at_most, positive_point
 from problems.lcp.classes.sufficiency import is_row_sufficient
 
 LARGEST_COVER = 5
-"""Largest order for which complementary cones are subtracted."""
-
-MOST_PROGRAMS = 4000
-"""Most linear programs before the answer `not decided`."""
+"""Largest order for which complementary cones are subtracted: beyond, `MOST_CASES` programs rarely suffice."""
 
 Normals = list[list[int]]
 
@@ -30,7 +26,8 @@ def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
     Z and row sufficient matrices are Q0. Other A of order up to `LARGEST_COVER` are Q0 exactly if the full
-    complementary cones cover pos[I, -A]. Exact linear programs subtract the cones; a remaining q has no solution.
+    complementary cones cover pos[I, -A]. Exact linear programs subtract the cones. A remaining q has a neighbourhood
+    that only cones of lower dimension meet, so that almost every right-hand side in it has no solution.
     """
     cited = CPS + ", sections 3.2, 3.5 and 3.11"
     for name, test in _SUFFICIENT_FOR_Q0.items():
@@ -64,18 +61,18 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
         sentence = f"no criterion that we use applies, and the cover of cones is decided up to n = {LARGEST_COVER} only"
         return Membership(name, None, Evidence(sentence), cited)
     try:
-        witness = _leftover(matrix, full_cones(matrix), [], iter(range(MOST_PROGRAMS)))
+        witness = _leftover(matrix, full_cones(matrix), [], iter(range(MOST_CASES)))
     except StopIteration:
-        sentence = f"the complementary cones were not subtracted within {MOST_PROGRAMS} linear programs"
+        sentence = f"the complementary cones were not subtracted within {MOST_CASES} linear programs"
         return Membership(name, None, Evidence(sentence), cited)
     if witness is None:
         return Membership(name, True, Evidence(f"the full complementary cones cover {scope}"), cited)
-    sentence = f"q = {show_vector(witness)} is feasible and LCP(q, A) has no solution"
+    sentence = f"no full complementary cone meets a neighbourhood of the feasible q = {show_vector(witness)}"
     return Membership(name, False, Evidence(sentence, vector=witness), cited)
 
 
 def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, programs: Iterator[int]) -> Point | None:
-    """A feasible q of a region without a solution, or None if the cones cover the region.
+    """A feasible q of a region that no cone holds, or None if the cones cover the region.
 
     A region is a list of normals r with r . q > 0. Raises `StopIteration` at the end of `programs`.
     """
@@ -88,25 +85,12 @@ def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, progra
     q = tuple(b - _dot(row, found[:n]) for row, b in zip(entries, found[n:]))
     cone = next((c for c in cones if all(_dot(r, q) >= 0 for r in c)), None)
     if cone is None:
-        return _unsolvable_near(matrix, q, region)
+        return q
     for i, normal in enumerate(cone):
         rest = _leftover(matrix, cones, [*region, *cone[:i], [-v for v in normal]], programs)
         if rest is not None:
             return rest
     return None
-
-
-def _unsolvable_near(matrix: ExactMatrix, q: Point, region: Normals) -> Point:
-    """Move q off lower-dimensional cones within the open set that full cones miss.
-
-    The moment curve meets each hyperplane finitely often.
-    """
-    candidate, tries = q, 0
-    while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(matrix, candidate):
-        tries += 1
-        step = Fraction(1, (2 * tries) ** matrix.n)
-        candidate = tuple(v + step * Fraction(tries**i, 2**tries) for i, v in enumerate(q))
-    return simplest(candidate, lambda v: is_feasible(matrix, v) and not is_solvable(matrix, v))
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
@@ -124,20 +108,6 @@ def full_cones(matrix: ExactMatrix) -> list[Normals]:
         if inverse is not None:
             cones.append(inverse[0])
     return cones
-
-
-def is_solvable(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether LCP(q, A) has a solution."""
-    scaled, _ = over_common_denominator(q)
-    masks = (0, *index_sets(matrix.n))
-    return any(face_point(matrix.entries, scaled, indices(mask)) is not None for mask in masks)
-
-
-def is_feasible(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
-    """Whether some x >= 0 has Ax + q >= 0."""
-    right, scale = over_common_denominator(q)
-    system = [at_least([scale * v for v in row], -b) for row, b in zip(matrix.entries, right)]
-    return feasible_point(system, matrix.n) is not None
 
 
 def _dot(a: Sequence[int], b: Sequence[Fraction]) -> Fraction:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 from functools import cached_property
 
@@ -118,28 +117,6 @@ class Certificate:
         """max_i |min(x_i, w_i)|, in the problem's units."""
         return float(np.abs(self.problem.natural_map(self.x, self.w)).max(initial=0.0))
 
-    @property
-    @_quiet
-    def negative_x(self) -> float:
-        """Largest violation of bounds by x."""
-        return float(np.maximum(self.problem.lower - self.x, self.x - self.problem.upper).max(initial=0.0))
-
-    @property
-    @_quiet
-    def negative_w(self) -> float:
-        """Largest violation of signs by w."""
-        below, above = np.isinf(self.problem.upper), np.isinf(self.problem.lower)
-        return float(np.maximum(np.where(below, -self.w, 0.0), np.where(above, self.w, 0.0)).max(initial=0.0))
-
-    @property
-    @_quiet
-    def complementarity(self) -> float:
-        """max_i |x_i w_i|; with bounds, distances replace x_i."""
-        above, below = self.x - self.problem.lower, self.problem.upper - self.x
-        distance = np.where(np.isinf(below) | ((self.w > 0.0) & np.isfinite(above)), above, below)
-        products = np.where((distance == 0.0) | (self.w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * self.w))
-        return float(products.max(initial=0.0))
-
     def solves(self, tolerance: float = 1e-10) -> bool:
         """Whether the relative residual and `drowned` are small.
 
@@ -203,15 +180,16 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     if not (problem.standard and worst <= ROUND_OFF and least(x) >= 0.0):
         off = _counted(problem, terms, x, _defects(problem, terms, x, relative))
         worst = largest(off)
-    return Certificate(problem, x, terms.in_units(terms.w), worst, drowned_part(problem, terms, off), terms)
+    return Certificate(problem, x, terms.whole, worst, drowned_part(problem, terms, off), terms)
 
 
 def _defects(problem: MixedLCP, terms: Terms, x: Array, relative: Array) -> Array:
     above = x - problem.lower
-    shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
+    shares = shares_in_rows(problem.A, terms, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         below = problem.upper - x
-        relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
+        asked = (below < 0.0) | (relative < -ROUND_OFF)
+        relative = np.maximum(relative, -shares_in_rows(problem.A, terms, below, asked))
     return np.abs(np.minimum(shares, relative))
 
 
@@ -219,7 +197,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """Defects; zero where rounding of subnormal x_j explains them."""
     if largest(off) <= ROUND_OFF:
         return off
-    asked = (off > ROUND_OFF) & (np.abs(terms.in_units(terms.w)) < x.size * MOST_MADE_UP)
+    asked = (off > ROUND_OFF) & (np.abs(terms.whole) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
@@ -299,8 +277,8 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
     every = np.ones(problem.n, dtype=bool)
-    above = shares_in_rows(terms, x, x - problem.lower, every)
-    below = shares_in_rows(terms, x, problem.upper - x, every)
+    above = shares_in_rows(problem.A, terms, x - problem.lower, every)
+    below = shares_in_rows(problem.A, terms, problem.upper - x, every)
     nearest = np.where(above <= below, LOWER, UPPER)
     state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
     state = np.where(problem.fixed, LOWER, state)
@@ -325,22 +303,14 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
         numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
     exact_w = tuple(Fraction(row.times(numerators, denominator), denominator << row.shift) for row in rows)
-    wrong = _wrong_sign(problem, state, exact_x, exact_w)
-    if wrong:
-        return ExactCertificate(False, exact_x, exact_w, chosen, f"The exact point of the active set has {wrong}.")
+    if not _right_signs(problem, state, exact_x, exact_w):
+        message = "The exact point of the active set violates a bound or the sign of some w_i."
+        return ExactCertificate(False, exact_x, exact_w, chosen, message)
     message = f"Solves the {'LCP' if problem.standard else 'problem'} exactly, checked in rational arithmetic."
     return ExactCertificate(True, exact_x, exact_w, chosen, message)
 
 
-def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
-    for i, value in enumerate(x):
-        low, high = problem.lower[i], problem.upper[i]
-        if low > -math.inf and value < Fraction(low):
-            return f"x[{i}] < {low:g}"
-        if high < math.inf and value > Fraction(high):
-            return f"x[{i}] > {high:g}"
-    for i, value in enumerate(w):
-        wrong = (value < 0) if state[i] == LOWER else (value > 0)
-        if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
-            return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
-    return ""
+def _right_signs(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> bool:
+    # Python compares fractions with floats exactly.
+    rows = zip(x, w, state.tolist(), problem.lower.tolist(), problem.upper.tolist())
+    return all(low <= v <= high and (low == high or s == BETWEEN or -s * r >= 0) for v, r, s, low, high in rows)

@@ -1,12 +1,11 @@
-"""Multipliers, checked in integers, prove that an LCP has no (strictly) feasible point.
+"""Multipliers, checked in integers, prove that an LCP has no feasible point.
 
 For y >= 0 with A'y <= 0, a feasible x gives 0 <= y'w = (A'y)'x + q'y <= q'y. So q'y < 0 proves that none exists
-(Farkas). If q'y = 0 and y is not zero, F = {x > 0, w > 0} is empty (Motzkin).
+(Farkas).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd
 
@@ -17,10 +16,10 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
+from problems.lcp.data.problem import MixedLCP, require_problem
 from problems.lcp.proof.compensated import row_terms
-from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
-from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers, solve_exactly
+from problems.lcp.proof.inequalities import Inequalities, conditions_of, inequalities
+from problems.lcp.proof.rational import Integers, block_of, integers, solve_exactly
 
 HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance of HiGHS."""
@@ -37,15 +36,13 @@ _REFINEMENTS = 4
 """Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
 """Largest refinement: least squares of this order take seconds."""
-LARGEST_VERTEX = 300
-"""Largest order at which tight equations are solved in rationals."""
-AFFORDABLE_VERTEX = 100
-"""`LARGEST_VERTEX` for proofs not asked for: 0.1 s; order 300 takes 6 s."""
+LARGEST_VERTEX = 100
+"""Largest order at which tight equations are solved in rationals: 0.1 s."""
 
 
 @frozen(eq=False)
 class Farkas:
-    """A multiplier y >= 0, y != 0, with A'y <= 0, q'y <= 0, checked in integers.
+    """A multiplier y >= 0 with A'y <= 0, q'y < 0, checked in integers.
 
     With bounds see `inequalities`.
 
@@ -54,16 +51,11 @@ class Farkas:
     y : tuple of n int
         Without a common factor.
     gap : Fraction
-        q'y (with bounds, q'y + sup (A'y)'x): negative if no point is feasible, zero if none is strictly feasible.
+        q'y (with bounds, q'y + sup (A'y)'x), negative.
     """
 
     y: tuple[int, ...]
     gap: Fraction
-
-    @property
-    def no_feasible_point(self) -> bool:
-        """Whether {x >= 0, A x + q >= 0} is proved empty."""
-        return self.gap < 0
 
     def in_units(self, problem: MixedLCP, rows: NDArray[np.int64]) -> Farkas | None:
         """Undo a scaling of rows by 2^rows.
@@ -84,7 +76,7 @@ class Farkas:
         ----------
         problem : MixedLCP
         """
-        return conditions_of(problem).hold(list(self.y), strict=True)
+        return multiplier(problem, list(self.y)) is not None
 
 
 @frozen(eq=False)
@@ -135,7 +127,8 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
     """
     require_problem(problem)
-    return _multiplier(problem, strict=True)
+    found = infeasibility(problem)
+    return found if isinstance(found, Farkas) else None
 
 
 def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
@@ -144,7 +137,7 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
     Parameters
     ----------
     problem : MixedLCP
-        Up to order `AFFORDABLE_VERTEX` rationals are tried.
+        Up to order `LARGEST_VERTEX` rationals are tried.
     guess : Array of shape (n,), optional
         Replaces the linear program's.
     """
@@ -157,7 +150,7 @@ def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | Flo
         guess = guess * scaled.rows / max(float((guess * scaled.rows).max()), np.finfo(float).tiny)
     if guess is None or not float(scaled.q @ guess) < 0.0 or float((scaled.A.T @ guess).max()) > _NEARLY_TIGHT:
         return None
-    return scaled.exact(guess, True, AFFORDABLE_VERTEX) or scaled.nearly(guess)
+    return scaled.exact(guess) or scaled.nearly(guess)
 
 
 def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
@@ -175,26 +168,6 @@ def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
 def transposed(matrix: Matrix) -> Matrix:
     """A', stored as A is."""
     return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
-
-
-def empty_interior(problem: LCP) -> Farkas | None:
-    """Prove exactly that F = {x > 0, A x + q > 0} is empty.
-
-    Parameters
-    ----------
-    problem : LCP
-
-    Returns
-    -------
-    Farkas or None
-        Preferably a proof of `no_feasible_point`.
-
-    References
-    ----------
-    Motzkin's transposition theorem; Cottle, Pang and Stone, Theorem 2.7.10.
-    """
-    require_lcp(problem)
-    return _multiplier(problem, strict=False)
 
 
 def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
@@ -219,14 +192,6 @@ def _power_of_two(values: Array) -> Array:
     return np.where(values > 0.0, np.ldexp(1.0, exponents), 1.0)
 
 
-def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
-    scaled = _Scaled.of(problem)
-    guess = by_linear_program(scaled.A, scaled.q)
-    if guess is None or float(scaled.q @ guess) > (0.0 if strict else GAP_IN_DOUBT):
-        return None
-    return scaled.exact(guess, strict, LARGEST_VERTEX)
-
-
 @frozen(eq=False)
 class _Scaled:
     """A problem's inequalities, and their scaled data."""
@@ -244,30 +209,25 @@ class _Scaled:
         matrix, vector = scaled_data(system, rows, columns)
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
-    def exact(self, guess: Array, strict: bool, largest: int) -> Farkas | None:
-        """The first candidate near a scaled guess that is exact."""
-        conditions = conditions_of(self.system)
-        for candidate in self._candidates(conditions, guess, largest):
-            if conditions.hold(candidate, strict):
-                whole = np.array(candidate, dtype=object)
-                return multiplier(self.problem, self.system.on_rows(whole, self.problem.n).tolist())
-        return None
-
-    def _candidates(self, conditions: Conditions, guess: Array, order: int) -> Iterator[list[int]]:
+    def exact(self, guess: Array) -> Farkas | None:
+        """The scaled guess as it is, or with its tight conditions solved exactly, if it is a proof."""
         weights = integers(self.rows.max() / self.rows)[0]
-        yield [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
-        slack = np.asarray(self.A.T @ guess).ravel()
-        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -MULTIPLIER_ZERO)]
-        for equations in (tight, [*tight, conditions.constant]):
-            found = self._vertex(equations, guess, order)
-            if found is not None:
-                yield found
+        rounded = [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
+        return self._proved(rounded) or self._proved(self._vertex(guess))
 
-    def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
-        """The exact solution of equations on the guess's support."""
-        support = np.flatnonzero(guess > MULTIPLIER_ZERO)
-        if support.size > order or len(equations) > 4 * order:
+    def _proved(self, y: list[int] | None) -> Farkas | None:
+        if y is None:
             return None
+        return multiplier(self.problem, self.system.on_rows(np.array(y, dtype=object), self.problem.n).tolist())
+
+    def _vertex(self, guess: Array) -> list[int] | None:
+        """The exact solution of the tight conditions on the guess's support."""
+        support = np.flatnonzero(guess > MULTIPLIER_ZERO)
+        tight = np.flatnonzero(np.asarray(self.A.T @ guess).ravel() >= -MULTIPLIER_ZERO)
+        if max(support.size, tight.size // 4) > LARGEST_VERTEX:
+            return None
+        columns = conditions_of(self.system).columns
+        equations = [columns[j] for j in tight]
         last, shift = integers(self.rows[support])
         system: Integers = np.vstack([block_of(equations, support, guess.size), np.array(last, dtype=object)])
         found = solve_exactly(system, [0] * len(equations) + [1 << shift], guess[support] / self.rows[support])
@@ -305,8 +265,8 @@ class _Scaled:
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
-    """A `Farkas` without common factor, or None."""
+    """A `Farkas` without common factor, or None if `y` proves nothing."""
     common = gcd(*y) or 1
     y = [value // common for value in y]
     gap = conditions_of(problem).gap(y)
-    return None if gap is None else Farkas(tuple(y), gap)
+    return None if gap is None or gap >= 0 else Farkas(tuple(y), gap)

@@ -110,11 +110,6 @@ class Conditions:
                     total += Fraction(slope, 1 << column.shift) * Fraction(bound)
         return total
 
-    def hold(self, y: list[int], strict: bool) -> bool:
-        """Whether `gap` is <= 0, or < 0 if strict."""
-        gap = self.gap(y)
-        return gap is not None and (gap < 0 or (gap == 0 and not strict))
-
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
     """The conditions on a multiplier."""

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.scaling import units
 from problems.lcp.data.spread import alike
@@ -23,28 +23,28 @@ CLEAR_OF_ZERO = 1e-13
 1.2 ms."""
 
 
-def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
+def shares_in_rows(A: Matrix, terms: Terms, distance: Array, asked: NDArray[np.bool_]) -> Array:
     """Signed distances from a bound as largest shares in a row's terms; infinite where not asked."""
     there = distance == 0.0
     shares = np.where(there, 0.0, np.inf)
     indices = (asked & ~there).nonzero()[0]
     indices = indices[np.isfinite(distance[indices])]
     if indices.size:
-        inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
-        sizes = np.abs(distance[indices])
-        if terms.scaled:
-            # In the units of terms.x, the mantissas of x.
-            sizes = np.minimum(np.ldexp(sizes, -np.frexp(x[indices])[1]), np.finfo(float).max)
-        with np.errstate(under="ignore"):
-            if sp.issparse(terms.A):
-                columns = abs(sp.csr_array(terms.A)[:, indices])
-                present = (columns != 0.0).sum(axis=0) > 0
-                most = (sp.diags_array(inverse) @ (columns @ sp.diags_array(sizes))).max(axis=0).toarray().ravel()
+        sizes, powers = np.frexp(np.abs(distance[indices]))
+        totals, exponents = np.where(terms.size > 0.0, terms.size, 1.0), np.broadcast_to(terms.exponents, distance.size)
+        with np.errstate(over="ignore", under="ignore"):
+            if sp.issparse(A):
+                columns = abs(sp.csr_array(A)[:, indices]).tocoo()
+                row, k = columns.coords
+                most, present = np.zeros((2, indices.size))
+                np.maximum.at(most, k, np.ldexp(columns.data * sizes[k] / totals[row], powers[k] - exponents[row]))
+                np.maximum.at(present, k, columns.data)
             else:
-                columns = np.abs(terms.A[:, indices])
-                present = (columns > 0.0).any(axis=0)
-                most = (columns * sizes * inverse[:, None]).max(axis=0)
-        shares[indices] = np.sign(distance[indices]) * np.where(present, most, 1.0)
+                columns = np.abs(A[:, indices])
+                present = columns.max(axis=0)
+                most = np.ldexp(columns * sizes / totals[:, None], powers - exponents[:, None]).max(axis=0)
+        most = np.minimum(most, np.finfo(float).max)
+        shares[indices] = np.sign(distance[indices]) * np.where(present > 0.0, most, 1.0)
     return shares
 
 

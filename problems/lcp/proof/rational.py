@@ -52,17 +52,11 @@ def integers(values: Array) -> tuple[list[int], int]:
 
 def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
     """Rows of [matrix, vector] as integers."""
-    rows = []
-    stored = sp.csr_array(matrix) if sp.issparse(matrix) else None
+    rows, stored = [], sp.csr_array(matrix)
     for i, constant in enumerate(vector):
-        if stored is None:
-            columns = np.flatnonzero(matrix[i])
-            entries = matrix[i][columns]
-        else:
-            span = slice(stored.indptr[i], stored.indptr[i + 1])
-            columns, entries = stored.indices[span], stored.data[span]
-        whole, shift = integers(np.append(entries, constant))
-        rows.append(IntegerRow(columns, whole[:-1], whole[-1], shift))
+        span = slice(stored.indptr[i], stored.indptr[i + 1])
+        whole, shift = integers(np.append(stored.data[span], constant))
+        rows.append(IntegerRow(stored.indices[span], whole[:-1], whole[-1], shift))
     return rows
 
 

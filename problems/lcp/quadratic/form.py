@@ -1,4 +1,4 @@
-"""Quadratic residuals from products of affine parts."""
+"""Quadratic residuals from products of affine parts, along cubics and with bounds of their rounding."""
 
 from __future__ import annotations
 
@@ -8,8 +8,13 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import EPS, Array
-from continuation.certificate.cells import Index
-from continuation.numbers.ends import Ends, thin
+from continuation.certificate.engine import up_by
+from continuation.numbers.ends import Ends, accumulated, bilinear, thin, up_sum
+
+SUM_ROUNDING = 8.0 * EPS
+"""Relative error of a sum of up to eight exact terms."""
+
+_SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
 
 
 @frozen(eq=False, slots=False)
@@ -40,54 +45,22 @@ class Affine:
         """Error bounds of the entries."""
         return np.zeros_like(self.matrix) if self.sizes is None else SUM_ROUNDING * self.sizes
 
-    @cached_property
-    def _alone(self) -> Index | None:
-        there = self.size != 0.0
-        return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
-
-    def linear(self, x: Array) -> Array:
-        """The matrix times vectors.
+    def along(self, cubic: Ends) -> Ends:
+        """Its coefficients along cubics, shape (slabs, 4, N).
 
         Parameters
         ----------
-        x : ndarray, shape (..., N + 1)
+        cubic : Ends, shape (slabs, 4, N + 1)
         """
-        return self._times(self.matrix, x)
-
-    def linear_size(self, x: Array) -> Array:
-        """Sizes times vectors >= 0.
-
-        Parameters
-        ----------
-        x : ndarray, shape (..., N + 1)
-        """
-        return self._times(self.size, x)
-
-    def linear_error(self, x: Array) -> Array:
-        """Errors times vectors >= 0.
-
-        Parameters
-        ----------
-        x : ndarray, shape (..., N + 1)
-        """
-        return self._times(self.error, x)
-
-    def _times(self, matrix: Array, x: Array) -> Array:
-        if self._alone is not None:
-            return np.asarray(x[..., self._alone] * matrix[np.arange(len(matrix)), self._alone])
-        return np.asarray(np.matmul(x.reshape(-1, x.shape[-1]), matrix.T).reshape(*x.shape[:-1], -1))
-
-    @cached_property
-    def constant_ends(self) -> Ends:
-        """The constant as ends."""
-        if self.constant_sizes is None:
-            return thin(self.constant)
-        room = SUM_ROUNDING * self.constant_sizes
-        return Ends(self.constant - room, self.constant + room)
-
-
-SUM_ROUNDING = 8.0 * EPS
-"""Relative error of a sum of up to eight exact terms."""
+        middle, count = cubic.middle(), cubic.shape[-1] + 4
+        size = np.abs(middle) + (radius := cubic.radius(middle))
+        room = np.matmul(radius + accumulated(count) * size, self.size.T) + np.matmul(size, self.error.T)
+        room, centre = up_by(room, 2 * count), np.matmul(middle, self.matrix.T)
+        lo, hi = -up_sum(room - centre), up_sum(centre + room)
+        apart = 0.0 if self.constant_sizes is None else SUM_ROUNDING * self.constant_sizes
+        constant = Ends(lo[:, 0], hi[:, 0]) + Ends(self.constant - apart, self.constant + apart)
+        lo[:, 0], hi[:, 0] = constant.lo, constant.hi
+        return Ends(lo, hi)
 
 
 @frozen(eq=False, slots=False)
@@ -103,24 +76,63 @@ class Quadratic:
     first: Affine
     second: Affine
 
-    def times(self, left: Array, a: Array, b: Array, chart: Array, scale: Array, powers: int) -> Array:
-        """`left` times scaled coefficients of G' along cubics, shape (powers, slabs, m, N + 1).
+    def image(self, value: Ends, alpha: Ends, beta: Ends) -> Ends:
+        """Coefficients of H along cubics, shape (slabs, N, 7).
 
         Parameters
         ----------
-        left : ndarray, shape (slabs, m, N + 1)
-        a, b : ndarray, shape (slabs, 4, N)
-            Coefficients of `first`, `second`.
-        chart : ndarray, shape (slabs, N + 1)
-            Last row of coefficient 0.
-        scale : ndarray, shape (slabs, N + 1)
-        powers : int
-            Number of coefficients.
+        value, alpha, beta : Ends, shape (slabs, 4, N)
+            Coefficients of `plain`, `first`, `second`.
         """
-        out = np.empty((powers, *left.shape[:2], chart.shape[1]))
-        for k in range(powers):
-            entries = a[:, k, :, None] * self.second.matrix + b[:, k, :, None] * self.first.matrix
-            np.matmul(left[:, :, :-1], entries if k else entries + self.plain.matrix, out=out[k])
-        out[0] += left[:, :, -1:] * chart[:, None, :]
-        out *= scale[:, None, :]
+        products = alpha[:, :, None] * beta[:, None, :]
+        count, n = alpha.shape[0], alpha.shape[2]
+        flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))
+        total = bilinear(lambda a, b: np.matmul(b.transpose(0, 2, 1), a.T), thin(_SUMS), flat)
+        lower, upper = (np.zeros((count, n, 7)) for _ in range(2))
+        lower[..., :4], upper[..., :4] = value.lo.transpose(0, 2, 1), value.hi.transpose(0, 2, 1)
+        return total + Ends(lower, upper)
+
+    def derivatives(self, a: Array, b: Array) -> Array:
+        """Coefficients of H', shape (slabs, 4, N, N + 1).
+
+        Parameters
+        ----------
+        a, b : ndarray, shape (slabs, 4, N)
+            Coefficients of `first` and `second`.
+        """
+        out: Array = a[..., None] * self.second.matrix + b[..., None] * self.first.matrix
+        out[:, 0] += self.plain.matrix
         return out
+
+    def rounding(self, alpha: Ends, beta: Ends, offset: Array) -> Array:
+        """Bound of the errors of `derivatives` along slabs, and of products with them, shape (slabs, N, N + 1).
+
+        Parameters
+        ----------
+        alpha, beta : Ends, shape (slabs, 4, N)
+            Coefficients of `first` and `second`.
+        offset : ndarray, shape (slabs, 1, 1)
+            Largest distance of the parameter from the middle.
+        """
+        powers, gamma = offset ** np.arange(4.0), accumulated(self.plain.matrix.shape[1] + 16)
+        out = gamma * self.plain.size + self.plain.error
+        for part, factor in ((self.second, alpha), (self.first, beta)):
+            middle = factor.middle()
+            radius = np.matmul(powers, factor.radius(middle)).transpose(0, 2, 1)
+            size = np.matmul(powers, np.abs(middle)).transpose(0, 2, 1) + radius
+            out = out + (gamma * size + radius) * part.size
+            if part.sizes is not None:
+                out = out + size * part.error
+        return out
+
+    def products(self, x: Array, radius: Array) -> Array:
+        """Bound of |2 Q(d, x)| for |d| <= radius.
+
+        Parameters
+        ----------
+        x, radius : ndarray, shape (slabs, N + 1)
+            Nonnegative.
+        """
+        first, second = self.first.size.T, self.second.size.T
+        crossed = (radius @ first) * (x @ second) + (x @ first) * (radius @ second)
+        return up_by(crossed * (1.0 + SUM_ROUNDING) ** 2, 2 * x.shape[1])

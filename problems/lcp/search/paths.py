@@ -120,8 +120,7 @@ class Paths:
                 assert isinstance(problem, LCP)
                 start = strictly_feasible_start(problem)
             except NoStrictlyFeasiblePoint as error:
-                if error.certificate is not None and error.certificate.no_feasible_point:
-                    search.proof = error.certificate
+                search.proof = error.certificate or search.proof
                 return str(error)
         homotopy = known.from_x0(problem, start, search.structure)
         preset = {"preset": FAST} if automatic else {}

@@ -50,7 +50,7 @@ RESIDUALS = {
     "assigned": lambda y: _assigned(y),
     "einsum": lambda y: np.einsum("ij,j->i", np.outer(y, y), y),
     "where": lambda y: np.where(y > 0.0, y, 2.0 * y) + np.maximum(y, 5.0) + np.minimum(y * y, y - 9.0) + np.abs(y),
-    "norm": lambda y: y / np.linalg.norm(y) + np.tensordot(np.outer(y, y), y, 1) + np.cumsum(y),
+    "norm": lambda y: y / np.linalg.norm(y) + np.dot(np.outer(y, y), y),
     "powers": lambda y: (y**2) ** 1.5 + (1.0 + y**2) ** -2.0 + 2.0**y + (y**2) ** np.array([1.0, 2, 3, 0.5, -1, 0]),
 }
 

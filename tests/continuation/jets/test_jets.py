@@ -3,13 +3,10 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from continuation.jets import (
     Jet,
     JetDomainError,
-    directional_derivatives,
     jacobian,
     path_series,
     second_derivatives,
@@ -87,20 +84,6 @@ def test_compositions(f, reference, x0):
     assert_series(taylor(f, x0, ORDER), by_mpmath(reference, x0))
 
 
-@settings(max_examples=20)
-@given(st.floats(0.5, 2.0), st.floats(-2, 2))
-def test_directional_derivatives_agree_with_mpmath(x0, v):
-    found = directional_derivatives(lambda x: np.exp(np.sin(x)) * np.sqrt(x), x0, v, 5)
-    with mp.workdps(40):
-
-        def line(s):
-            x = mp.mpf(x0) + s * mp.mpf(v)
-            return mp.exp(mp.sin(x)) * mp.sqrt(x)
-
-        expected = [float(mp.diff(line, 0, k)) for k in range(6)]
-    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13)
-
-
 @pytest.mark.parametrize("m", [3, 130])
 def test_second_derivatives_are_those_of_the_jacobian(m):
     x, v = 1.5 + np.cos(np.arange(m)), np.sin(1.0 + np.arange(m))
@@ -139,7 +122,7 @@ def test_second_derivatives_are_those_of_the_jacobian(m):
         (np.arccos, -1.0, "numpy.arccos"),
         (np.arccosh, 1.0, "numpy.arccosh"),
         (np.arctanh, 1.0, "numpy.arctanh"),
-        (lambda x: np.hypot(x, 0.0), 0.0, "numpy.hypot"),
+        (lambda x: np.hypot(x, 0.0), 0.0, "numpy.sqrt"),
         (lambda x: np.arctan2(x, 0.0), 0.0, "numpy.arctan2"),
         (lambda x: np.maximum(x, 0.0), 0.0, "numpy.maximum"),
         (lambda x: np.minimum(1.0, x), 1.0, "numpy.minimum"),

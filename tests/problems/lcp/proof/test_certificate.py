@@ -45,15 +45,8 @@ def test_products_that_no_float_holds_are_certified():
     assert certify(LCP([[1e200]], [0.0]), np.array([1e200])).w[0] == np.inf
 
 
-def test_complementarity_is_the_product_with_the_distance_to_which_w_points():
-    for x, q, product in ((0.5, 0.0, 0.25), (3.5, -4.0, 0.25), (0.25, 3.0, 0.8125)):
-        assert certify(MixedLCP([[1.0]], [q], 0.0, 4.0), np.array([x])).complementarity == product
-
-
 def test_parts_of_the_certificate():
     certificate = certify(LCP([[1.0, 0.0], [0.0, 1.0]], [1.0, -4.0]), np.array([-0.5, 3.0]))
-    assert (certificate.negative_x, certificate.negative_w) == (0.5, 1.0)
-    assert certificate.complementarity == 3.0
     assert certificate.residual == 1.0
     # x1 = -1/2 is 1/3 of the terms of row 1, 1/2 + 1, and w2 = -1 is 1/7 of those of row 2, 3 + 4.
     assert certificate.relative_residual == 1.0 / 3.0
@@ -74,13 +67,16 @@ def test_exact_certificate_is_sound_and_finds_planted_solutions(data, n, sparse,
     assert not anywhere.solves or solves(problem, anywhere.x)
 
 
+WRONG = "The exact point of the active set violates a bound or the sign of some w_i."
+
+
 @pytest.mark.parametrize(
     ("A", "q", "bounds", "x", "message"),
     [
-        ([[-1.0]], [-1.0], (0.0, np.inf), [1.0], "The exact point of the active set has x[0] < 0."),
-        ([[1.0, 0.0], [-1.0, 1.0]], [-1.0, 0.5], (0.0, np.inf), [0.1, 0.0], "has w[1] < 0."),
-        ([[1.0, 0.0], [100.0, 1.0]], [-2.01, 0.0], (0.0, 2.0), [1.5, 0.0], "has x[0] > 2."),
-        ([[1.0, 0.0], [1.0, 1.0]], [-1.0, -2.5], (-np.inf, [np.inf, 2.0]), [0.1, 2.0], "has w[1] > 0."),
+        ([[-1.0]], [-1.0], (0.0, np.inf), [1.0], WRONG),
+        ([[1.0, 0.0], [-1.0, 1.0]], [-1.0, 0.5], (0.0, np.inf), [0.1, 0.0], WRONG),
+        ([[1.0, 0.0], [100.0, 1.0]], [-2.01, 0.0], (0.0, 2.0), [1.5, 0.0], WRONG),
+        ([[1.0, 0.0], [1.0, 1.0]], [-1.0, -2.5], (-np.inf, [np.inf, 2.0]), [0.1, 2.0], WRONG),
         ([[0.0]], [-1.0], (0.0, np.inf), [1.0], "The equations w_i = 0 of the active set are inconsistent."),
     ],
 )
@@ -113,7 +109,6 @@ def test_farkas_against_exact_truth(data, n, sparse):
     rows = [at_least(row, -int(right)) for row, right in zip(A.tolist(), q)]
     assert (proof is None) == (feasible_point(rows, n) is not None)
     if proof is not None:
-        assert proof.no_feasible_point
         check_farkas(problem, proof)
 
 
@@ -130,7 +125,6 @@ def test_farkas_of_planted_multipliers_at_all_scales(data, n, exponent):
     scale = 8.0 ** (exponent * np.arange(n))
     problem = LCP(scale[:, None] * A, -scale)
     proof = farkas(problem)
-    assert proof.no_feasible_point
     check_farkas(problem, proof)
 
 
@@ -140,7 +134,6 @@ def test_farkas_whose_columns_are_all_tight(sparse):
     a, b = 912_345_678_901, 702_345_678_907
     problem = dense_or_sparse([[a, -a], [-b, b]], [-1.0, 1.0 / 3.0], sparse)
     proof = farkas(problem)
-    assert proof.no_feasible_point
     check_farkas(problem, proof)
     assert proof.y == (b, a)
 
