@@ -97,7 +97,7 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     for k, (before, after) in enumerate(pairwise(states), 1):
         points.append(exact.point(before, after, u[k], tied.get(k, ())))
     points.append(exact.point(states[-1], states[-1], u[-1], held=_mostly(u[-1] - u[-2])))
-    _goes_on(points, states)
+    _as_listed(path, points, states)
     single, every = True, np.arange(problem.n)
     for k, state in enumerate(states):
         at_corners = [exact.at_corners(state, points[k + end], k) for end in (0, 1)]
@@ -108,11 +108,24 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     return ExactPath(tuple(points), tuple(tuple(state.tolist()) for state in states), bool(single))
 
 
-def _goes_on(points: list[Exactly], states: list[State]) -> None:
-    """Check that nothing turns back on its own piece."""
+def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
+    """Check that events are kinks, rightly named, and nothing turns back."""
+    kinks = {event.step: event for event in path.kinks}
+    wrong = [e for e in path.events if kinks.get(e.step) is not e or not 0 < e.step < len(path) - 1]
+    wrong += [e for e in path.kinks if not np.array_equal(e.u, path.u[e.step])]
+    if wrong:
+        raise UnprovenError(f"path: expected one event at each kink, found {wrong[0].name!r} at t = {wrong[0].lam:g}")
     for k, (a, b, c) in enumerate(zip(points, points[1:], points[2:]), 1):
-        if np.array_equal(states[k - 1], states[k]) and sum((q - p) * (r - q) for p, q, r in zip(a, b, c)) <= 0:
+        before, after = (tuple(q - p for p, q in zip(*pair)) for pair in ((a, b), (b, c)))
+        same, rate = np.array_equal(states[k - 1], states[k]), before[-1] * after[-1]
+        if same and sum(p * q for p, q in zip(before, after)) <= 0:
             raise UnprovenError(f"path: it turns back on its own piece at t = {float(b[-1]):g}")
+        if k not in kinks and not same:
+            raise UnprovenError(f"path: expected a kink at t = {float(b[-1]):g}, found none in its list")
+        if k in kinks and kinks[k].name == ("kink" if rate < 0 else "turning kink" if rate > 0 else None):
+            raise UnprovenError(
+                f"path: t does not {'turn' if rate > 0 else 'go on'} in the kink at t = {float(b[-1]):g}"
+            )
 
 
 @frozen(eq=False)
