@@ -80,8 +80,7 @@ class Endgame:
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            last = taken[-1]
-            tracked = self._track(here, last.u + (lam - last.u[-1]) * last.slope, lam)
+            tracked = self._track(here, _guess(taken, self.target, lam, best), lam)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
@@ -217,3 +216,15 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
         # The largest of many samples is larger.
         seen = np.maximum(seen, 2.0 * np.abs(at.solve(left, 0.0, unit)))
     return seen
+
+
+def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
+    if best is None:
+        last = taken[-1]
+        guess: Array = last.u + (lam - last.u[-1]) * last.slope
+        return guess
+    recent = taken[-3:]
+    gap = recent[0].u[-1] - target
+    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
+    guess[-1] = lam
+    return guess
