@@ -21,7 +21,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.events.locate import THREE_DIGITS
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
-from continuation.point.linearization import Linearization, linearize, relinearize
+from continuation.point.linearization import SOLVED, Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.tolerance import Tolerance
 
@@ -94,6 +94,8 @@ class Endgame:
             if best is not None and end.length >= best.length:
                 break
             best = end
+            if best.length <= SOLVED:
+                break
         if best is None or best.length > self.solver.tolerance.relative:
             return None
         return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None

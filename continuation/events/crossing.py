@@ -52,8 +52,7 @@ def changes(
     so that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to
     it are not found. `accuracy`: relative.
     """
-    # Two that have crossed may have met behind, and be a pair.
-    values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy, passed=1.0)
+    values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy, passed=True)
     order = np.argsort(values)
     return values[order].tolist(), _unit(vectors[:, order], np.sqrt(a.weights))
 
@@ -90,11 +89,11 @@ def _eigenvalues(
     left: float,
     start: Array,
     accuracy: float,
-    passed: float = math.inf,
+    passed: bool = False,
 ) -> tuple[Array, Array, Array]:
     """Eigenvalues; vectors, in units of the unknowns; the scale of Arnoldi's method.
 
-    Of pairs only those whose real part has `passed` a value are told, by that.
+    `passed`: tell the real parts, beyond one, of complex pairs too.
 
     An unknown with too small a unit would dominate every eigenvector: the first product gives a scale in which it does
     not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
@@ -134,14 +133,14 @@ def _eigenvalues(
             break
         Q[k + 1] = x / left_over
     rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
-    # Off the path the equal eigenvalues of a multiple point may be a complex pair.
-    wanted = [
-        j
-        for j, (z, e) in enumerate(zip(values, errors))
-        if (z.real > right or z.real < left)
-        and (abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z)) or z.real > passed)
-        and abs(z) > rounding
-    ]
+    real, pairs = list[int](), list[int]()
+    for j, (z, e) in enumerate(zip(values, errors)):
+        if (z.real > right or z.real < left) and abs(z) > rounding:
+            # Off the path the equal eigenvalues of a multiple point may be a complex pair.
+            (real if abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z)) else pairs).append(j)
+    # Where one has crossed, two others may have crossed and met behind.
+    crossed = passed and any(values[j].real > 1.0 for j in real)
+    wanted = real + [j for j in pairs if crossed and values[j].real > 1.0]
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
 
 

@@ -139,7 +139,9 @@ def branch_point_near(
         return float(np.abs(step[:-1] / extent).max())
 
     def done(size: float) -> bool:
-        lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
+        # At a zero of H beta is of second order.
+        lost = newton.count > 1 and abs(newton.x[-1]) > size
+        lost = lost or norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
         # Stalled increments are round-off; if they grow, several ranks are lost.
         near = size < SIX_DIGITS * max(newton.ratio, 1.0)
         return lost or size <= BACKWARD_ERROR or (near and newton.ratio >= HALVING)
