@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-PROBLEM_FORMATS = ".npz or .json with A and q, or A alone as .mtx, .npy, .txt, .csv"
+PROBLEM_FORMATS = ".npz, .json, .mat or .h5 with A and q, or A alone as .mtx, .npy, .txt, .csv"
 
 
-_BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"%%MatrixMarket": ".mtx"}
+_BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"\x89HDF": ".h5", b"%%MatrixMarket": ".mtx", b"MATLAB": ".mat"}
 """First bytes by format; JSON begins with a bracket."""
 
 

@@ -9,10 +9,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import scipy.sparse as sp
 
-from continuation.archive.hdf5 import Allowance
+from continuation.archive.hdf5 import Allowance, Image, dataset, member, subgroup
+from continuation.arrays import Matrix
+from problems.lcp.data import matlab
 
 ALONE = ""
 """Name of an unnamed array."""
@@ -21,6 +24,9 @@ BOUNDS = ("lower", "upper")
 
 PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *BOUNDS, "rows_lower")
 """The arguments of `from_qp`."""
+
+WANTED = ("A", "q", "x0", *PROGRAM)
+"""Names read from an HDF5 file."""
 
 
 def _numpy(file: str) -> Mapping[str, Any]:
@@ -95,9 +101,41 @@ def _text(file: str) -> Mapping[str, Any]:
     return {ALONE: np.array(numbers)}
 
 
+def _mat(file: str) -> Mapping[str, Any]:
+    return matlab.read(file, Allowance(Path(file).stat().st_size).limit)
+
+
+def _hdf5(file: str) -> Mapping[str, Any]:
+    """The `WANTED` arrays at the root of an HDF5 file, or in its group `problem`."""
+    image = Image(Path(file))
+    allowance = Allowance(image.length - image.missing)
+    try:
+        with h5py.File(image, "r") as root:
+            at = subgroup(root, "problem") if "problem" in root and "A" not in root else root
+            found = {name: _from_hdf5(at, name, allowance) for name in WANTED if name in at}
+            if not found:
+                raise ValueError(f"none of {', '.join(WANTED)} in its group {at.name}")
+            return found
+    finally:
+        image.close()
+
+
+def _from_hdf5(group: Any, name: str, allowance: Allowance) -> Matrix:
+    node = member(group, name)
+    if isinstance(node, h5py.Dataset):
+        return dataset(group, name, None, None, allowance)[()]
+    parts = [dataset(node, part, None, (None,), allowance)[()] for part in ("data", "indices", "indptr")]
+    sizes = dataset(node, "shape", None, (2,), allowance)[()] if "shape" in node else node.attrs["shape"]
+    shape = tuple(int(n) for n in sizes)
+    return sp.csr_array((parts[0], parts[1], parts[2]), shape=shape)
+
+
 READERS: Mapping[str, Callable[[str], Mapping[str, Any]]] = {
     ".npz": _numpy,
     ".json": _json,
+    ".mat": _mat,
+    ".h5": _hdf5,
+    ".hdf5": _hdf5,
     ".mtx": _matrix_market,
     ".npy": _numpy,
     ".txt": _text,

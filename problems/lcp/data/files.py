@@ -1,6 +1,6 @@
 """Reads LCPs and vectors from files, with one-line errors.
 
-Containers (.npz, .json) hold named arrays, ``A`` and ``q``; other formats one array.
+Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, real_array, sound_sparse
 
-CONTAINERS = (".npz", ".json")
+CONTAINERS = (".npz", ".json", ".mat", ".h5", ".hdf5")
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
 """Bounds that JSON's null stands for."""
@@ -44,9 +44,9 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    `path` names a ``.npz`` or ``.json`` file with A, q, and optionally lower, upper (JSON's null is infinite); with `q`
-    also A alone as ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q
-    beside A. Raises `InputError`.
+    `path` names a ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` file with A, q, and optionally lower, upper
+    (JSON's null is infinite; HDF5: at the root or in group ``problem``); with `q` also A alone as ``.mtx``, ``.npy``,
+    ``.txt``, ``.csv`` or `scipy.sparse.save_npz`. `q` is a file, preferred to a q beside A. Raises `InputError`.
     """
     contents = _contents("path", path)
     if q is None and ALONE in contents:
@@ -64,8 +64,8 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 def read_program(path: str | PathLike[str]) -> Program | None:
     """Read a program; None if the file holds none.
 
-    `path` names a ``.npz`` or ``.json`` with c and optional arguments of `from_qp`; or ``.qps``, ``.mps``, ``.lp``
-    (need highspy). Raises `InputError`.
+    `path` names a ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and optional arguments of `from_qp`; or ``.qps``,
+    ``.mps``, ``.lp`` (need highspy). Raises `InputError`.
     """
     suffix = Path(path).suffix.lower()
     with _in_files(path=path):

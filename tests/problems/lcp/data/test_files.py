@@ -2,6 +2,7 @@
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -13,9 +14,26 @@ A = np.array([[2.0, -1.0, 0.0], [0.5, 0.0, 3.0], [0.0, 1e-300, -7.25]])
 Q = np.array([-1.0, 2.5, 1 / 3])
 
 
+def write_h5(path, group="/", sparse=False):
+    with h5py.File(path, "w") as file:
+        at = file.require_group(group)
+        at["q"] = Q
+        if sparse:
+            matrix = sp.csr_array(A)
+            parts = {"data": matrix.data, "indices": matrix.indices, "indptr": matrix.indptr, "shape": matrix.shape}
+            at.create_group("A").update(parts)
+        else:
+            at["A"] = A
+
+
 CONTAINERS = {
     "p.npz": lambda path: np.savez(path, A=A, q=Q),
     "p.json": lambda path: path.write_text(json.dumps({"A": A.tolist(), "q": Q.tolist()})),
+    "p.mat": lambda path: scipy.io.savemat(path, {"A": A, "q": Q}),
+    "sparse.mat": lambda path: scipy.io.savemat(path, {"A": sp.csc_array(A), "q": Q[:, None]}, do_compression=True),
+    "p.h5": write_h5,
+    "archive.h5": lambda path: write_h5(path, "problem"),
+    "sparse.h5": lambda path: write_h5(path, sparse=True),
 }
 
 
@@ -65,6 +83,9 @@ BAD = {
     "pickle": ("p.npz", npz(A=np.array([[None]]), q=Q), r"path: expected a .npz file.*allow_pickle"),
     "names": ("p.npz", npz(M=A, q=Q), r"path: expected an array A, found M, q, in"),
     "no q": ("p.npz", npz(A=A), r"path: expected an array q, found A, in"),
+    "not a mat": ("p.mat", text("hello"), r"path: expected a .mat file"),
+    "not h5": ("p.h5", text("hello"), r"path: expected a .h5 file"),
+    "h5 without": ("p.h5", lambda path: write_h5(path, "a/b"), r"path: expected a .h5 file.*none of A, q"),
     "q elsewhere": ("p.npy", lambda path: np.save(path, A), r"path: expected A and q, found one array in"),
     "broken json": ("p.json", text('{"A": ['), r"path: expected a .json file, found one that cannot be read"),
     "json number": ("p.json", text("3"), r"it holds 3, not an object with A and q"),

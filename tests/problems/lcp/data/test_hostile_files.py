@@ -6,10 +6,13 @@ import os
 import pickle
 import random
 import resource
+import struct
 import zipfile
 
+import h5py
 import numpy as np
 import pytest
+import scipy.io
 
 from problems.lcp.data.files import InputError, read_problem
 
@@ -97,6 +100,8 @@ HOSTILE = {
     "twice.json": b'{"A": [[1, 0], [0, 1]], "A": [[2, 0], [0, 2]]}',
     "bytes.json": b"\xff\xfe{",
     "empty.json": b"",
+    "loop.mat": struct.pack("<iiiii", 50, -1, 22, 0, 2) + b"A\0",
+    "seven.mat": b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + bytes(400),
     "dims.mtx": MTX.format("coordinate", "1000000000 1000000000 1\n1 1 1.0").encode(),
     "entries.mtx": MTX.format("coordinate", "2 2 1000000000000\n1 1 1.0").encode(),
     "array.mtx": MTX.format("array", "1000000 1000000\n1.0").encode(),
@@ -175,3 +180,37 @@ def test_damaged_files(tmp_path, form):
         assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 400 << 10
 
     assert in_child(read) == 0
+
+
+def parts(file, indices, indptr, shape=(2, 2)):
+    file["A"].attrs["shape"] = shape
+    for name, value in {"data": np.ones(2), "indices": indices, "indptr": indptr}.items():
+        file["A"][name] = value
+
+
+HARM = {
+    "an index outside": lambda file: parts(file, [0, 99], [0, 1, 2]),
+    "starts that fall": lambda file: parts(file, [0, 1], [0, 2, -5, 2], (3, 3)),
+    "a large shape": lambda file: parts(file, [0, 1], [0, 1, 2], (10**9, 10**9)),
+    "no parts": lambda file: None,
+    "a link": lambda file: file.pop("A") and file.__setitem__("A", h5py.SoftLink("/q")),
+    "a link elsewhere": lambda file: file.pop("A") and file.__setitem__("A", h5py.ExternalLink("other.h5", "/A")),
+    "entries that nobody stored": lambda file: file["A"].create_dataset("data", (10**8,), "f8", chunks=(1000,)),
+}
+
+
+@pytest.mark.parametrize("harm", HARM)
+def test_hdf5(tmp_path, harm):
+    with h5py.File(tmp_path / "p.h5", "w") as file:
+        file["q"] = Q
+        file.create_group("A")
+        HARM[harm](file)
+    with pytest.raises(InputError) as caught:
+        read_problem(tmp_path / "p.h5")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_matlab_file_of_more_zeros_than_it_may_hold(tmp_path):
+    scipy.io.savemat(tmp_path / "p.mat", {"A": np.zeros((9000, 9000)), "q": Q}, do_compression=True)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_problem(tmp_path / "p.mat")
