@@ -25,10 +25,10 @@ IMAGES = PAGE.parent / "images"
 TABLE = re.compile(r"<!-- table (\w+) -->\n.*?<!-- end -->", re.DOTALL)
 
 STATED = {
-    1: ("N",), 2: ("PSD",), 3: ("Q0",), 4: ("E0^s",), 5: (), 6: ("almost copositive",), 7: ("almost N0", "Q"),
-    8: ("almost N0",), 9: ("N0 of exact order k",), 10: ("N0 of exact order k",),
+    1: ("N",), 2: ("PSD",), 3: ("Q0",), 4: ("E0^s",), 5: (), 6: ("almost copositive",), 7: ("almost N-bar", "Q"),
+    8: ("almost N0",), 9: ("N0 of exact order k",), 10: ("N-bar of exact order k",),
 }  # fmt: skip
-"""What the paper says of each matrix, by the names that `classify` uses; N-bar by the signs that it requires."""
+"""What the paper says of each matrix, by the names that `classify` uses."""
 
 DENIED = {3: ("PSD",), 5: ("N",), 8: ("Q",)}
 """What it says that they are not; of 3 only what its place in the text says."""
@@ -36,7 +36,9 @@ DENIED = {3: ("PSD",), 5: ("N",), 8: ("Q",)}
 IMPLIED_BY = {
     "P0": {"row sufficient"}, "sufficient": {"PSD"}, "column sufficient": {"sufficient"}, "P_*": {"sufficient"},
     "copositive": {"PSD"}, "E0": {"row sufficient", "copositive"}, "Q0": {"Q", "row sufficient", "Z"},
-    "nondegenerate": {"N"}, "R0": {"nondegenerate"}, "S": {"Q"}, "N0": {"N"}, "N0 of exact order k": {"almost N0"},
+    "nondegenerate": {"N"}, "R0": {"nondegenerate"}, "S": {"Q"}, "N0": {"N"}, "N-bar": {"N"},
+    "almost N0": {"almost N-bar"}, "N-bar of exact order k": {"almost N-bar"},
+    "N0 of exact order k": {"almost N-bar", "N-bar of exact order k"},
 }  # fmt: skip
 """A class is left out of the table where one of these is in it (with what else holds of the ten matrices)."""
 

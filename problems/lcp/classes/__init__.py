@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from problems.lcp.classes.closure import is_almost_n_bar, is_n_bar, is_n_bar_of_exact_order
 from problems.lcp.classes.cones import (
     is_almost_copositive,
     is_copositive,
@@ -38,7 +39,8 @@ from problems.lcp.classes.sufficiency import is_column_sufficient, is_p_star, is
 
 _TESTS: tuple[Callable[[Any], Membership], ...] = (
     is_psd, is_p, is_p0, is_row_sufficient, is_column_sufficient, is_sufficient, is_p_star, is_z, is_k,
-    is_nondegenerate, is_n, is_n0, is_almost_n, is_almost_n0, is_n_of_exact_order, is_n0_of_exact_order,
+    is_nondegenerate, is_n, is_n0, is_n_bar, is_almost_n, is_almost_n0, is_almost_n_bar,
+    is_n_of_exact_order, is_n0_of_exact_order, is_n_bar_of_exact_order,
     is_copositive, is_strictly_copositive, is_almost_copositive, is_semimonotone, is_strictly_semimonotone,
     is_semimonotone_star, is_r0, is_s, is_q0, is_q,
 )  # fmt: skip
@@ -68,7 +70,8 @@ def classify(A: Any) -> Classification:
 
 __all__ = [
     "Classification", "Evidence", "ExactMatrix", "Membership", "classify", "is_almost_copositive", "is_almost_n",
-    "is_almost_n0", "is_column_sufficient", "is_copositive", "is_k", "is_n", "is_n0", "is_n0_of_exact_order",
+    "is_almost_n0", "is_almost_n_bar", "is_column_sufficient", "is_copositive", "is_k", "is_n", "is_n0",
+    "is_n0_of_exact_order", "is_n_bar", "is_n_bar_of_exact_order",
     "is_n_of_exact_order", "is_nondegenerate", "is_p", "is_p0", "is_p_star", "is_psd", "is_q", "is_q0", "is_r0",
     "is_row_sufficient", "is_s", "is_semimonotone", "is_semimonotone_star", "is_strictly_copositive",
     "is_strictly_semimonotone", "is_sufficient", "is_z", "table",

@@ -86,18 +86,23 @@ def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
 
     The certificate's value is k.
     """
-    return _of_exact_order(matrix, "N", "negative")
+    return of_exact_order(matrix, "N", _up_to(matrix, "negative"))
 
 
 @matrix_class
 def is_n0_of_exact_order(matrix: ExactMatrix) -> Membership:
     """N0 of exact order k: minors nonpositive up to order n - k, positive beyond, for some k."""
-    return _of_exact_order(matrix, "N0", "nonpositive")
+    return of_exact_order(matrix, "N0", _up_to(matrix, "nonpositive"))
 
 
-def _of_exact_order(matrix: ExactMatrix, base: str, low: str) -> Membership:
+def _up_to(matrix: ExactMatrix, low: str) -> Callable[[str, int], Membership]:
+    return lambda name, last: judge(matrix, name, two_signs(low, last, "positive"), EXACT_ORDER)
+
+
+def of_exact_order(matrix: ExactMatrix, base: str, test: Callable[[str, int], Membership]) -> Membership:
+    """Test k = 1, ..., n - 1 until one holds; `test` takes the name and n - k."""
     name = f"{base} of exact order k"
-    tried = {k: judge(matrix, name, two_signs(low, matrix.n - k, "positive"), EXACT_ORDER) for k in range(1, matrix.n)}
+    tried = {k: test(name, matrix.n - k) for k in range(1, matrix.n)}
     for k, found in tried.items():
         if found.holds or found.holds is None:
             return evolve(found, certificate=evolve(found.certificate, value=Fraction(k)))
