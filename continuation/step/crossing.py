@@ -240,8 +240,8 @@ class _Looks:
     def blurred(self) -> bool:
         """Whether z is noise even at the beginning, as near poles."""
         a = self.arc.a
-        blur = self.solver.tolerance.relative / np.sqrt(a.weights)
-        return bool(self.look(a.u + blur * generic_vector(a.u.size), 0.0))
+        blur = self.solver.noise_by_component(a) * np.sign(generic_vector(a.u.size))
+        return bool(self.look(a.u + blur, 0.0))
 
     def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
         """The branch point indicated at t: simple, near `place`, or degenerate."""
