@@ -10,8 +10,8 @@ from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events.scan import first_terminal, found_by_events, scan_events, up_to
-from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
+from continuation.kinks.through import Crossing, cross
 from continuation.metric import norm
 from continuation.path import LocatedEvent
 from continuation.point.arc import Arc, angle_between, arc_between, cut, length_between, position

@@ -17,8 +17,8 @@ from continuation.ends.target import Target
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events import Event, TurningPoint
-from continuation.kinks.crossing import STILL, Crossing
 from continuation.kinks.first import same_piece
+from continuation.kinks.through import STILL, Crossing
 from continuation.metric import SupportsExtent, norm
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import angle_between, length_between

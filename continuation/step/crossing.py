@@ -17,7 +17,7 @@ from attrs import define, evolve, field, frozen
 from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
-from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
+from continuation.events.eigenvalues import EIGENVALUE_ACCURACY, changes, multiplicity
 from continuation.events.singularity import branch_point_near, scales
 from continuation.metric import norm
 from continuation.point.arc import Arc, position

@@ -9,7 +9,7 @@ from continuation.ends.divergence import beyond_horizon, words
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.errors import EvaluationError
-from continuation.kinks.crossing import Crossing
+from continuation.kinks.through import Crossing
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 from continuation.rejection import Rejected
