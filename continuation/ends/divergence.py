@@ -30,6 +30,9 @@ only pitchforks with imperfections below 1e-16 come so near."""
 QUADRATIC_STEPS = 4
 """Quadratic steps: from an error of a tenth, four give all digits."""
 
+LARGER = 2.0
+"""Least growth of the largest unknown on a pole."""
+
 HORIZON = 1e100
 """Largest number on a path, whose square is finite."""
 
@@ -68,7 +71,8 @@ def divergence(
     known, model = (way, began, *marks), _fitted(marks) or model
     if not met or model is None or abs(model[0] - lam) > began / DECADE**2:
         return known, ""
-    return known, words(known) if _met_further(evaluator, point, *model, way, stops) else ""
+    bounded = model[1] > 1.0 + 1.0 / HIGHEST_POLE and largest(point.y) < LARGER * largest(origin.u[:-1])
+    return known, words(known) if not bounded and _met_further(evaluator, point, *model, way, stops) else ""
 
 
 def _met_further(

@@ -307,3 +307,25 @@ def test_equal_samples_are_no_evidence_of_an_exact_function():
     u, w = np.array([1.0, 0.0]), np.array([1.0, 1.0])
     noise = noise_along(lambda _: np.array([next(values)]), u, w, np.array([0.1]), np.array([1e-14]))
     assert 1e-12 < noise[0] < 1e-8
+
+
+@every_preset
+def test_frequencies_do_not_run_off_to_infinity(preset):
+    """Mutation and selection of eight species: at lam = 1.5 another takes over, within 1e-21 of a crossing.
+
+    No such path ends there, whatever rounding makes of it; a frequency of .997 that rises like a pole said DIVERGED.
+    """
+    n, m = 8, 1e-3
+    Q = (1 - 2 * m) * np.eye(n) + m * (np.eye(n, k=1) + np.eye(n, k=-1))
+    Q[0, 0] = Q[-1, -1] = 1 - m
+
+    def residual(x, lam):
+        w = np.concatenate([np.stack([lam + 0 * x[0]]), np.ones(n - 2), np.array([1.5])])
+        return (w * x) @ Q - x * (w * x).sum()
+
+    values, vectors = np.linalg.eig(Q.T @ np.diag(np.r_[np.ones(n - 1), 1.5]))
+    x = np.abs(vectors[:, np.argmax(values.real)].real)
+    path = trace(
+        from_functions(residual, start=(x / x.sum(), 1.0), target=2.0), preset=preset, budget=Budget(steps=2000)
+    )
+    assert path.status is not Status.DIVERGED
