@@ -11,7 +11,7 @@ from continuation.version import __version__
 
 if TYPE_CHECKING:
     from continuation.adapters import from_casadi, from_jax, from_sympy
-    from continuation.auditing import audit, refine
+    from continuation.auditing import arclength, audit, refine
     from continuation.branch_switching import branch_directions, switch_branch
     from continuation.budget import Budget
     from continuation.certificate import Proof, certify
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "adapters": "from_casadi from_jax from_sympy",
-    "auditing": "audit refine",
+    "auditing": "arclength audit refine",
     "branch_switching": "branch_directions switch_branch",
     "budget": "Budget",
     "certificate": "Proof certify",
@@ -115,6 +115,7 @@ __all__ = [
     "Tracer",
     "TurningPoint",
     "__version__",
+    "arclength",
     "audit",
     "branch_directions",
     "certify",

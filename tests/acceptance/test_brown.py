@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
+from continuation import arclength as length
 from problems.nonlinear import brown, fixed_point
 
-from ..truth.length import length
 from ..util import every_preset
 
 LENGTHS = {5: 2.7114077076, 10: 3.7199286259, 20: 5.1259069338, 30: 6.1886027468}

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
+from continuation import arclength as length
 from problems.bifurcation import Circle, Cusp
 
-from ..truth.length import length
 from ..util import every_preset
 
 

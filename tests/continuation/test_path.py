@@ -16,11 +16,11 @@ from continuation import (
     trace,
     trace_both,
 )
+from continuation import arclength as length
 from continuation.archive import open_archive
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
-from ..truth.length import length
 from ..util import by_preset, every_preset
 
 HIGH = 4.0 * np.sin(np.pi * np.arange(1, 21) / 21.0)
