@@ -7,11 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arrays import EPS
 from continuation.auditing.retrace import refine
 from continuation.path import Path
+from continuation.path.path import require_path
 
 HALVINGS = 4
-"""Halvings of a step: Romberg's extrapolation then leaves about 1e-9 of the length."""
+"""Halvings of a part of a step, whose chords Romberg's rule extrapolates; below it a part is divided."""
+
+AGREEMENT = 1e-10
+"""Difference of the last two extrapolations, relative to the length so far: the sum is then right to nine digits."""
 
 
 def arclength(homotopy: Any, path: Path) -> float:
@@ -35,12 +40,20 @@ def arclength(homotopy: Any, path: Path) -> float:
     Romberg's extrapolation of the trapezoidal rule (Stoer and Bulirsch, Introduction to Numerical Analysis, Section
     3.4).
     """
-    total = 0.0
-    for begin, end in pairwise(np.unique(path.arclength)):
+    require_path(path)
+    knots = np.unique(path.arclength).tolist()
+    total, parts = float(knots[-1] - knots[0]) * EPS, [*pairwise(knots)][::-1]
+    while parts:
+        begin, end = parts.pop()
         places = np.linspace(begin, end, 2**HALVINGS + 1).tolist()
         points = np.array([refine(homotopy, path, s, 1e-12) for s in places])
         sums = [np.linalg.norm(np.diff(points[:: 2**k], axis=0), axis=1).sum() for k in range(HALVINGS, -1, -1)]
-        for k in range(1, HALVINGS + 1):
+        for k in range(1, HALVINGS):
             sums = [fine + (fine - coarse) / (4.0**k - 1.0) for coarse, fine in pairwise(sums)]
-        total += float(sums[0])
+        last = sums[1] + (sums[1] - sums[0]) / (4.0**HALVINGS - 1.0)
+        middle = places[len(places) // 2]
+        if abs(last - sums[1]) > AGREEMENT * (total + last) and begin < middle < end and end - begin > 1e-6 * knots[-1]:
+            parts += [(middle, end), (begin, middle)]
+        else:
+            total += float(last)
     return total

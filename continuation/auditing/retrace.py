@@ -7,9 +7,9 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
-from continuation.arguments.checks import expect, instance_with, is_number
+from continuation.arguments.checks import check_flag, expect, instance_with, is_number
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.controllers import Bounds, Decision, StepMeasures
@@ -28,6 +28,9 @@ from continuation.step.options import PARTS
 from continuation.step.presets import CONSERVATIVE
 from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
+
+BEFORE = 0.1
+"""Share of the last step before a branch point at which a retrace begins: nearer, the matrix is almost singular."""
 
 
 @frozen(eq=False)
@@ -81,6 +84,7 @@ def audit(
     *,
     metric: Metric | None = None,
     tolerance: float | Tolerance = 1e-8,
+    backwards: bool = False,
 ) -> Audit:
     """Check that the tracer stayed on one path: a retrace with steps half as long must pass the same points.
 
@@ -95,6 +99,8 @@ def audit(
         As in the trace.
     tolerance : float or Tolerance
         As in the trace; points may differ by a thousand times as much.
+    backwards : bool
+        Retrace from end to start: jumps rarely occur both ways.
 
     Returns
     -------
@@ -108,16 +114,26 @@ def audit(
     require_path(path)
     if metric is not None:
         instance_with("metric", metric, *PARTS["metric"])
+    check_flag("backwards", backwards)
     rule, tolerance = metric or metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
-    knots = _knots([path.steps[k] for k in indices], rule)
+    sign = 1.0
+    if backwards:
+        indices, sign = indices[::-1], -1.0
+    steps, crossings = [path.steps[k] for k in indices], path.branch_points
+    if backwards and crossings and crossings[-1].ends_step and crossings[-1].step == steps[0].index:
+        # Paths do not begin regularly at branch points.
+        s = steps[0].arclength + BEFORE * (steps[1].arclength - steps[0].arclength)
+        crossings = crossings[:-1]
+        steps[0] = evolve(steps[0], u=refine(homotopy, path, s, tolerance), tangent=steps[1].tangent)
+    knots = _knots(steps, path.kinks, sign, rule)
     tracer = Tracer(
         homotopy,
         preset=CONSERVATIVE,
         controller=Halved(np.array([knot.arclength for knot in knots])),
         metric=rule,
         tolerance=tolerance,
-        target=path.endpoint.lam if path.status is Status.REACHED_TARGET else None,
+        target=path.endpoint.lam if path.status is Status.REACHED_TARGET and not backwards else None,
         start=(knots[0].u, knots[0].tangent),
         budget=Budget(steps=20 * len(knots) + 100),
     )
@@ -127,7 +143,7 @@ def audit(
     words, same = [], True
     for name, found, stored in (
         ("turning points", tracer.path.turning_points, path.turning_points),
-        ("branch points", tracer.path.branch_points, path.branch_points),
+        ("branch points", tracer.path.branch_points, crossings),
     ):
         passed, expected = _passed(tracer, found, knots[-1], tolerance), len(stored)
         same = same and passed == expected
@@ -148,12 +164,18 @@ def metric_of(homotopy: Any, path: Path) -> Metric:
     return Weighted(weights[:-1], float(weights[-1]))
 
 
-def _knots(steps: list[Step], metric: Metric) -> list[Knot]:
-    knots = [Knot(0.0, steps[0].u, steps[0].tangent)]
+def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
+    onward = {event.step: event.rays[1] for event in kinks if event.rays is not None and len(event.rays) > 1}
+
+    def tangent(step: Step) -> Array:
+        # A kink has two tangents: use the incoming one.
+        return -onward[step.index] if sign < 0.0 and step.index in onward else sign * step.tangent
+
+    knots = [Knot(0.0, steps[0].u, tangent(steps[0]))]
     weights: Array | None = None
     for before, after in pairwise(steps):
         weights = metric.weights(before.u, before.tangent, weights)
-        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, after.tangent))
+        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, tangent(after)))
     return knots
 
 

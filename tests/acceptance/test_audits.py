@@ -1,4 +1,4 @@
-"""The audit, which traces with other steps, agrees with the path."""
+"""The audit, which traces with other steps and backwards, agrees with the path."""
 
 import numpy as np
 import pytest
@@ -26,8 +26,12 @@ PATHS = {
 }
 
 
-@pytest.mark.parametrize("name", PATHS)
-def test_the_audit_agrees(name):
+# Backwards from a turning point in which the path was stopped there are two ways.
+CASES = [*((name, False) for name in PATHS), *((name, True) for name in PATHS if "aircraft" not in name)]
+
+
+@pytest.mark.parametrize(("name", "backwards"), CASES)
+def test_the_audit_agrees(name, backwards):
     homotopy, options = PATHS[name]
-    found = audit(homotopy, trace(homotopy, **options))
+    found = audit(homotopy, trace(homotopy, **options), backwards=backwards)
     assert found.same, found

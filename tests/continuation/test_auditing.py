@@ -17,20 +17,20 @@ def graph(c):
 CROSSED = two_graphs(graph((1.0, 0.2, 0.1)), graph((0.7, 0.1, 0.3)), -1.5, 1.5)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
-def test_a_branch_switched_in_silence(seed):
+@pytest.mark.parametrize(("seed", "backwards"), [(0, False), (1, True), (2, False), (2, True)])
+def test_a_branch_switched_in_silence(seed, backwards):
     rng = np.random.default_rng(seed)
     a = rng.normal(0.0, 1.0, 3)
     b = a + rng.uniform(0.1, 0.3) * np.array([1.0, *rng.uniform(-0.5, 0.5, 2)])
     homotopy = two_graphs(graph(a), graph(b), -1.5, 1.5)
     path, other = trace(homotopy), trace(two_graphs(graph(b), graph(a), -1.5, 1.5))
-    assert audit(homotopy, path).same
+    assert audit(homotopy, path, backwards=backwards).same
     steps = [step for step in path.steps if step.lam < 0.0]
     steps += [evolve(step, index=len(steps) + k) for k, step in enumerate(s for s in other.steps if s.lam > 0.0)]
     path.steps[:], path.events[:] = steps, []
-    found = audit(homotopy, path)
+    found = audit(homotopy, path, backwards=backwards)
     assert not found.same
-    assert path.steps[found.first].lam > 0.0
+    assert (path.steps[found.first].lam > 0.0) is not backwards
 
 
 def test_a_branch_point_that_the_path_does_not_have():
@@ -44,7 +44,8 @@ def test_a_branch_point_that_the_path_does_not_have():
         assert found in str(audit(CROSSED, path))
 
 
-def test_one_on_which_the_path_ends():
+@pytest.mark.parametrize("backwards", [False, True])
+def test_one_on_which_the_path_ends(backwards):
     path = trace(CROSSED, events=[BranchPoint(terminal=1)])
     assert path.endpoint.lam == pytest.approx(0.0, abs=1e-12)
-    assert audit(CROSSED, path).same
+    assert audit(CROSSED, path, backwards=backwards).same
