@@ -14,28 +14,44 @@ from attrs import frozen
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
-from continuation.ends.divergence import DECADE
 from continuation.ends.landing import regular
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events.locate import THREE_DIGITS
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
-from continuation.point.linearization import SOLVED, Linearization, linearize, relinearize
+from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
 """Ratio of distances to the target: few points, within Newton's reach."""
 
+RELATIVE_FLOOR = 1e-13
+"""Change by the last sample that stops the sampling, relative."""
+
+RESIDUAL_RATIO = 1e-3
+"""Largest residual at the limit, relative to the first sample moved to the target."""
+
 ULPS = 8.0, -1021.0
 """Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
+SAMPLES_WITHOUT_GAIN = 3
+"""Samples without gain that stop the sampling."""
+
+ROUND_OFF_SPREAD = 10.0
+"""Allowed growth of round-off in H from the last sample to the limit."""
+
+SAMPLE_TOLERANCE = 1e-3
+"""Accuracy of samples, in tolerances: the extrapolation multiplies their errors."""
+
 AMPLIFICATION = 0.3, 10.0
 """The extrapolation multiplies errors by 3, 30, 300, ... for winding numbers 1, 2, 3, ...: rounded sums of Hermite
 weights at t = 0."""
+
+EQUALLY_GOOD = 10.0
+"""Factor of the best error within which the smallest winding number wins: multiples fit later."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
@@ -77,10 +93,12 @@ class Endgame:
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
+        worse = 0
         here = point
         for k in range(1, self.samples + 1):
             lam = self.target + gap * RATIO**k
-            tracked = self._track(here, _guess(taken, self.target, lam, best), lam)
+            known = best is not None and self._within(best)
+            tracked = self._track(here, _guess(taken, self.target, lam, best), lam, not known)
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
@@ -91,12 +109,13 @@ class Endgame:
             if len(taken) < 3:
                 continue
             end = _limit(taken, self.target, point.weights)
-            if best is not None and end.length >= best.length:
+            if best is None or end.length < best.length:
+                best, worse = end, 0
+            else:
+                worse += 1
+            if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
                 break
-            best = end
-            if best.length <= SOLVED:
-                break
-        if best is None or best.length > self.solver.tolerance.relative:
+        if best is None or not self._within(best):
             return None
         return best if self._holds(best, taken) and self._keeps_orientation(best, here) else None
 
@@ -120,30 +139,43 @@ class Endgame:
             return True
         return at.orientation == last.orientation or not regular(self.solver, at, last)
 
+    def _within(self, end: SingularLimit) -> bool:
+        return end.length <= self.solver.tolerance.relative
+
     def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
         """Whether H is round-off at the limit, or far smaller than at the first sample moved there."""
         residual_norm = self.solver.evaluator.residual_norm
         residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
         moved = residual_norm(np.append(taken[0].u[:-1], self.target))
-        return residual <= THREE_DIGITS * moved + DECADE * round_off
+        return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
-    def _track(self, here: Linearization, guess: Array, lam: float) -> tuple[Linearization, Array] | None:
-        """The point at a parameter value, and its noise."""
+    def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
+        """The point at a parameter value, and its noise.
+
+        If `noisy`, an increment below the tolerance is accepted as noise.
+        """
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
         unit = np.zeros_like(guess)
         unit[-1] = 1.0
-        # The extrapolation multiplies the samples' errors.
-        fine = Tolerance(relative=THREE_DIGITS * tolerance.relative)
+        fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
-        if not correction.converged or (max_step is not None and not max_step(here.u, correction.u - here.u) > 1.0):
-            return None
-        u = np.append(correction.u[:-1], lam)
+        u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
         try:
-            if correction.anchor is not None:
-                at = relinearize(evaluator, u, here.weights, correction.anchor, here.border, signed=True)
+            if not correction.converged:
+                if not noisy or anchor is None:
+                    return None
+                increment = anchor.system.solve(-evaluator.residual(u), 0.0)
+                if tolerance.measure(increment, here.weights) > 1.0:
+                    return None
+                u, noise = u + increment, np.abs(increment)
+            if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
+                return None
+            u = np.append(u[:-1], lam)
+            if anchor is not None:
+                at = relinearize(evaluator, u, here.weights, anchor, here.border, signed=True)
             else:
                 at = linearize(evaluator, u, here.weights, here.border)
-            return at, _round_off(evaluator, at, unit)
+            return at, np.maximum(noise, _round_off(evaluator, at, unit))
         except EvaluationError:
             return None
 
@@ -195,8 +227,19 @@ def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
     if not known:
         raise EvaluationError("the samples of the endgame overflow")
     least = min(end.length for end in known)
-    # Multiples of the winding number fit later.
-    return next(end for end in known if end.length <= DECADE * least)
+    return next(end for end in known if end.length <= EQUALLY_GOOD * least)
+
+
+def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
+    if best is None:
+        last = taken[-1]
+        guess: Array = last.u + (lam - last.u[-1]) * last.slope
+        return guess
+    recent = taken[-3:]
+    gap = recent[0].u[-1] - target
+    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
+    guess[-1] = lam
+    return guess
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
@@ -218,15 +261,3 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
         # The largest of many samples is larger.
         seen = np.maximum(seen, 2.0 * np.abs(at.solve(left, 0.0, unit)))
     return seen
-
-
-def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
-    if best is None:
-        last = taken[-1]
-        guess: Array = last.u + (lam - last.u[-1]) * last.slope
-        return guess
-    recent = taken[-3:]
-    gap = recent[0].u[-1] - target
-    guess = _polynomial(recent, target, best.winding_number)(((lam - target) / gap) ** (1.0 / best.winding_number))
-    guess[-1] = lam
-    return guess
