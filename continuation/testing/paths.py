@@ -48,12 +48,12 @@ def max_step(subject: Subject) -> None:
                 compare("max_step", place, said, [left], [rest], SIX_DIGITS * whole)
 
 
-def refinement(subject: Subject) -> None:
-    """A retrace with half steps gives the same path."""
+def audited(name: str, backwards: bool, subject: Subject) -> None:
+    """A retrace, with half steps or backwards, gives the same path."""
     if len(subject.regular) >= 2:
-        with reporting("refinement", "along the path"):
-            report = audit(subject.homotopy, subject.regular)
-        require(report.same, f"refinement: {report.sentence}")
+        with reporting(name, "along the path"):
+            report = audit(subject.homotopy, subject.regular, backwards=backwards)
+        require(report.same, f"{name}: {report.sentence}")
 
 
 def resumed(subject: Subject) -> None:

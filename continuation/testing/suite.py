@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -65,7 +66,8 @@ CHECKS = (
     Check("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
     Check("taylor", derivatives.taylor, "taylor", "start_on_path"),
     Check("trace", attrgetter("path"), after="start_on_path"),
-    Check("refinement", paths.refinement, after="trace"),
+    Check("refinement", partial(paths.audited, "refinement", False), after="trace"),
+    Check("reversal", partial(paths.audited, "reversal", True), after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
 """Cheap checks first."""

@@ -48,6 +48,24 @@ def plain(residual, y0):
     return continuation.from_functions(residual, start=([y0], 1.0), target=0.0)
 
 
+class OneWay(Interior):
+    """Where points of the path have come with a larger parameter four times, there is another path."""
+
+    last, rises = 1.0, 0
+
+    def start(self):
+        self.last, self.rises = 1.0, 0
+        return super().start()
+
+    def residual(self, y, lam):
+        value = super().residual(y, lam)
+        if np.abs(value).max() < 1e-10:
+            # By more than from a look within a short step back to its end.
+            self.rises += lam > self.last + 0.05
+            self.last = lam
+        return value + (1e-2 if self.rises >= 4 else 0.0)
+
+
 @define
 class Forgetful:
     """The archive keeps its slope without the factor."""
@@ -206,6 +224,7 @@ FAULTS = [
         plain(lambda y, lam: y - np.sqrt(lam - 0.5), math.sqrt(0.5)),
         "the path ended after .* steps, (LEFT_DOMAIN|STEP_TOO_SMALL)",
     ),
+    ("reversal", OneWay(), "reversal: The retrace does not pass through step"),
     ("refinement", Ageing(drift=1e-3), r"refinement: The retrace does not pass through step \d+ \(arclength"),
     ("resume", Forgetful(), "resume: expected <Step"),
     ("resume", Ageing(), r"resume: (expected <Step|.* homotopy: expected the archive's residual)"),
