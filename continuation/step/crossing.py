@@ -241,7 +241,9 @@ class _Looks:
         """Whether z is noise even at the beginning, as near poles."""
         a = self.arc.a
         blur = self.solver.noise_by_component(a) * np.sign(generic_vector(a.u.size))
-        return bool(self.look(a.u + blur, 0.0))
+        # The factorisation may be of a point nearby: eigenvalues differ from one already.
+        seen = [(min([LOWEST, *told]), max([TOLD, *told])) for told in (self.look(u, 0.0) for u in (a.u, a.u + blur))]
+        return any(abs(p - q) > TOLD for p, q in zip(*seen))
 
     def _branch_point(self, t: float, place: float) -> BranchPointOnArc | None:
         """The branch point indicated at t: simple, near `place`, or degenerate."""

@@ -329,3 +329,20 @@ def test_frequencies_do_not_run_off_to_infinity(preset):
         from_functions(residual, start=(x / x.sum(), 1.0), target=2.0), preset=preset, budget=Budget(steps=2000)
     )
     assert path.status is not Status.DIVERGED
+
+
+@every_preset
+@pytest.mark.parametrize(("seed", "angle"), [(9, 1e-2), (9, 1e-3), (3, 1e-3), (5, 1e-2)])
+def test_branches_that_cross_at_a_small_angle_are_told_from_noise(seed, angle, preset):
+    """FAST's factorisation is of a point nearby: its eigenvalues differ from one before anything is noise."""
+    generator = np.random.default_rng([seed, 7])
+    place, b, c = generator.uniform(-0.5, 1.5), generator.uniform(0.3, 2.0), generator.uniform(-1.0, 1.0)
+
+    def residual(y, lam):
+        off = y[0] - np.sin(b * lam) - c * lam
+        return np.stack([off * (off - angle * (lam - place))])
+
+    first = np.sin(-b) - c
+    path = trace(from_functions(residual, start=([first], -1.0), target=2.0), preset=preset)
+    assert [event.lam for event in path.branch_points] == pytest.approx([place], abs=1e-6)
+    assert path.endpoint.y == pytest.approx([np.sin(2.0 * b) + 2.0 * c], abs=1e-9)
