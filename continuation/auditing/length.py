@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from continuation.arrays import EPS
+from continuation.arrays import SIX_DIGITS
 from continuation.auditing.retrace import refine
 from continuation.path import Path
 from continuation.path.path import require_path
@@ -42,7 +42,7 @@ def arclength(homotopy: Any, path: Path) -> float:
     """
     require_path(path)
     knots = np.unique(path.arclength).tolist()
-    total, parts = float(knots[-1] - knots[0]) * EPS, [*pairwise(knots)][::-1]
+    total, parts = 0.0, [*pairwise(knots)][::-1]
     while parts:
         begin, end = parts.pop()
         places = np.linspace(begin, end, 2**HALVINGS + 1).tolist()
@@ -51,8 +51,9 @@ def arclength(homotopy: Any, path: Path) -> float:
         for k in range(1, HALVINGS):
             sums = [fine + (fine - coarse) / (4.0**k - 1.0) for coarse, fine in pairwise(sums)]
         last = sums[1] + (sums[1] - sums[0]) / (4.0**HALVINGS - 1.0)
-        middle = places[len(places) // 2]
-        if abs(last - sums[1]) > AGREEMENT * (total + last) and begin < middle < end and end - begin > 1e-6 * knots[-1]:
+        # Parts of a millionth end at a corner.
+        if abs(last - sums[1]) > AGREEMENT * (total + last) and end - begin > SIX_DIGITS * knots[-1]:
+            middle = places[len(places) // 2]
             parts += [(middle, end), (begin, middle)]
         else:
             total += float(last)

@@ -50,8 +50,9 @@ class CountedSystem:
     def solve(self, r: Array, rho: float, approximate: bool = False) -> Array:
         """Bordered solve; EvaluationError if not finite."""
         self.counts.solves += 1
+        system: Any = self.system
         try:
-            z = self.system.approximate(r, rho) if approximate else self.system.solve(r, rho)  # type: ignore[attr-defined]
+            z: Array = system.approximate(r, rho) if approximate else system.solve(r, rho)
         except SingularError as error:
             raise EvaluationError(str(error)) from error
         if type(self.system) is not Dense and not finite(z):
