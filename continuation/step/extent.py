@@ -244,15 +244,12 @@ def _nonlinearity(
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
-    def correction(at: Array) -> Array:
-        return _across(v, given, point.approximate(residual - evaluator.residual(at)))
-
-    def seen(z: Array) -> Array:
+    def corrected(at: Array) -> Array:
+        z = _across(v, given, point.approximate(residual - evaluator.residual(at)))
         return np.where(np.abs(z) > unseen, z, 0.0)
 
-    # Noise moves a point by noise only, but what is left of a correction without its small components is no noise.
-    whole = correction(there)
-    d, e = seen(whole), seen(correction(there + whole))
+    d = corrected(there)
+    e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
@@ -265,7 +262,7 @@ def _nonlinearity(
     bent = ~moving & (np.abs(d) > apart)
     if bent.any():
         # A component that begins to move here, as the parameter at a fold, follows a parabola, which has no scale.
-        half = seen(correction(point.u + 0.5 * h * v))
+        half = corrected(point.u + 0.5 * h * v)
         bent &= half != 0.0
         if bent.any():
             turned = max(turned, median(np.abs(d - 4.0 * half)[bent] / np.abs(d[bent])))
