@@ -123,16 +123,21 @@ def _eigenvalues(
         if k == 0 and not whole:
             Q[1] = x / left_over
             continue
-        values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
+        small = H[: k + 1, : k + 1]
+        if 0.5 * _size(small + small.T) + left_over <= min(right, -left):
+            # No real part exceeds the norm of the symmetric part.
+            values, errors, vectors = [], [], small
+        else:
+            values, errors, vectors = _eig(small, 0.0 if whole else left_over)
         told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
         before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
         # If H' is far from normal, as near a pole, residuals are small too early: the next dimension must confirm.
         last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
         same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
-        if whole or (converged and (same if told else before or _closed(H[: k + 1, : k + 1], left_over, right))):
+        if whole or (converged and (same if told else before or _closed(small, left_over, right))):
             break
         Q[k + 1] = x / left_over
-    rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
+    rounding = ROUNDING * _size(small)
     real, pairs = list[int](), list[int]()
     for j, (z, e) in enumerate(zip(values, errors)):
         if (z.real > right or z.real < left) and abs(z) > rounding:
@@ -147,6 +152,12 @@ def _eigenvalues(
 def _closed(H: Array, left_over: float, right: float) -> bool:
     """Whether no eigenvalue hides outside the space: what leads out comes back multiplied by at most the size of C."""
     return left_over * max(right, float(np.abs(H).max())) <= OUTSIDE_SPACE * right * right
+
+
+def _size(matrix: Array) -> float:
+    """Frobenius' norm."""
+    entries = matrix.ravel()
+    return math.sqrt(dot(entries, entries))
 
 
 def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:
