@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arguments.checks import POSITIVE_FINITE, complain, integer, real_vector
+from continuation.arguments.checks import POSITIVE_FINITE, complain, expect, integer, real_vector
 from continuation.arrays import EPS, Array
 from continuation.evaluation.products import sizes
 from problems.orbits.grid import Grid
@@ -47,9 +47,9 @@ def as_mesh(value: Any) -> Array:
 
 
 def check_times(times: Array, states: Array) -> None:
-    """Raise ValueError unless times rise."""
-    if times.shape != (len(states),) or len(times) < 4 or not (np.diff(times) > 0.0).all():
-        raise complain(ValueError, "t", f"{len(states)} times that rise, one a state", times)
+    """Raise ValueError unless times, four or more, rise."""
+    expect(times.shape == states.shape[:1], "x", f"a row for each of the times, {times.shape}", states.shape)
+    expect(len(times) > 3 and (np.diff(times) > 0.0).all(), "t", "four times or more that rise", times)
 
 
 def spread(states: Array) -> Array:

@@ -140,7 +140,7 @@ class PeriodicOrbit:
         f : callable
         t : array_like, shape (k,)
         x : array_like, shape (k, n)
-            A settled simulation, at least two periods.
+            A settled simulation, at least one period.
         parameter : float
         intervals, degree : int
         **beside

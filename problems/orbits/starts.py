@@ -144,10 +144,14 @@ def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[
 
     g = (x - end) @ normal
     rising = np.flatnonzero((g[:-2] < 0.0) & (g[1:-1] >= 0.0))
-    times = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
-    missed = np.linalg.norm((spline(times) - end) / scale, axis=1) if times.size else np.array([np.inf])
-    if not missed.min() <= NO_RETURN:
-        raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, twice round", x)
+    returns = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
+    # A simulation of one period returns to its beginning.
+    for times in (returns, t[:1]):
+        missed = np.linalg.norm((spline(times) - end) / scale, axis=-1)
+        if missed.min(initial=np.inf) <= NO_RETURN:
+            break
+    else:
+        raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, once round or more", x)
     begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
     T = float(t[-1]) - begin
     fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)

@@ -9,7 +9,7 @@ from continuation import Status, TargetValue
 from problems.orbits import PeriodicOrbit
 from problems.orbits.models import brusselator, normal_form, roessler, van_der_pol
 
-from .util import bent, by_hand, of_sizes, one_by_one, simulated
+from .util import bent, by_hand, of_sizes, one_by_one, simulated, two_circles
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,14 @@ def test_a_simulation_settles_on(f, p, x0, period, multiplier, accuracy):
     found = orbit.multipliers(*orbit.start()).values
     assert abs(found[0] - 1.0) <= accuracy
     assert_allclose(found[1:], multiplier, atol=2e-7 * multiplier + 1e-14)
+
+
+@pytest.mark.parametrize("rounds", [1.0, 0.99, 1.5])
+@pytest.mark.parametrize("phase", [0.0, 1.0, 4.0])
+def test_one_period_is_enough_of_a_simulation(rounds, phase):
+    t = np.linspace(0.0, 2.0 * np.pi * rounds, 90)
+    x = np.stack([np.cos(t + phase), np.sin(t + phase), 0.0 * t, 0.0 * t], axis=1)
+    assert PeriodicOrbit.from_solution(two_circles, t, x, -0.5).period == pytest.approx(2.0 * np.pi, rel=1e-9)
 
 
 def test_the_first_period_doubling_of_roessler():
