@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuation import DEFAULT, Kind, Status, branch_directions, from_functions, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Kind, Status, branch_directions, from_functions, trace
 
 from ...util import every_preset
 
@@ -37,6 +37,24 @@ def test_the_path_goes_straight_on_and_the_point_is_said(name, preset, begin, D,
     assert event.kind == Kind.SINGULAR_POINT
     assert abs(event.lam) < 1e-4  # a third root of round-off
     assert path.counts.factorizations < 80  # it crept past with 150 to 380
+
+
+@pytest.mark.parametrize(
+    ("order", "preset"), [(2, FAST), (2, DEFAULT), (2, CONSERVATIVE), (2, SERIES), (3, SERIES)], ids=str
+)  # the others often end before a contact of third order, and say so
+@pytest.mark.parametrize("a", [0.4, 1.3])
+def test_curved_branches_that_touch_are_not_confused(a, order, preset):
+    homotopy = from_functions(
+        lambda y, lam: np.stack([(y[0] - a * lam**order) * (y[0] + 0.9 * lam**order), y[1] - np.sin(lam) - y[0]]),
+        start=([a * (-0.83) ** order, np.sin(-0.83) + a * (-0.83) ** order], -0.83),
+        target=0.7,
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET, path.message
+    assert path.endpoint.y[0] == pytest.approx(a * 0.7**order, rel=1e-9)
+    (event,) = path.events
+    assert event.kind == Kind.SINGULAR_POINT
+    assert abs(event.lam) < 1e-3
 
 
 @pytest.mark.parametrize("name", ["three lines", "three sloped lines"])
