@@ -13,6 +13,7 @@ from continuation.linear import Banded
 from problems.bibliography import BRATU
 from problems.options import finite_or_none, positive_integer, quiet
 
+
 class Bratu:
     """What Bratu's problems share."""
 
