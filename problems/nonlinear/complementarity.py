@@ -26,7 +26,7 @@ from problems.lcp.homotopies.starts import inside_start, inside_vector
 from problems.lcp.homotopies.two_vector import Blend, TwoVectorHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
-from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
+from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, value_at
 from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
@@ -75,7 +75,6 @@ class MixedComplementarity:
             i = int(np.argmax(like.fixed))
             found = f"found both {like.lower[i]} at index {i}; leave x[{i}] out"
             raise ValueError(f"lower: expected less than upper, {found}")
-        require_callable("F", self.F)
         x = inside_start(like)
         value_at(self.F, x)
         if self.jacobian is not None:
