@@ -8,7 +8,9 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
+from continuation.evaluation.functions import from_functions
 from continuation.events.box import Box
+from continuation.tracing import solve_at
 from problems.bibliography import MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT
 from problems.options import finite, finite_or_none, quiet
 
@@ -24,10 +26,6 @@ _COEFFICIENTS = np.array(
         [0.0, 0.0, -1.0, 0.0, -0.196, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.0071, 0.0],
     ]
 )
-
-_NEWTON_STEPS = 30
-_NEWTON_TOLERANCE = 1e-14
-"""Newton's method for the start takes 4 steps."""
 
 
 @frozen
@@ -62,13 +60,8 @@ class Aircraft:
         ArithmeticError
             If Newton fails.
         """
-        y = np.zeros(5)
-        for _ in range(_NEWTON_STEPS):
-            increment = np.linalg.solve(self.jacobian(y, 0.0)[0], self.residual(y, 0.0))
-            y = y - increment
-            if np.linalg.norm(increment) <= _NEWTON_TOLERANCE * (1.0 + np.linalg.norm(y)):
-                return y, 0.0
-        raise ArithmeticError(f"elevator = {self.elevator}: no equilibrium at aileron 0 was reached from level flight")
+        level = from_functions(self.residual, self.jacobian, start=(np.zeros(5), 0.0))
+        return solve_at(level, 0.0), 0.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:

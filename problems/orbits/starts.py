@@ -25,7 +25,7 @@ HOPF_PAIR = 1e-2
 LEAST_MOTION = 1e-2
 """Least relative scale: round-off must not measure a component at rest."""
 
-NONLINEAR, MIDDLE, RADII_TRIED = 0.1, 0.3, 60
+NONLINEAR, RADII_TRIED = 0.1, 60
 """At an orbit's size nonlinear terms are between this part of the linear ones and all of them; the most radii tried."""
 
 ONE_RETURN = 1e-3
@@ -89,7 +89,7 @@ def _nonlinear_at(guess: float, share_of: Callable[[float], float]) -> float:
             if NONLINEAR <= share <= 1.0:
                 return r
             # Quadratic or cubic terms; outside its domain f is nonlinear enough.
-            r *= 1.0 / min(max(np.sqrt(share / MIDDLE), 0.1), 10.0) if share < np.inf else 0.1
+            r *= 1.0 / min(max(np.sqrt(share / np.sqrt(NONLINEAR)), 0.1), 10.0) if share < np.inf else 0.1
     return guess
 
 

@@ -111,4 +111,4 @@ def _strict_nearby(matrix: ExactMatrix, first: Rows, second: Rows, last: int) ->
     ]
     minors = principal_minors(rows)
     rule = two_signs("negative", last, "positive")
-    return all(SIGNS[rule(mask.bit_count())](minors[mask]) for mask in index_sets(matrix.n))
+    return all(SIGNS[rule(mask.bit_count())](minors[mask], 0) for mask in index_sets(matrix.n))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from operator import ge, gt, le, lt, ne
 
 from attrs import evolve
 
@@ -13,13 +14,10 @@ from problems.lcp.classes.membership import CPS, MOST_CASES, Evidence, Membershi
 PAPER = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
 EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618; " + PAPER
 
-SIGNS: Mapping[str, Callable[[int], bool]] = {
-    "positive": lambda value: value > 0,
-    "nonnegative": lambda value: value >= 0,
-    "negative": lambda value: value < 0,
-    "nonpositive": lambda value: value <= 0,
-    "nonzero": lambda value: value != 0,
-}
+SIGNS: Mapping[str, Callable[[int, int], bool]] = {
+    "positive": gt, "nonnegative": ge, "negative": lt, "nonpositive": le, "nonzero": ne,
+}  # fmt: skip
+"""How a minor of the sign compares with zero."""
 
 Rule = Callable[[int], str]
 
@@ -36,7 +34,7 @@ def judge(matrix: ExactMatrix, rule: Rule) -> Membership:
         return undecided(2**n)
     for mask in index_sets(n):
         sign = rule(mask.bit_count())
-        if not SIGNS[sign](matrix.minors[mask]):
+        if not SIGNS[sign](matrix.minors[mask], 0):
             value, alpha = matrix.minor(mask), indices(mask)
             sentence = f"the principal minor of {shown_set(alpha)} is {value}, not {sign}"
             return Membership(False, Evidence(sentence, alpha, value))

@@ -14,7 +14,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.path import Path
 from continuation.path.path import require_path
 from problems.lcp.data.problem import MixedLCP, State, require_problem
@@ -22,9 +22,6 @@ from problems.lcp.parametric.along import levels_of
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.rational import Integers, fractions, full_row_rank, integers, solve_exactly
 from problems.options import finite_vector
-
-SAME_CORNER = 1e-6
-"""Largest relative distance of an exact corner from the path's; beyond, another path is proved."""
 
 Exactly = tuple[Fraction, ...]
 
@@ -175,7 +172,8 @@ class _Exactly:
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, where its pieces do not meet")
         whole = fractions(*solved)
         off = max(abs(float(a) - b) for a, b in zip(whole, near.tolist()))
-        if off > SAME_CORNER * (1.0 + float(np.abs(near).max())):
+        # Farther away another path would be proved.
+        if off > SIX_DIGITS * (1.0 + float(np.abs(near).max())):
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, found the nearest one {off:.1e} away")
         return whole
 
