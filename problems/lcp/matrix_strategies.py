@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from hypothesis import strategies as st
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 
 Order = int | st.SearchStrategy[int]
@@ -157,8 +158,7 @@ def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries | None = None
     ValueError
         For an unknown class, or entries that cannot be chosen.
     """
-    if cls not in _BUILDERS:
-        raise ValueError(f"cls: expected one of {', '.join(CLASSES)}, found {cls!r}")
-    if entries is not None and cls not in ("any", "Z"):
-        raise ValueError(f"entries: expected none for the class {cls}, whose members are built from integers")
+    expect(cls in CLASSES, "cls", f"one of {', '.join(CLASSES)}", cls)
+    free = entries is None or cls in ("any", "Z")
+    expect(free, "entries", f"none for the class {cls}, whose members are built from integers", entries)
     return _matrices(cls, n, entries, n is ORDERS)

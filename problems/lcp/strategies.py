@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.matrix_strategies import (
@@ -95,10 +96,8 @@ def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> s
     """
     if kind in ("strict", "degenerate"):
         return _planted(matrices(cls, n), kind == "degenerate")
-    if kind != "many":
-        raise ValueError(f"kind: expected strict, degenerate or many, found {kind!r}")
-    if cls != "any":
-        raise ValueError(f"cls: expected any for kind many, found {cls!r}")
+    expect(kind == "many", "kind", "strict, degenerate or many", kind)
+    expect(cls == "any", "cls", "any for kind many", cls)
     return two_solution_lcps(n).map(lambda triple: triple[:2])
 
 

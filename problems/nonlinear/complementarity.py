@@ -11,11 +11,13 @@ from attrs import field, frozen
 
 import continuation
 from continuation import jets
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.budget import Budget
 from continuation.linear import BorderedSystem
 from continuation.path import Path
 from continuation.status import Status
+from problems.lcp.data.bounds import without_equal_bounds
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies import interior
@@ -66,15 +68,11 @@ class MixedComplementarity:
 
     def __attrs_post_init__(self) -> None:
         sizes = [np.size(bound) for bound in (self.lower, self.upper) if bound is not None and np.ndim(bound) == 1]
-        if not sizes:
-            raise ValueError("lower: expected a vector of bounds, lower or upper, found none")
+        expect(sizes, "lower", "a vector of bounds, lower or upper", (self.lower, self.upper))
         like = MixedLCP(sp.eye_array(sizes[0], format="csr"), np.zeros(sizes[0]), self.lower, self.upper)
         object.__setattr__(self, "lower", like.lower)
         object.__setattr__(self, "upper", like.upper)
-        if like.fixed.any():
-            i = int(np.argmax(like.fixed))
-            found = f"found both {like.lower[i]} at index {i}; leave x[{i}] out"
-            raise ValueError(f"lower: expected less than upper, {found}")
+        without_equal_bounds(like.lower, like.upper)
         x = inside_start(like)
         value_at(self.F, x)
         if self.jacobian is not None:
@@ -262,8 +260,7 @@ def solve_complementarity(
     ----------
     Josephy, Math. Research Center Report 1965, Madison 1979.
     """
-    if not isinstance(problem, MixedComplementarity):
-        raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")
+    expect(isinstance(problem, MixedComplementarity), "problem", "a MixedComplementarity", problem, TypeError)
     check_tolerance(tolerance)
     check_budget(budget)
     homotopy = InteriorHomotopy(problem, x0)

@@ -14,7 +14,7 @@ from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import check_derivative, from_residual
 from continuation.linear import Banded
 from problems.bibliography import ROBINSON
-from problems.lcp.data.bounds import bound_vector, ordered_bounds
+from problems.lcp.data.bounds import bound_vector, ordered_bounds, without_equal_bounds
 from problems.lcp.data.matrix_structure import scaled
 from problems.options import finite, finite_or_none, finite_vector, quiet, real_array
 
@@ -98,9 +98,7 @@ class NormalMap:
             object.__setattr__(self, f"{name}_rate", finite_vector(f"{name}_rate", rate))
         lower, upper = self.bounds(self.lam0)
         ordered_bounds(lower, upper)
-        if (lower == upper).any():
-            i = int(np.argmax(lower == upper))
-            raise ValueError(f"lower: expected less than upper, found both {lower[i]} at index {i}; leave it out")
+        without_equal_bounds(lower, upper)
         expect(callable(self.F), "F", "a function", self.F, TypeError)
         x = np.clip(self.x0, lower, upper)
         finite_vector("F(x0, lam0)", quiet(self.F)(x, self.lam0))
@@ -124,9 +122,8 @@ class NormalMap:
         if not isinstance(A, Banded):
             A = sp.csc_array(A) if sp.issparse(A) else real_array("A", A)
         force = AffineForce(A, finite_vector("q", q), finite_vector("d", d))
-        if A.shape != (force.q.size,) * 2 or force.d.shape != force.q.shape:
-            found = f"{A.shape}, {force.q.shape} and {force.d.shape}"
-            raise ValueError(f"A: expected a square matrix, and q and d of its size, found shapes {found}")
+        found, n = (A.shape, force.q.shape, force.d.shape), force.q.size
+        expect(found == ((n, n), (n,), (n,)), "A", "a square matrix, and q and d of its size, by their shapes", found)
         return cls(force, force.slope, **more)
 
     def bounds(self, lam: float) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation.arguments.checks import is_number
+from continuation.arguments.checks import expect, is_number
 from continuation.arrays import Array
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
@@ -63,7 +63,6 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
     ValueError
         If psi is not positive.
     """
-    if not is_number(psi) or not 0.0 < psi < math.inf:
-        raise ValueError(f"psi: expected a positive number, found {psi!r}")
+    expect(is_number(psi) and 0.0 < psi < math.inf, "psi", "a positive number", psi)
     force = BratuForce(Bratu1D(n))
     return NormalMap(force, force.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=psi, target=target)

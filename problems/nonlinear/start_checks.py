@@ -28,10 +28,8 @@ def value_at(F: Function, a: Array) -> Array:
     """F(a), finite, of a's shape; else `TypeError` or `ValueError`."""
     expect(callable(F), "F", "a function", F, TypeError)
     value: Any = quiet(F)(a.copy())
-    if not isinstance(value, np.ndarray):
-        raise TypeError(f"F(a): expected an array of shape {a.shape}, found {type(value).__name__}")
-    if value.shape != a.shape:
-        raise ValueError(f"F(a): expected shape {a.shape}, that of a, found {value.shape}")
+    expect(isinstance(value, np.ndarray), "F(a)", f"an array of shape {a.shape}", value, TypeError)
+    expect(value.shape == a.shape, "F(a)", f"shape {a.shape}, that of a", value.shape)
     return finite_vector("F(a)", value)
 
 
@@ -39,10 +37,8 @@ def check_jacobian_shape(jacobian: Jacobian, a: Array) -> None:
     """Raise TypeError unless `jacobian` returns a matrix, ValueError if not (n, n)."""
     expect(callable(jacobian), "jacobian", "a function", jacobian, TypeError)
     shape = getattr(quiet(jacobian)(a.copy()), "shape", None)
-    if shape is None:
-        raise TypeError("jacobian(a): expected a matrix, found an object without a shape")
-    if shape != (a.size, a.size):
-        raise ValueError(f"jacobian(a): expected shape {(a.size, a.size)}, found {shape}")
+    expect(shape is not None, "jacobian(a)", "a matrix with a shape", shape, TypeError)
+    expect(shape == (a.size, a.size), "jacobian(a)", f"shape {(a.size, a.size)}", shape)
 
 
 @frozen(eq=False, slots=False)

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import Factory, evolve, field, fields_dict, frozen
 
-from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
+from continuation.arguments.checks import FINITE, POSITIVE_FINITE, expect, real_vector
 from continuation.arrays import Array, generic_vector
 from continuation.curves.beginning import as_point
 from continuation.evaluation.products import sizes
@@ -82,10 +82,9 @@ class PeriodicOrbit:
     references: ClassVar[tuple[str, ...]] = (DE_BOOR_SWARTZ, WRIGHT)
 
     def __attrs_post_init__(self) -> None:
-        if len(self.states) != (wanted := (self.mesh.size - 1) * self.degree):
-            raise ValueError(f"states: expected {wanted} rows, one a node, found {len(self.states)}")
-        if self.scale.shape != self.states.shape[1:] or not (self.scale > 0.0).all():
-            raise complain(ValueError, "scale", f"{self.states.shape[1]} positive numbers", self.scale)
+        (rows, n), wanted = self.states.shape, (self.mesh.size - 1) * self.degree
+        expect(rows == wanted, "states", f"{wanted} rows, one a node", rows)
+        expect(self.scale.shape == (n,) and (self.scale > 0.0).all(), "scale", f"{n} positive numbers", self.scale)
         assert self.equations
 
     def __getstate__(self) -> dict[str, Any]:
@@ -181,8 +180,7 @@ class PeriodicOrbit:
         """
         y, p = as_point(point, "point")
         N, left = divmod(y.size, components * degree + 1)
-        if left or N < 2:
-            raise ValueError(f"point: expected N ({components} x {degree} + 1) unknowns, found {y.size}")
+        expect(N > 1 and not left, "point", f"N ({components} x {degree} + 1) unknowns", y.size)
         size = N * degree * components
         mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
         return cls(f, y[:size].reshape(-1, components), y[size], p, mesh, degree, **beside)

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import eig
 from scipy.optimize import brentq
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.contraction import HALVING
 from continuation.evaluation.products import sizes
@@ -146,8 +146,7 @@ def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[
     rising = np.flatnonzero((g[:-2] < 0.0) & (g[1:-1] >= 0.0))
     times = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
     missed = np.linalg.norm((spline(times) - end) / scale, axis=1) if times.size else np.array([np.inf])
-    if not missed.min() <= NO_RETURN:
-        raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, twice round", x)
+    expect(missed.min() <= NO_RETURN, "x", "a simulation that ends on a periodic orbit, twice round", x)
     begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
     T = float(t[-1]) - begin
     fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)

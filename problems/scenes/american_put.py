@@ -93,7 +93,8 @@ def AmericanPut(
         times = maturity * (np.arange(steps + 1) / steps) ** 2
         # Crank-Nicolson alone oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
-        values, edges, found = payoff.copy(), [strike], None
+        values, edges = payoff.copy(), [strike]
+        found: Any = None
         for k, dt in enumerate(np.diff(times)):
             step = dt if k < 4 else 0.5 * dt
             known = values[1:-1] if k < 4 else 2.0 * values[1:-1] - lifted(step, values)
@@ -139,7 +140,8 @@ def AmericanPut(
         units={"price": "money", "delta": "", "exercise below": "money"},
         unknowns=(Unknown("values above the payoff", n, "where to exercise, and the price elsewhere"),),
         problem=lambda: stepped(0.5 * maturity / steps**2, payoff[1:-1]),
-        solve=lambda: march(lambda problem, last: solve(problem, guess=last)), answer=answer, exact=exact, picture=drawn,
+        solve=lambda: march(lambda problem, last: solve(problem, guess=last)),
+        answer=answer, exact=exact, picture=drawn,
         rivals=(Rival("Brennan-Schwartz", "", lambda scene: answer(march(lambda problem, _: _eliminated(problem)))),),
     )  # fmt: skip
 

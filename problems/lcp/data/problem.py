@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
-from continuation.arguments.checks import integer
+from continuation.arguments.checks import expect, integer
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import check_finite, finite_vector, real_array, sound_sparse
@@ -320,11 +320,9 @@ class LCP(MixedLCP):
 
 def require_lcp(problem: Any) -> None:
     """Raise TypeError unless `problem` is an LCP."""
-    if not isinstance(problem, LCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    expect(isinstance(problem, LCP), "problem", "an LCP", problem, TypeError)
 
 
 def require_problem(problem: Any) -> None:
     """Raise TypeError unless `problem` is a MixedLCP."""
-    if not isinstance(problem, MixedLCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    expect(isinstance(problem, MixedLCP), "problem", "an LCP", problem, TypeError)

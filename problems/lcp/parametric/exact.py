@@ -14,6 +14,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import expect
 from continuation.arrays import SIX_DIGITS, Array
 from continuation.path import Path
 from continuation.path.path import require_path
@@ -83,8 +84,8 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     levels = levels_of(level, problem)
     if problem.sparse:
         problem = evolve(problem, A=problem.A.toarray())
-    if len(path) < 2 or path.endpoint.u.size != problem.n + 1:
-        raise ValueError(f"path: expected two points of {problem.n} unknowns at least, found {path!r}")
+    fine = len(path) > 1 and path.endpoint.u.size == problem.n + 1
+    expect(fine, "path", f"two points of {problem.n} unknowns at least", path)
     exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
     u = path.u
     # Both ends hold a bound exactly.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lu_solve
 from scipy.linalg.lapack import dgetrf
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.corner import rays
@@ -166,6 +167,5 @@ def _only(S: Array, r: Array) -> Array:
 
 def _square(name: str, value: Any, n: int) -> Array:
     matrix = real_array(name, value)
-    if matrix.shape != (n, n) or not np.isfinite(matrix).all():
-        raise ValueError(f"{name}: expected finite numbers of shape {(n, n)}, found shape {matrix.shape}")
+    expect(matrix.shape == (n, n) and np.isfinite(matrix).all(), name, f"finite numbers of shape {(n, n)}", matrix)
     return matrix
