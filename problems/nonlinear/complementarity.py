@@ -247,15 +247,6 @@ def solve_complementarity(
         Relative residual.
     budget : continuation.Budget, optional
 
-    Returns
-    -------
-    ComplementaritySolution
-
-    Raises
-    ------
-    TypeError, ValueError
-        For bad input.
-
     References
     ----------
     Josephy, Math. Research Center Report 1965, Madison 1979.

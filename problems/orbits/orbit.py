@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from operator import attrgetter
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,13 +15,13 @@ from continuation.arguments.checks import FINITE, POSITIVE_FINITE, expect, real_
 from continuation.arrays import Array, generic_vector
 from continuation.curves.beginning import as_point
 from continuation.evaluation.products import sizes
-from continuation.events import Event
+from continuation.events import Event, Monitor
 from continuation.metric import Weighted
 from continuation.step.extent import REPLACED
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
 from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, check_times, spread
-from problems.orbits.equations import PHASE_COSINE, Equations, Watch
+from problems.orbits.equations import PHASE_COSINE, Equations
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
 from problems.orbits.models import Model
@@ -293,11 +294,18 @@ class PeriodicOrbit:
     @property
     def events(self) -> tuple[Event, ...]:
         """Period doubling, torus, Hopf point, failure of the phase condition."""
+
+        def watched(quantity: str, name: str, value: float = 0.0, **how: int) -> Monitor:
+            def seen(u: Array, v: Array) -> float:
+                return float(attrgetter(quantity)(self.equations.here(u[:-1], float(u[-1])))) - value
+
+            return Monitor(seen, name, **how)
+
         return (
-            Watch(self, "multipliers.doubling", "period doubling"),
-            Watch(self, "multipliers.torus", "torus"),
-            Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
-            Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
+            watched("multipliers.doubling", "period doubling"),
+            watched("multipliers.torus", "torus"),
+            watched("amplitude", "Hopf point", self.smallest, terminal=1, direction=-1),
+            watched("phase_cosine", "phase condition fails", PHASE_COSINE, terminal=1),
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:

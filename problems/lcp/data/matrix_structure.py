@@ -189,10 +189,6 @@ class Structure:
         ----------
         factor : float
         columns, diagonal : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, sparse array or Banded
         """
         found = scaled(self.problem.A if self.band is None else self.band, factor * columns, diagonal)
         return found.tocsc() if sp.issparse(found) else found
@@ -204,10 +200,6 @@ class Structure:
         ----------
         factor : float
         weights, diagonal : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, sparse array or Banded
         """
         if self.band is not None:
             return normal_band(self.band, factor, weights, diagonal)

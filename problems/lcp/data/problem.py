@@ -135,10 +135,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         product: Array = self.A @ x + self.q
         return product
@@ -149,10 +145,6 @@ class MixedLCP:
         Parameters
         ----------
         x, w : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         return np.maximum(np.minimum(x - self.lower, w), x - self.upper)
 
@@ -199,10 +191,6 @@ class MixedLCP:
         Parameters
         ----------
         x, w : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         state = self.states(x, w)
         return np.where(state == BETWEEN, x, self.at(state))
@@ -213,10 +201,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return float(np.abs(self.natural_map(x, self.w(x))).max(initial=0.0))
 
@@ -226,10 +210,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return 1.0 + self.size_of_terms(x)
 
@@ -252,10 +232,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return self.natural_residual(x) / self.scale(x)
 

@@ -128,15 +128,6 @@ def from_qp(
     rows_lower : array_like, shape (m,), or one number, optional
         Lower sides of rows.
 
-    Returns
-    -------
-    Program
-
-    Raises
-    ------
-    ValueError
-        For inconsistent arguments.
-
     References
     ----------
     Cottle, Pang and Stone, section 1.2.
@@ -193,15 +184,6 @@ def from_lp(
     ----------
     c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
         As for `from_qp`.
-
-    Returns
-    -------
-    Program
-
-    Raises
-    ------
-    ValueError
-        For inconsistent arguments.
     """
     c = finite_vector("c", c)
     P = sp.csr_array((c.size, c.size))

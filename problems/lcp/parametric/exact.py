@@ -67,16 +67,10 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     level : array_like, shape (n,), or one number
         As for `along`.
 
-    Returns
-    -------
-    ExactPath
-
     Raises
     ------
     UnprovenError
         If the path is not as claimed.
-    TypeError, ValueError
-        For bad input.
     """
     require_problem(problem)
     require_path(path)

@@ -79,10 +79,6 @@ class Sensitivity:
         dq : array_like, shape (n,), optional
         dA : array_like, shape (n, n), optional
 
-        Returns
-        -------
-        ndarray, shape (n,)
-
         Raises
         ------
         NotDifferentiableError
@@ -114,10 +110,6 @@ class Sensitivity:
         Parameters
         ----------
         g : array_like, shape (n,)
-
-        Returns
-        -------
-        Gradient
         """
         n, inside = self.x.size, self.moving
         q = np.zeros(n)

@@ -94,15 +94,6 @@ def solutions(
     tolerance : float
         As for `solve`.
 
-    Returns
-    -------
-    Solutions
-
-    Raises
-    ------
-    TypeError, ValueError
-        For bad input.
-
     References
     ----------
     Cottle, Pang and Stone, section 4.5; for games, Shapley, Math. Programming Study 1, 1974.
