@@ -83,7 +83,7 @@ def sound_sparse(name: str, value: Any) -> Any:
     Duplicates add up. Raises `ValueError` for non-real numbers or indices outside the shape.
     """
     expect(value.dtype.kind in "fiub", name, "real numbers", value.dtype)
-    expect(value.ndim == 2, name, "a matrix, by its shape", value.shape)
+    expect(value.ndim == 2, name, "a matrix", value.shape)
     try:
         if value.format in ("csr", "csc", "bsr"):
             # scipy narrows the checked object's indices.

@@ -195,7 +195,7 @@ def from_lp(
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     fine = matrix.ndim == 2 and matrix.shape[1] == columns
-    expect(fine, name, f"a matrix of {columns} columns, one a number of c, by its shape", matrix.shape)
+    expect(fine, name, f"{columns} columns, one a number of c", matrix.shape)
     check_finite(name, matrix)
     return matrix
 
