@@ -152,11 +152,6 @@ def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries | None = None
         The order, by default 1 to 4.
     entries : strategy of numbers, optional
         Only for "any" and "Z"; also floats.
-
-    Raises
-    ------
-    ValueError
-        For an unknown class, or entries that cannot be chosen.
     """
     expect(cls in CLASSES, "cls", f"one of {', '.join(CLASSES)}", cls)
     free = entries is None or cls in ("any", "Z")

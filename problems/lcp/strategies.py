@@ -88,11 +88,6 @@ def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> s
     cls : str
         For the first two kinds.
     n : int or strategy of int
-
-    Raises
-    ------
-    ValueError
-        For an unknown kind, or a class with "many".
     """
     if kind in ("strict", "degenerate"):
         return _planted(matrices(cls, n), kind == "degenerate")

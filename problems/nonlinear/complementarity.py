@@ -51,11 +51,6 @@ class MixedComplementarity:
     lower, upper : array_like, shape (n,)
         May be infinite; at least one is a vector.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If F, `jacobian` or the bounds are unusable.
-
     References
     ----------
     Facchinei and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003.
@@ -100,11 +95,6 @@ class MixedComplementarity:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Raises
-        ------
-        ValueError
-            If F or F' is not finite.
         """
         slope = self.slope(x)
         return MixedLCP(slope, np.asarray(self.F(x.copy()), dtype=float) - slope @ x, self.lower, self.upper)
@@ -121,11 +111,6 @@ class InteriorHomotopy:
     problem : MixedComplementarity
     x0 : array_like, shape (n,), optional
         Strictly between the bounds; default near zero.
-
-    Raises
-    ------
-    ValueError
-        If x0 is not.
     """
 
     problem: MixedComplementarity

@@ -27,13 +27,6 @@ class FixedPointHomotopy(FromPoint):
     slope : callable, optional
         ``slope(x) -> (n, n)``, F': dense, sparse or `Banded`. With it the homotopy has a `jacobian`.
 
-    Raises
-    ------
-    TypeError
-        If F does not return an array.
-    ValueError
-        If `a` or F(a) is not finite, or shapes differ.
-
     References
     ----------
     Chow, Mallet-Paret and Yorke, Math. Comp. 32, 1978.

@@ -27,13 +27,6 @@ class NewtonHomotopy(FromPoint):
         ``slope(x) -> (n, n)``, F': any matrix that `continuation.linear` factors. With it the homotopy has a
         `jacobian`.
 
-    Raises
-    ------
-    TypeError
-        If F does not return an array.
-    ValueError
-        If `a` or F(a) is not finite, or shapes differ.
-
     References
     ----------
     Keller, Global Homotopies and Newton Methods, 1978; Allgower and Georg, Introduction to Numerical Continuation

@@ -68,11 +68,6 @@ class NormalMap:
         Bounds are lower + lam * lower_rate and upper + lam * upper_rate.
     target : float or None, default 0
 
-    Raises
-    ------
-    TypeError, ValueError
-        If F, its derivative or the bounds are unusable.
-
     References
     ----------
     Robinson, Math. Oper. Res. 17 (1992) 691-714.

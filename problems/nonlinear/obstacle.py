@@ -57,11 +57,6 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
     -------
     NormalMap
         ``x(z)`` gives u.
-
-    Raises
-    ------
-    ValueError
-        If psi is not positive.
     """
     expect(is_number(psi) and 0.0 < psi < math.inf, "psi", "a positive number", psi)
     force = BratuForce(Bratu1D(n))

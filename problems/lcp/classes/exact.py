@@ -57,11 +57,6 @@ class ExactMatrix:
         ----------
         A : array_like or scipy sparse, shape (n, n)
             The float 0.8 is not 4/5.
-
-        Raises
-        ------
-        ValueError
-            If A is not a nonempty square matrix of finite real numbers.
         """
         if isinstance(A, ExactMatrix):
             return A

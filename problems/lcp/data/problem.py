@@ -58,11 +58,6 @@ class MixedLCP:
     primal : int, optional
         Number of variables of a quadratic program among the unknowns, which come first; default 0: unknown.
 
-    Raises
-    ------
-    ValueError
-        For arguments that are not numeric, finite, or of the right shape, or lower > upper.
-
     References
     ----------
     Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 1.5; Dirkse and Ferris, "The PATH Solver",
@@ -260,11 +255,6 @@ class LCP(MixedLCP):
         Sparse input stays sparse (CSR).
     q : array_like, shape (n,)
         n may be 0.
-
-    Raises
-    ------
-    ValueError
-        For arguments that are not numeric, finite, or of the right shape.
 
     References
     ----------
