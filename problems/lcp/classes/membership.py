@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import wraps
 from inspect import Parameter, Signature, cleandoc
+from textwrap import shorten
 from typing import Any
 
 from attrs import evolve, frozen
@@ -142,11 +143,10 @@ def table(classification: Classification, width: int = 110) -> str:
     width : int
         Longest evidence in characters.
     """
-    first = max(len(name) for name in classification)
-    second = max(len(text) for text in ANSWERS.values())
-    lines = []
-    for name, membership in classification.items():
-        evidence = str(membership.certificate)
-        short = evidence if len(evidence) <= width else evidence[: width - 3] + "..."
-        lines.append(f"{name:<{first}}  {ANSWERS[membership.holds]:<{second}}  {short}")
-    return "\n".join(lines)
+    from continuation.chart.table import Table
+
+    rows = [
+        (name, ANSWERS[one.holds], shorten(str(one.certificate), max(width, 3), placeholder="..."))
+        for name, one in classification.items()
+    ]
+    return Table(("class", "answer", "evidence"), rows).text()

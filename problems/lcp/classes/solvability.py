@@ -8,7 +8,7 @@ from typing import Any
 from attrs import evolve
 
 from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
-from problems.lcp.classes.exact import ExactMatrix, dot, index_sets, indices, solve
+from problems.lcp.classes.exact import ExactMatrix, dot, index_sets, solve
 from problems.lcp.classes.membership import CPS, MOST_CASES, Evidence, Membership, matrix_class, shown
 from problems.lcp.classes.minors import is_p, is_z
 from problems.lcp.classes.simplex import Point, at_most, positive_point
@@ -93,15 +93,10 @@ def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, progra
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
     """For each full-dimensional complementary cone of A the normals of its faces, pointing inwards."""
     n = matrix.n
-    identity = [[int(i == j) for j in range(n)] for i in range(n)]
-    cones = []
+    identity, cones = [[int(i == j) for j in range(n)] for i in range(n)], []
     for mask in (0, *index_sets(n)):
-        chosen = indices(mask)
-        complementary = [
-            [-entry if j in chosen else unit for j, (entry, unit) in enumerate(zip(row, units, strict=True))]
-            for row, units in zip(matrix.entries, identity, strict=True)
-        ]
-        inverse = solve(complementary, identity)
-        if inverse is not None:
+        columns = zip(matrix.transpose.entries, identity)
+        chosen = [[-v for v in column] if mask >> j & 1 else unit for j, (column, unit) in enumerate(columns)]
+        if (inverse := solve(list(zip(*chosen)), identity)) is not None:
             cones.append(inverse[0])
     return cones
