@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
+from scipy.sparse.linalg import LaplacianNd
 
 from continuation.arrays import Array, Matrix
 from problems.bifurcation.bratu_1d import Bratu
@@ -16,10 +17,7 @@ from problems.options import finite_or_none, positive_integer, quiet
 
 def five_point(m: int) -> Matrix:
     """h^2 times the Dirichlet Laplacian on m x m interior points, sorted CSC."""
-    one = np.ones(m - 1)
-    line = sp.diags_array([one, np.full(m, -2.0), one], offsets=[-1, 0, 1])
-    eye = sp.eye_array(m)
-    laplacian = sp.csc_array(sp.kron(eye, line) + sp.kron(line, eye))
+    laplacian = sp.csc_array(LaplacianNd((m, m), boundary_conditions="dirichlet", dtype=float).tosparse())
     laplacian.sort_indices()
     return laplacian
 
