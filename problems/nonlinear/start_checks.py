@@ -28,7 +28,8 @@ def value_at(F: Function, a: Array) -> Array:
     """F(a), finite, of a's shape; else `TypeError` or `ValueError`."""
     expect(callable(F), "F", "a function", F, TypeError)
     value: Any = quiet(F)(a.copy())
-    expect(isinstance(value, np.ndarray), "F(a)", f"an array of shape {a.shape}", value, TypeError)
+    if not isinstance(value, np.ndarray):
+        raise TypeError(f"F(a): expected an array of shape {a.shape}, found {type(value).__name__}")
     expect(value.shape == a.shape, "F(a)", f"shape {a.shape}, that of a", value.shape)
     return finite_vector("F(a)", value)
 
