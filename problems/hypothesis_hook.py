@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 
 
 def register() -> None:
@@ -16,21 +17,9 @@ def register() -> None:
     if data is None or program is None or strategies is None:
         return
 
-    def problems_of_any_class(_: type) -> object:
-        from problems.lcp.strategies import lcps
+    def register_lazily(of: type, module: str, name: str) -> None:
+        strategies.register_type_strategy(of, lambda _: getattr(import_module(module), name)())
 
-        return lcps()
-
-    def problems_with_bounds(_: type) -> object:
-        from problems.lcp.mixed_strategies import mixed_lcps
-
-        return mixed_lcps()
-
-    def quadratic_programs(_: type) -> object:
-        from problems.lcp.mixed_strategies import programs
-
-        return programs()
-
-    strategies.register_type_strategy(data.LCP, problems_of_any_class)
-    strategies.register_type_strategy(data.MixedLCP, problems_with_bounds)
-    strategies.register_type_strategy(program.Program, quadratic_programs)
+    register_lazily(data.LCP, "problems.lcp.strategies", "lcps")
+    register_lazily(data.MixedLCP, "problems.lcp.mixed_strategies", "mixed_lcps")
+    register_lazily(program.Program, "problems.lcp.mixed_strategies", "programs")

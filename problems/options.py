@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import Attribute
 
-from continuation.arguments.checks import FINITE, integer
+from continuation.arguments.checks import FINITE, expect, integer, is_number
 from continuation.arrays import Array
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
@@ -32,20 +32,18 @@ def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None
 
 def check_tolerance(value: Any) -> None:
     """Require 0 < tolerance < 1, else ValueError."""
-    if not isinstance(value, Real) or isinstance(value, bool) or not 0.0 < float(value) < 1.0:
-        raise ValueError(f"tolerance: expected a number between 0 and 1, found {value!r}")
+    expect(is_number(value) and 0.0 < value < 1.0, "tolerance", "a number between 0 and 1", value)
 
 
 def check_seed(value: Any) -> None:
     """Require an integer seed >= 0, else ValueError."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or value < 0:
-        raise ValueError(f"seed: expected an integer, at least 0, found {value!r}")
+    fine = isinstance(value, Integral) and not isinstance(value, bool) and int(value) >= 0
+    expect(fine, "seed", "an integer, at least 0", value)
 
 
 def check_budget(value: Any) -> None:
     """Require a Budget or None, else TypeError."""
-    if value is not None and not isinstance(value, Budget):
-        raise TypeError(f"budget: expected a Budget, found {value!r}")
+    expect(value is None or isinstance(value, Budget), "budget", "a Budget", value, TypeError)
 
 
 REAL = (Real, Decimal, np.bool_)
@@ -84,20 +82,14 @@ def sound_sparse(name: str, value: Any) -> Any:
 
     Duplicates add up. Raises `ValueError` for non-real numbers or indices outside the shape.
     """
-    if value.dtype.kind not in "fiub":
-        raise ValueError(f"{name}: expected real numbers, found dtype {value.dtype}")
-    if value.ndim != 2:
-        raise ValueError(f"{name}: expected a matrix, found shape {value.shape}")
+    expect(value.dtype.kind in "fiub", name, "real numbers", value.dtype)
+    expect(value.ndim == 2, name, "a matrix", value.shape)
     try:
         if value.format in ("csr", "csc", "bsr"):
             # scipy narrows the checked object's indices.
             type(value)((value.data, value.indices, value.indptr), shape=value.shape).check_format(full_check=True)
         elif value.format == "coo":
-            for indices, length in zip((value.row, value.col), value.shape):
-                if len(indices) != len(value.data):
-                    raise ValueError("there are not as many indices as entries")
-                if len(indices) and not 0 <= indices.min() <= indices.max() < length:
-                    raise ValueError(f"indices {indices.min()} to {indices.max()} where 0 to {length - 1} are possible")
+            type(value)((value.data, (value.row, value.col)), shape=value.shape)
         # Sums of small integers overflow.
         matrix = sp.csr_array(value.astype(float))
         matrix.check_format(full_check=True)
@@ -128,7 +120,6 @@ def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
     kind = np.asarray(value).dtype
     if kind.kind == "b" or vector.ndim != 1 or vector.size == 0:
         raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")
-    if size is not None and vector.size != size:
-        raise ValueError(f"{name}: expected {size} numbers, found {vector.size}")
+    expect(size is None or vector.size == size, name, f"{size} numbers", vector.size)
     check_finite(name, vector)
     return vector

@@ -27,7 +27,21 @@ def _exact(*solutions: str) -> tuple[tuple[Fraction, ...], ...]:
 
 
 @frozen(eq=False, kw_only=True)
-class Example:
+class Printed:
+    """A problem and a start."""
+
+    A: Array = field(converter=_array)
+    q: Array = field(converter=_array)
+    x0: Array = field(converter=_array)
+
+    @property
+    def problem(self) -> LCP:
+        """LCP(q, A)."""
+        return LCP(self.A, self.q)
+
+
+@frozen(eq=False, kw_only=True)
+class Example(Printed):
     """A numerical example.
 
     Attributes
@@ -50,9 +64,6 @@ class Example:
     label: str
     stated_class: str
     true_class: str
-    A: Array = field(converter=_array)
-    q: Array = field(converter=_array)
-    x0: Array = field(converter=_array)
     printed_solution: Array = field(converter=_array)
     printed_point: Array = field(converter=_array)
     printed_iterations: int
@@ -69,14 +80,9 @@ class Example:
         """Starting multiplier of A x + q >= 0: ones."""
         return np.ones(self.q.size)
 
-    @property
-    def problem(self) -> LCP:
-        """LCP(q, A)."""
-        return LCP(self.A, self.q)
-
 
 @frozen(eq=False, kw_only=True)
-class Counterexample:
+class Counterexample(Printed):
     """A strictly feasible LCP without solution, in a class for which the paper claims one.
 
     Attributes
@@ -90,17 +96,9 @@ class Counterexample:
     """
 
     matrix_class: str
-    A: Array = field(converter=_array)
-    q: Array = field(converter=_array)
-    x0: Array = field(converter=_array)
     end: Array = field(converter=_array)
     refutes: str
     why: str
-
-    @property
-    def problem(self) -> LCP:
-        """LCP(q, A)."""
-        return LCP(self.A, self.q)
 
 
 EXAMPLES: tuple[Example, ...] = (

@@ -15,14 +15,12 @@ from continuation.arrays import Array
 from continuation.chart.table import Cell, Table
 from continuation.path import Path
 from continuation.step.tracer import Observer
+from problems.charts.lcp import SOLVED_TO
 from problems.lcp.homotopies import KKTHomotopy
 from problems.lcp.proof.certificate import certify
 from problems.lcp.search.padded import Padded
 from problems.literal import LiteralRun, run_literally
 from problems.paper import Example
-
-SOLVED_TO = 1e-6
-"""Example 7 ends like sqrt(lambda), accurate to about this; the others do far better."""
 
 TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.files import read_problem
 from problems.lcp.data.problem import MixedLCP
@@ -43,12 +44,7 @@ def _plugin(homotopy: Registered) -> Callable[..., LCPHomotopy]:
     return make
 
 
-kkt = _plugin(HOMOTOPIES["kkt"])
-wang = _plugin(HOMOTOPIES["wang"])
-yu = _plugin(HOMOTOPIES["yu"])
-xu = _plugin(HOMOTOPIES["xu"])
-zhao = _plugin(HOMOTOPIES["zhao"])
-kmm = _plugin(HOMOTOPIES["kmm"])
+globals().update({name: _plugin(homotopy) for name, homotopy in HOMOTOPIES.items()})
 
 
 def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
@@ -60,7 +56,6 @@ def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
             raise ValueError(str(error).replace("path:", "file:", 1)) from error
     from problems.paper import EXAMPLES
 
-    if number not in range(1, len(EXAMPLES) + 1):
-        raise ValueError(f"example: expected a number from 1 to {len(EXAMPLES)}, found {number!r}")
+    expect(number in range(1, len(EXAMPLES) + 1), "example", f"a number from 1 to {len(EXAMPLES)}", number)
     example = EXAMPLES[number - 1]
     return example.problem, example.x0

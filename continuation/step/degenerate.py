@@ -36,8 +36,7 @@ BLURRED, Z_ROUND_OFF = 0.05, 1e-12
 
 PLACED = 1e-2
 """Distance of a zero of higher order, in arc lengths, that is near enough where secant steps stall: corrections end on
-either of the branches, which are closer than a prediction's error. Without it 2 of 8 curved tacnodes were said; with 1e-3
-fewer are."""
+either of the branches, which are closer than a prediction's error. Without it 2 of 8 curved tacnodes were located."""
 
 FARTHEST = 3.0
 """Search limit, in arc lengths."""

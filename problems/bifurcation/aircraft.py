@@ -8,41 +8,24 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
+from continuation.evaluation.functions import from_functions
 from continuation.events.box import Box
+from continuation.tracing import solve_at
 from problems.bibliography import MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT
 from problems.options import finite, finite_or_none, quiet
 
-# Columns: roll, pitch, yaw rate; angle of attack; sideslip.
-_STATE = np.array(
+_FACTORS = np.array([[0, 1, 2, 3, 4, 1, 2, 3, 0, 0, 0, 0, 6, 5, 3], [7, 7, 7, 7, 7, 2, 3, 4, 2, 4, 1, 3, 7, 7, 5]])
+"""The two factors of each monomial in (roll, pitch, yaw rate, angle of attack, sideslip, aileron, elevator, 1)."""
+
+_COEFFICIENTS = np.array(
     [
-        [-3.933, 0.107, 0.126, 0.0, -9.99],
-        [0.0, -0.987, 0.0, -22.95, 0.0],
-        [0.002, 0.0, -0.235, 0.0, 5.67],
-        [0.0, 1.0, 0.0, -1.0, 0.0],
-        [0.0, 0.0, -1.0, 0.0, -0.196],
+        [-3.933, 0.107, 0.126, 0.0, -9.99, -0.727, 8.39, -684.4, 0.0, 0.0, 0.0, 0.0, 0.0, -45.83, 63.5],
+        [0.0, -0.987, 0.0, -22.95, 0.0, 0.0, 0.0, 0.0, 0.949, 0.173, 0.0, 0.0, -28.37, 0.0, 0.0],
+        [0.002, 0.0, -0.235, 0.0, 5.67, 0.0, 0.0, 0.0, 0.0, 0.0, -0.716, -1.578, 0.0, -0.921, 1.132],
+        [0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, -0.168, 0.0, 0.0],
+        [0.0, 0.0, -1.0, 0.0, -0.196, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.0071, 0.0],
     ]
 )
-_ELEVATOR = np.array([0.0, -28.37, 0.0, -0.168, 0.0])
-_AILERON = np.array([-45.83, 0.0, -0.921, 0.0, -0.0071])
-
-_FIRST = np.array([1, 2, 3, 0, 0, 0, 0])
-_SECOND = np.array([2, 3, 4, 2, 4, 1, 3])
-_QUADRATIC = np.array(
-    [
-        [-0.727, 8.39, -684.4, 0.0, 0.0, 0.0, 0.0],
-        [0.0, 0.0, 0.0, 0.949, 0.173, 0.0, 0.0],
-        [0.0, 0.0, 0.0, 0.0, 0.0, -0.716, -1.578],
-        [0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0],
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-    ]
-)
-# Coefficients of x_4 times the aileron.
-_ATTACK_AILERON = np.array([63.5, 0.0, 1.132, 0.0, 0.0])
-_ATTACK = 3
-
-_NEWTON_STEPS = 30
-_NEWTON_TOLERANCE = 1e-14
-"""Newton's method for the start takes 4 steps."""
 
 
 @frozen
@@ -70,33 +53,30 @@ class Aircraft:
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:
-        """Newton from y = 0 at aileron 0.
+        """The equilibrium at aileron 0, by Newton from level flight.
 
         Raises
         ------
         ArithmeticError
             If Newton fails.
         """
-        y = np.zeros(5)
-        for _ in range(_NEWTON_STEPS):
-            increment = np.linalg.solve(self.jacobian(y, 0.0)[0], self.residual(y, 0.0))
-            y = y - increment
-            if np.linalg.norm(increment) <= _NEWTON_TOLERANCE * (1.0 + np.linalg.norm(y)):
-                return y, 0.0
-        raise ArithmeticError(f"elevator = {self.elevator}: no equilibrium at aileron 0 was reached from level flight")
+        level = from_functions(self.residual, self.jacobian, start=(np.zeros(5), 0.0))
+        return solve_at(level, 0.0), 0.0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """The equations, shape (5,)."""
-        products = _QUADRATIC @ (y[_FIRST] * y[_SECOND])
-        deflections = self.elevator * _ELEVATOR + lam * (_AILERON + _ATTACK_AILERON * y[_ATTACK])
-        equations: Array = _STATE @ y + products + deflections
+        first, second = self._factors(y, lam)
+        equations: Array = _COEFFICIENTS @ (first * second)
         return equations
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """(H_y, H_lam), shapes (5, 5) and (5,)."""
-        eye = np.eye(5)
-        by_state = _QUADRATIC @ (y[_SECOND, None] * eye[_FIRST] + y[_FIRST, None] * eye[_SECOND])
-        by_state = by_state + _STATE + lam * np.outer(_ATTACK_AILERON, eye[_ATTACK])
-        return by_state, _AILERON + _ATTACK_AILERON * y[_ATTACK]
+        (first, second), (by_first, by_second) = self._factors(y, lam), np.eye(8)[_FACTORS, :6]
+        whole = _COEFFICIENTS @ (second[:, None] * by_first + first[:, None] * by_second)
+        return whole[:, :5], whole[:, 5]
+
+    def _factors(self, y: Array, lam: float) -> tuple[Array, Array]:
+        u = np.concatenate((y, lam * np.ones(1), np.array([self.elevator, 1.0])))
+        return u[_FACTORS[0]], u[_FACTORS[1]]

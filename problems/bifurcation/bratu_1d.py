@@ -13,11 +13,22 @@ from continuation.linear import Banded
 from problems.bibliography import BRATU
 from problems.options import finite_or_none, positive_integer, quiet
 
-_BOUNDARY = np.zeros(1)
+
+class Bratu:
+    """What Bratu's problems share."""
+
+    box: ClassVar[Box] = {"y": (None, 8.0)}
+    parameter_name: ClassVar[str] = "lambda"
+    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
+    references: ClassVar[tuple[str, ...]] = (BRATU,)
+
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """Maximum of u."""
+        return {"max_u": float(np.max(y))}
 
 
 @frozen
-class Bratu1D:
+class Bratu1D(Bratu):
     """u'' + lam e^u = 0 on (0, 1), u(0) = u(1) = 0, by second-order differences, from u = 0 at lam = 0.
 
     ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}``, h = 1/(n + 1). The path turns at lam* = 3.5138... and returns
@@ -37,10 +48,6 @@ class Bratu1D:
 
     n: int = field(default=100, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
-    box: ClassVar[Box] = {"y": (None, 8.0)}
-    parameter_name: ClassVar[str] = "lambda"
-    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
-    references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     def start(self) -> tuple[Array, float]:
         """Zero at lam = 0."""
@@ -49,7 +56,7 @@ class Bratu1D:
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (n,)."""
-        u = np.concatenate((_BOUNDARY, y, _BOUNDARY))
+        u = np.concatenate((np.zeros(1), y, np.zeros(1)))
         return u[:-2] - 2.0 * y + u[2:] + self._square * lam * np.exp(y)
 
     @quiet
@@ -59,10 +66,6 @@ class Bratu1D:
         bands = np.ones((3, self.n))
         bands[1] = lam * slope - 2.0
         return Banded(bands, 1, 1), slope
-
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Maximum of u."""
-        return {"max_u": float(np.max(y))}
 
     @property
     def _square(self) -> float:

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
+from scipy.sparse.linalg import LaplacianNd
 
 from continuation.arrays import Array, Matrix
-from continuation.events.box import Box
-from problems.bibliography import BRATU
+from problems.bifurcation.bratu_1d import Bratu
 from problems.options import finite_or_none, positive_integer, quiet
 
 
 def five_point(m: int) -> Matrix:
     """h^2 times the Dirichlet Laplacian on m x m interior points, sorted CSC."""
-    one = np.ones(m - 1)
-    line = sp.diags_array([one, np.full(m, -2.0), one], offsets=[-1, 0, 1])
-    eye = sp.eye_array(m)
-    laplacian = sp.csc_array(sp.kron(eye, line) + sp.kron(line, eye))
+    laplacian = sp.csc_array(LaplacianNd((m, m), boundary_conditions="dirichlet", dtype=float).tosparse())
     laplacian.sort_indices()
     return laplacian
 
 
 @frozen(eq=False)
-class Bratu2D:
+class Bratu2D(Bratu):
     """Laplacian(u) + lam e^u = 0 on the unit square, u = 0 on its edge, by the five-point formula.
 
     ``H = h^2 (Laplacian_h u + lam e^u)``, h = 1/(m + 1), points by rows. The path turns at lam* = 6.808... and returns
@@ -46,10 +43,6 @@ class Bratu2D:
 
     m: int = field(default=20, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
-    box: ClassVar[Box] = {"y": (None, 8.0)}
-    parameter_name: ClassVar[str] = "lambda"
-    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
-    references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     @cached_property
     def _pattern(self) -> tuple[Matrix, Any]:
@@ -79,10 +72,6 @@ class Bratu2D:
         matrix = laplacian.copy()
         matrix.data[diagonal] += lam * slope
         return matrix, slope
-
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Maximum of u."""
-        return {"max_u": float(np.max(y))}
 
     @property
     def _square(self) -> float:

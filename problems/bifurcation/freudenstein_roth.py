@@ -11,11 +11,8 @@ from continuation.arrays import Array
 from problems.bibliography import FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT
 from problems.options import finite_or_none, quiet
 
-_CUBIC = np.array([-1.0, 1.0])
-_SQUARE = np.array([5.0, 1.0])
-_LINEAR = np.array([-2.0, -14.0])
-_CONSTANT = np.array([-13.0, -29.0])
-_EMBEDDING = np.array([34.0, 10.0])
+_COEFFICIENTS = np.array([[-1.0, 1.0], [5.0, 1.0], [-2.0, -14.0], [-13.0, -29.0], [34.0, 10.0]])
+"""Of x2^3, x2^2, x2, 1 and lam - 1 in both equations."""
 
 
 @frozen
@@ -51,12 +48,13 @@ class FreudensteinRoth:
     def residual(self, y: Array, lam: float) -> Array:
         """(H1, H2), shape (2,)."""
         x1, x2 = y[0], y[1]
-        polynomial = x2 * (_LINEAR + x2 * (_SQUARE + x2 * _CUBIC))
-        equations: Array = x1 + polynomial + _CONSTANT + (lam - 1.0) * _EMBEDDING
+        cubic, square, linear, constant, embedding = _COEFFICIENTS
+        equations: Array = x1 + x2 * (linear + x2 * (square + x2 * cubic)) + constant + (lam - 1.0) * embedding
         return equations
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """(H_y, H_lam), shapes (2, 2) and (2,)."""
-        slope = _LINEAR + y[1] * (2.0 * _SQUARE + 3.0 * y[1] * _CUBIC)
-        return np.stack((np.ones(2), slope), axis=1), _EMBEDDING.copy()
+        cubic, square, linear, _, embedding = _COEFFICIENTS
+        slope = linear + y[1] * (2.0 * square + 3.0 * y[1] * cubic)
+        return np.stack((np.ones(2), slope), axis=1), embedding.copy()

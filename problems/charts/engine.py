@@ -16,8 +16,6 @@ from continuation.predictors import Hermite, Tangent, Taylor
 from problems.charts import rivals
 from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
-BUDGET = continuation.Budget(steps=3000)
-
 Parts = dict[str, dict[str, Any]]
 """Trace options by method label."""
 
@@ -71,7 +69,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     rungs = {"smoke": (1e-6,), "moderate": (1e-3, 1e-6, 1e-9), "full": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)}[size]
     found: list[Study] = []
     for name, (title, parts) in PARTS.items():
-        methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
+        methods = [traced(label, budget=continuation.Budget(steps=3000), **options) for label, options in parts.items()]
         # Users choose among presets: compare them on a sparse system, too.
         whole = name == "presets"
         square = [bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size])] if whole else []

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from hypothesis import strategies as st
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 
 Order = int | st.SearchStrategy[int]
-Rows = list[list[int]]
-Entries = st.SearchStrategy[int] | st.SearchStrategy[float] | None
+Entries = st.SearchStrategy[int] | st.SearchStrategy[float]
 Draw = st.DrawFn
 
 ORDERS = st.integers(1, 4)
@@ -26,118 +26,97 @@ def orders_of(n: Order) -> st.SearchStrategy[int]:
     return st.just(n) if isinstance(n, int) else n
 
 
-def square(draw: Draw, n: int, entry: st.SearchStrategy[int] = _ENTRY) -> Rows:
+def vector(draw: Draw, n: int, entry: Entries = _ENTRY) -> Array:
+    """Any integers, as floats."""
+    return np.array([draw(entry) for _ in range(n)], dtype=float)
+
+
+def square(draw: Draw, n: int, entry: Entries = _ENTRY) -> Array:
     """Any entries."""
-    return [[draw(entry) for _ in range(n)] for _ in range(n)]
+    return vector(draw, n * n, entry).reshape(n, n)
 
 
-def _add(*parts: Rows) -> Rows:
-    return [[sum(values) for values in zip(*rows, strict=True)] for rows in zip(*parts, strict=True)]
-
-
-def _gram(draw: Draw, n: int) -> Rows:
-    factor = [[draw(st.integers(-2, 2)) for _ in range(n)] for _ in range(draw(st.integers(0, n)))]
-    return [[sum(row[i] * row[j] for row in factor) for j in range(n)] for i in range(n)]
-
-
-def _skew(draw: Draw, n: int) -> Rows:
-    upper = {(i, j): draw(_ENTRY) for i in range(n) for j in range(i + 1, n)}
-    return [[upper.get((i, j), 0) - upper.get((j, i), 0) for j in range(n)] for i in range(n)]
-
-
-def _diagonal(draw: Draw, n: int, entry: st.SearchStrategy[int]) -> Rows:
-    return [[draw(entry) if i == j else 0 for j in range(n)] for i in range(n)]
-
-
-def _scaled(draw: Draw, rows: Rows) -> Rows:
+def _scaled(draw: Draw, A: Array) -> Array:
     """D A E with positive diagonals: keeps minor signs and sufficiency."""
-    left, right = ([draw(st.integers(1, 3)) for _ in rows] for _ in range(2))
-    return [[d * e * v for e, v in zip(right, row, strict=True)] for d, row in zip(left, rows, strict=True)]
+    left, right = (vector(draw, len(A), st.integers(1, 3)) for _ in range(2))
+    return left[:, None] * A * right
 
 
-def _signed(draw: Draw, rows: Rows) -> Rows:
-    """S A S with signs S: keeps principal minors."""
-    signs = [draw(st.sampled_from((1, -1))) for _ in rows]
-    return [[s * t * v for t, v in zip(signs, row, strict=True)] for s, row in zip(signs, rows, strict=True)]
+def _psd(draw: Draw, n: int) -> Array:
+    """B'B plus a skew matrix."""
+    rank, upper = draw(st.integers(0, n)), np.zeros((n, n))
+    factor = vector(draw, rank * n, st.integers(-2, 2)).reshape(rank, n)
+    upper[np.triu_indices(n, 1)] = vector(draw, n * (n - 1) // 2)
+    return factor.T @ factor + upper - upper.T
 
 
-def _psd(draw: Draw, n: int) -> Rows:
-    return _add(_gram(draw, n), _skew(draw, n))
+def _z(draw: Draw, n: int) -> Array:
+    return square(draw, n, st.integers(-3, 0)) + np.diag(vector(draw, n, st.integers(0, 6)))
 
 
-def _z(draw: Draw, n: int) -> Rows:
-    rows = square(draw, n, st.integers(-3, 0))
-    return _add(rows, _diagonal(draw, n, st.integers(0, 6)))
-
-
-def _k(draw: Draw, n: int) -> Rows:
+def _k(draw: Draw, n: int) -> Array:
     """Z with A s > 0 for an s > 0, so K."""
-    rows = [[-draw(st.integers(0, 2)) if i != j else 0 for j in range(n)] for i in range(n)]
-    for i, row in enumerate(rows):
-        row[i] = draw(POSITIVE) - sum(row)
-    return _scaled(draw, rows)
+    A = -square(draw, n, st.integers(0, 2))
+    np.fill_diagonal(A, 0.0)
+    return _scaled(draw, A + np.diag(vector(draw, n, POSITIVE) - A.sum(axis=1)))
 
 
-def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
+def _dominant(draw: Draw, n: int, signs: tuple[int, ...] = (1,)) -> Array:
     """Diagonally dominant: principal submatrices are regular; P if the diagonal is positive."""
-    rows = square(draw, n)
-    for i, row in enumerate(rows):
-        row[i] = sum(abs(value) for j, value in enumerate(row) if j != i) + draw(POSITIVE)
-        row[i] *= draw(st.sampled_from((1, -1))) if signed else 1
-    return rows
+    A = square(draw, n)
+    np.fill_diagonal(A, 0.0)
+    diagonal = np.abs(A).sum(axis=1) + vector(draw, n, POSITIVE)
+    return A + np.diag(diagonal * vector(draw, n, st.sampled_from(signs)))
 
 
-def _triangular(draw: Draw, n: int, diagonal: st.SearchStrategy[int]) -> Rows:
+def _triangular(draw: Draw, n: int, diagonal: st.SearchStrategy[int]) -> Array:
     """Principal minors are products of diagonal entries."""
-    rows = square(draw, n)
-    return [[draw(diagonal) if j == i else row[j] if j > i else 0 for j in range(n)] for i, row in enumerate(rows)]
+    return np.triu(square(draw, n), 1) + np.diag(vector(draw, n, diagonal))
 
 
-def _p(draw: Draw, n: int) -> Rows:
+def _p(draw: Draw, n: int) -> Array:
     kind = draw(st.sampled_from(("definite", "dominant", "triangular")))
     if kind == "dominant":
-        return _dominant(draw, n, False)
+        return _dominant(draw, n)
     if kind == "triangular":
         return _triangular(draw, n, POSITIVE)
-    return _scaled(draw, _add(_psd(draw, n), _diagonal(draw, n, POSITIVE)))
+    return _scaled(draw, _psd(draw, n) + np.diag(vector(draw, n, POSITIVE)))
 
 
-def _p0(draw: Draw, n: int) -> Rows:
+def _p0(draw: Draw, n: int) -> Array:
     return _triangular(draw, n, st.integers(0, 3)) if draw(st.booleans()) else _scaled(draw, _psd(draw, n))
 
 
-def _nondegenerate(draw: Draw, n: int) -> Rows:
+def _nondegenerate(draw: Draw, n: int) -> Array:
     entries = st.sampled_from((1, -1, 2, -2, 3))
-    return _triangular(draw, n, entries) if draw(st.booleans()) else _dominant(draw, n, True)
+    return _triangular(draw, n, entries) if draw(st.booleans()) else _dominant(draw, n, (1, -1))
 
 
-def _n(draw: Draw, n: int) -> Rows:
-    """K - u v' with u_i v_i > K_ii: det = det K (1 - v' K^-1 u) < 0 on every index set."""
-    rows = _k(draw, n)
-    u, v = [draw(st.integers(1, 2)) for _ in rows], [draw(st.integers(0, 2)) for _ in rows]
-    weights = [extra + rows[i][i] // u[i] + 1 for i, extra in enumerate(v)]
-    shifted = [[value - u[i] * weights[j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
-    return _signed(draw, shifted)
+def _n(draw: Draw, n: int) -> Array:
+    """S (K - u v') S with signs S and u_i v_i > K_ii: det = det K (1 - v' K^-1 u) < 0 on every index set."""
+    K, u, more = _k(draw, n), vector(draw, n, st.integers(1, 2)), vector(draw, n, st.integers(0, 2))
+    signs = vector(draw, n, st.sampled_from((1, -1)))
+    return np.outer(signs, signs) * (K - np.outer(u, more + K.diagonal() // u + 1.0))
 
 
-def _row_sufficient(draw: Draw, n: int) -> Rows:
+def _row_sufficient(draw: Draw, n: int) -> Array:
     """Sufficient (scaled PSD, P), or P above zero rows (not column sufficient)."""
     kind = draw(st.sampled_from(("psd", "p", "zero rows")))
     if kind == "psd":
         return _scaled(draw, _psd(draw, n))
     if kind == "p":
         return _p(draw, n)
-    leading = draw(st.integers(0, n))
-    block = _p(draw, leading)
-    return [[*block[i], *(draw(_ENTRY) for _ in range(n - leading))] if i < leading else [0] * n for i in range(n)]
+    leading, A = draw(st.integers(0, n)), square(draw, n)
+    A[:leading, :leading], A[leading:] = _p(draw, leading), 0.0
+    return A
 
 
-def _copositive(draw: Draw, n: int) -> Rows:
+def _copositive(draw: Draw, n: int) -> Array:
     """PSD + nonnegative + skew: all copositive matrices for n <= 4 (Diananda 1962)."""
-    return _add(_psd(draw, n), square(draw, n, st.integers(0, 3)))
+    return _psd(draw, n) + square(draw, n, st.integers(0, 3))
 
 
-_BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {
+_BUILDERS: Mapping[str, Callable[[Draw, int], Array]] = {
     "any": square, "P": _p, "P0": _p0, "PSD": _psd, "K": _k, "Z": _z, "N": _n, "nondegenerate": _nondegenerate,
     "row_sufficient": _row_sufficient, "copositive": _copositive,
 }  # fmt: skip
@@ -147,12 +126,12 @@ CLASSES: tuple[str, ...] = tuple(_BUILDERS)
 
 
 @st.composite
-def _matrices(draw: Draw, cls: str, n: Order, entries: Entries, shrinks: bool) -> Array:
+def _matrices(draw: Draw, cls: str, n: Order, entries: Entries | None, shrinks: bool) -> Array:
     order = draw(orders_of(n))
     if entries is None:
-        A = np.array(_BUILDERS[cls](draw, order), dtype=float)
+        A = _BUILDERS[cls](draw, order)
     else:
-        A = np.array([draw(entries) for _ in range(order * order)], dtype=float).reshape(order, order)
+        A = square(draw, order, entries)
         if cls == "Z":
             A = np.where(np.eye(order, dtype=bool), A, -np.abs(A))
     if not shrinks:
@@ -162,7 +141,7 @@ def _matrices(draw: Draw, cls: str, n: Order, entries: Entries, shrinks: bool) -
     return A[np.ix_(kept, kept)]
 
 
-def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.SearchStrategy[Array]:
+def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries | None = None) -> st.SearchStrategy[Array]:
     """Integer matrices of a class, as floats, shape (n, n).
 
     Parameters
@@ -173,14 +152,8 @@ def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st
         The order, by default 1 to 4.
     entries : strategy of numbers, optional
         Only for "any" and "Z"; also floats.
-
-    Raises
-    ------
-    ValueError
-        For an unknown class, or entries that cannot be chosen.
     """
-    if cls not in _BUILDERS:
-        raise ValueError(f"cls: expected one of {', '.join(CLASSES)}, found {cls!r}")
-    if entries is not None and cls not in ("any", "Z"):
-        raise ValueError(f"entries: expected none for the class {cls}, whose members are built from integers")
+    expect(cls in CLASSES, "cls", f"one of {', '.join(CLASSES)}", cls)
+    free = entries is None or cls in ("any", "Z")
+    expect(free, "entries", f"none for the class {cls}, whose members are built from integers", entries)
     return _matrices(cls, n, entries, n is ORDERS)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program, from_qp
-from problems.lcp.matrix_strategies import ORDERS, POSITIVE, Draw, Order, matrices
+from problems.lcp.matrix_strategies import ORDERS, POSITIVE, Draw, Order, matrices, vector
 
 KINDS = ("lower", "upper", "box", "free", "fixed")
 """Kinds of bounds."""
@@ -49,8 +49,7 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
         From `KINDS`.
     """
     A = draw(matrices(cls, n))
-    q = np.array([draw(st.integers(-4, 4)) for _ in A], dtype=float)
-    return MixedLCP(A, q, *draw(bounds(len(A), kinds)))
+    return MixedLCP(A, vector(draw, len(A), st.integers(-4, 4)), *draw(bounds(len(A), kinds)))
 
 
 @st.composite
@@ -68,9 +67,8 @@ def programs(draw: Draw, n: Order = ORDERS, convex: bool = True) -> Program:
     lower, upper = draw(bounds(size, ("lower", "upper", "box", "free")))
     middle = [low if np.isfinite(low) else high if np.isfinite(high) else 0.0 for low, high in zip(lower, upper)]
     rows = draw(st.integers(0, 3))
-    G = np.array([draw(st.integers(-3, 3)) for _ in range(rows * size)], dtype=float).reshape(rows, size)
-    c = np.array([draw(st.integers(-4, 4)) for _ in range(size)], dtype=float)
-    below, above = (np.array([draw(st.sampled_from((0.0, 1.0, np.inf))) for _ in range(rows)]) for _ in range(2))
+    G, c = vector(draw, rows * size).reshape(rows, size), vector(draw, size, st.integers(-4, 4))
+    below, above = (vector(draw, rows, st.sampled_from((0.0, 1.0, np.inf))) for _ in range(2))
     level = G @ np.array(middle)
     sides = {"G": G, "h": level + above, "rows_lower": level - below} if rows else {}
     return from_qp(P, c, lower=lower, upper=upper, **sides)

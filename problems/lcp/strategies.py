@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-import numpy as np
 from hypothesis import strategies as st
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.lcp.matrix_strategies import CLASSES, ORDERS, POSITIVE, Draw, Entries, Order, matrices, orders_of, square
+from problems.lcp.matrix_strategies import (
+    CLASSES,
+    ORDERS,
+    POSITIVE,
+    Draw,
+    Entries,
+    Order,
+    matrices,
+    orders_of,
+    square,
+    vector,
+)
 
 __all__ = [
     "CLASSES",
@@ -24,7 +35,7 @@ __all__ = [
 ]
 
 
-def lcps(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.SearchStrategy[LCP]:
+def lcps(cls: str = "any", n: Order = ORDERS, entries: Entries | None = None) -> st.SearchStrategy[LCP]:
     """Problems with a matrix of the class and any q, feasible or not.
 
     Parameters
@@ -39,9 +50,9 @@ def lcps(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.Sea
 
 
 @st.composite
-def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: st.SearchStrategy[float]) -> LCP:
+def _lcps(draw: Draw, matrix: st.SearchStrategy[Array], entries: Entries) -> LCP:
     A = draw(matrix)
-    return LCP(A, np.array([draw(entries) for _ in A], dtype=float))
+    return LCP(A, vector(draw, len(A), entries))
 
 
 def feasible_lcps(cls: str = "any", n: Order = ORDERS) -> st.SearchStrategy[tuple[LCP, Array]]:
@@ -62,7 +73,7 @@ def _feasible(draw: Draw, matrix: st.SearchStrategy[Array]) -> tuple[LCP, Array]
 
 
 def _with_start(draw: Draw, A: Array) -> tuple[LCP, Array]:
-    x0, w0 = (np.array([draw(POSITIVE) for _ in A], dtype=float) for _ in range(2))
+    x0, w0 = (vector(draw, len(A), POSITIVE) for _ in range(2))
     return LCP(A, w0 - A @ x0), x0
 
 
@@ -77,18 +88,11 @@ def planted_lcps(kind: str = "strict", cls: str = "any", n: Order = ORDERS) -> s
     cls : str
         For the first two kinds.
     n : int or strategy of int
-
-    Raises
-    ------
-    ValueError
-        For an unknown kind, or a class with "many".
     """
     if kind in ("strict", "degenerate"):
         return _planted(matrices(cls, n), kind == "degenerate")
-    if kind != "many":
-        raise ValueError(f"kind: expected strict, degenerate or many, found {kind!r}")
-    if cls != "any":
-        raise ValueError(f"cls: expected any for kind many, found {cls!r}")
+    expect(kind == "many", "kind", "strict, degenerate or many", kind)
+    expect(cls == "any", "cls", "any for kind many", cls)
     return two_solution_lcps(n).map(lambda triple: triple[:2])
 
 
@@ -103,10 +107,8 @@ def _planted(draw: Draw, matrix: st.SearchStrategy[Array], degenerate: bool) -> 
 
 
 def _complementary_pair(draw: Draw, n: int) -> tuple[Array, Array]:
-    values = [draw(POSITIVE) for _ in range(n)]
-    basic = [draw(st.booleans()) for _ in range(n)]
-    x = np.array([v if b else 0 for v, b in zip(values, basic, strict=True)], dtype=float)
-    return x, np.array(values, dtype=float) - x
+    values, basic = vector(draw, n, POSITIVE), vector(draw, n, st.integers(0, 1))
+    return basic * values, (1.0 - basic) * values
 
 
 @st.composite
@@ -120,7 +122,7 @@ def two_solution_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array, Array]
     y, v = _complementary_pair(draw, order)
     j = draw(st.integers(0, order - 1))
     y[j], v[j] = x[j] + 1, 0
-    A = np.array(square(draw, order), dtype=float)
+    A = square(draw, order)
     A[:, j] = 0
     A[:, j] = v - w - A @ (y - x)
     return LCP(A, w - A @ x), x, y
@@ -133,7 +135,7 @@ def near_singular_lcps(draw: Draw, n: Order = ORDERS) -> tuple[LCP, Array]:
     One row combines the others, then one entry moves by 2^-k, k from 10 to 40.
     """
     order = draw(orders_of(n))
-    A = np.array(square(draw, order), dtype=float)
+    A = square(draw, order)
     i = draw(st.integers(0, order - 1))
     A[i] = sum(draw(st.integers(-1, 1)) * A[j] for j in range(order) if j != i)
     A[i, draw(st.integers(0, order - 1))] += 2.0 ** -draw(st.integers(10, 40))
@@ -154,5 +156,5 @@ def badly_scaled_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS) -> tuple[
     """
     problem, x0 = draw(feasible_lcps(cls, n))
     powers = st.integers(-26, 26)
-    left, right = (np.array([2.0 ** draw(powers) for _ in x0]) for _ in range(2))
+    left, right = (2.0 ** vector(draw, x0.size, powers) for _ in range(2))
     return LCP(left[:, None] * problem.A * right, left * problem.q), x0 / right

@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.bibliography import BROWN
 from problems.options import positive_integer, quiet
@@ -31,8 +32,7 @@ class BrownAlmostLinear:
     @quiet
     def __call__(self, x: Array) -> Array:
         """The value."""
-        if x.shape != (self.n,):
-            raise ValueError(f"x: expected shape {(self.n,)}, found {x.shape}")
+        expect(x.shape == (self.n,), "x", f"shape {(self.n,)}", x.shape)
         return np.concatenate((np.prod(x, keepdims=True) - 1.0, x[1:] + np.sum(x) - (self.n + 1.0)))
 
     @quiet

@@ -11,11 +11,13 @@ from attrs import field, frozen
 
 import continuation
 from continuation import jets
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.budget import Budget
 from continuation.linear import BorderedSystem
 from continuation.path import Path
 from continuation.status import Status
+from problems.lcp.data.bounds import without_equal_bounds
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies import interior
@@ -26,7 +28,7 @@ from problems.lcp.homotopies.starts import inside_start, inside_vector
 from problems.lcp.homotopies.two_vector import Blend, TwoVectorHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
-from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
+from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, value_at
 from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
@@ -49,11 +51,6 @@ class MixedComplementarity:
     lower, upper : array_like, shape (n,)
         May be infinite; at least one is a vector.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If F, `jacobian` or the bounds are unusable.
-
     References
     ----------
     Facchinei and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003.
@@ -66,16 +63,11 @@ class MixedComplementarity:
 
     def __attrs_post_init__(self) -> None:
         sizes = [np.size(bound) for bound in (self.lower, self.upper) if bound is not None and np.ndim(bound) == 1]
-        if not sizes:
-            raise ValueError("lower: expected a vector of bounds, lower or upper, found none")
+        expect(sizes, "lower", "a vector of bounds, lower or upper", (self.lower, self.upper))
         like = MixedLCP(sp.eye_array(sizes[0], format="csr"), np.zeros(sizes[0]), self.lower, self.upper)
         object.__setattr__(self, "lower", like.lower)
         object.__setattr__(self, "upper", like.upper)
-        if like.fixed.any():
-            i = int(np.argmax(like.fixed))
-            found = f"found both {like.lower[i]} at index {i}; leave x[{i}] out"
-            raise ValueError(f"lower: expected less than upper, {found}")
-        require_callable("F", self.F)
+        without_equal_bounds(like.lower, like.upper)
         x = inside_start(like)
         value_at(self.F, x)
         if self.jacobian is not None:
@@ -103,11 +95,6 @@ class MixedComplementarity:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Raises
-        ------
-        ValueError
-            If F or F' is not finite.
         """
         slope = self.slope(x)
         return MixedLCP(slope, np.asarray(self.F(x.copy()), dtype=float) - slope @ x, self.lower, self.upper)
@@ -124,11 +111,6 @@ class InteriorHomotopy:
     problem : MixedComplementarity
     x0 : array_like, shape (n,), optional
         Strictly between the bounds; default near zero.
-
-    Raises
-    ------
-    ValueError
-        If x0 is not.
     """
 
     problem: MixedComplementarity
@@ -250,21 +232,11 @@ def solve_complementarity(
         Relative residual.
     budget : continuation.Budget, optional
 
-    Returns
-    -------
-    ComplementaritySolution
-
-    Raises
-    ------
-    TypeError, ValueError
-        For bad input.
-
     References
     ----------
     Josephy, Math. Research Center Report 1965, Madison 1979.
     """
-    if not isinstance(problem, MixedComplementarity):
-        raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")
+    expect(isinstance(problem, MixedComplementarity), "problem", "a MixedComplementarity", problem, TypeError)
     check_tolerance(tolerance)
     check_budget(budget)
     homotopy = InteriorHomotopy(problem, x0)

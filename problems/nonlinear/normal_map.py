@@ -9,12 +9,13 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import check_derivative, from_residual
 from continuation.linear import Banded
 from problems.bibliography import ROBINSON
-from problems.lcp.data.bounds import bound_vector, ordered_bounds
-from problems.nonlinear.start_checks import require_callable
+from problems.lcp.data.bounds import bound_vector, ordered_bounds, without_equal_bounds
+from problems.lcp.data.matrix_structure import scaled
 from problems.options import finite, finite_or_none, finite_vector, quiet, real_array
 
 Force = Callable[[Any, Any], Any]
@@ -67,11 +68,6 @@ class NormalMap:
         Bounds are lower + lam * lower_rate and upper + lam * upper_rate.
     target : float or None, default 0
 
-    Raises
-    ------
-    TypeError, ValueError
-        If F, its derivative or the bounds are unusable.
-
     References
     ----------
     Robinson, Math. Oper. Res. 17 (1992) 691-714.
@@ -97,16 +93,14 @@ class NormalMap:
             object.__setattr__(self, f"{name}_rate", finite_vector(f"{name}_rate", rate))
         lower, upper = self.bounds(self.lam0)
         ordered_bounds(lower, upper)
-        if (lower == upper).any():
-            i = int(np.argmax(lower == upper))
-            raise ValueError(f"lower: expected less than upper, found both {lower[i]} at index {i}; leave it out")
-        require_callable("F", self.F)
+        without_equal_bounds(lower, upper)
+        expect(callable(self.F), "F", "a function", self.F, TypeError)
         x = np.clip(self.x0, lower, upper)
         finite_vector("F(x0, lam0)", quiet(self.F)(x, self.lam0))
         if self.jacobian_of_F is None:
             object.__setattr__(self, "jacobian_of_F", from_residual(self.F, (x, self.lam0)))
         assert self.jacobian_of_F is not None
-        require_callable("jacobian", self.jacobian_of_F)
+        expect(callable(self.jacobian_of_F), "jacobian", "a function", self.jacobian_of_F, TypeError)
         check_derivative(quiet(self.jacobian_of_F)(x.copy(), self.lam0), n)
 
     @classmethod
@@ -123,9 +117,8 @@ class NormalMap:
         if not isinstance(A, Banded):
             A = sp.csc_array(A) if sp.issparse(A) else real_array("A", A)
         force = AffineForce(A, finite_vector("q", q), finite_vector("d", d))
-        if A.shape != (force.q.size,) * 2 or force.d.shape != force.q.shape:
-            found = f"{A.shape}, {force.q.shape} and {force.d.shape}"
-            raise ValueError(f"A: expected a square matrix, and q and d of its size, found shapes {found}")
+        found, n = (A.shape, force.q.shape, force.d.shape), force.q.size
+        expect(found == ((n, n), (n,), (n,)), "A", "a square matrix, and q and d of its size, by their shapes", found)
         return cls(force, force.slope, **more)
 
     def bounds(self, lam: float) -> tuple[Array, Array]:
@@ -205,10 +198,4 @@ class NormalPiece:
         column, on = np.asarray(F_lam, dtype=float), 1.0 * self.free
         if self.moving.any():
             column = column + F_x @ self.moving - self.moving
-        if isinstance(F_x, Banded):
-            bands = F_x.ab * on
-            bands[F_x.upper] += 1.0 - on
-            return Banded(bands, F_x.lower, F_x.upper), column
-        if isinstance(F_x, np.ndarray):
-            return F_x * on + np.diag(1.0 - on), column
-        return sp.csc_array(F_x @ sp.diags_array(on) + sp.diags_array(1.0 - on)), column
+        return scaled(F_x, on, 1.0 - on), column

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation.arguments.checks import is_number
+from continuation.arguments.checks import expect, is_number
 from continuation.arrays import Array
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
@@ -17,18 +17,26 @@ from problems.nonlinear.normal_map import NormalMap
 
 @frozen
 class BratuForce:
-    """The force -(u'' + lam e^u) times h^2."""
+    """The force -(u'' + lam e^u) times h^2; of an `even` solution u is one half, its middle last."""
 
     bratu: Bratu1D
+    even: bool = False
+
+    def _whole(self, x: Any) -> Any:
+        return np.concatenate((x, x[-2::-1])) if self.even else x
 
     def __call__(self, x: Any, lam: Any) -> Any:
         """The value."""
-        return -self.bratu.residual(x, lam)
+        return -self.bratu.residual(self._whole(x), lam)[: len(x)]
 
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
         """Tridiagonal matrix and vector."""
-        H_y, H_lam = self.bratu.jacobian(x, lam)
-        return Banded(-H_y.ab, 1, 1), -H_lam
+        H_y, H_lam = self.bratu.jacobian(self._whole(x), lam)
+        bands = -H_y.ab[:, : x.size]
+        if self.even:
+            # Both neighbours of the middle are one unknown.
+            bands[2, -2] *= 2.0
+        return Banded(bands, 1, 1), -H_lam[: x.size]
 
 
 def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0.0) -> NormalMap:
@@ -49,13 +57,7 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
     -------
     NormalMap
         ``x(z)`` gives u.
-
-    Raises
-    ------
-    ValueError
-        If psi is not positive.
     """
-    if not is_number(psi) or not 0.0 < psi < math.inf:
-        raise ValueError(f"psi: expected a positive number, found {psi!r}")
+    expect(is_number(psi) and 0.0 < psi < math.inf, "psi", "a positive number", psi)
     force = BratuForce(Bratu1D(n))
     return NormalMap(force, force.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=psi, target=target)

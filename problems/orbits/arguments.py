@@ -7,7 +7,11 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+<<<<<<< HEAD
 from continuation.arguments.checks import POSITIVE_FINITE, complain, expect, integer, real_vector
+=======
+from continuation.arguments.checks import POSITIVE_FINITE, expect, integer, real_vector
+>>>>>>> s9f
 from continuation.arrays import EPS, Array
 from continuation.evaluation.products import sizes
 from problems.orbits.grid import Grid
@@ -33,23 +37,29 @@ class Asked:
 def as_table(value: Any) -> Array:
     """A finite table of states."""
     found = real_vector("states", value)
-    if found.ndim != 2 or not np.isfinite(found).all():
-        raise complain(ValueError, "states", "a table of finite numbers, a row for each node", value)
+    fine = found.ndim == 2 and np.isfinite(found).all()
+    expect(fine, "states", "a table of finite numbers, a row for each node", value)
     return found
 
 
 def as_mesh(value: Any) -> Array:
     """Mesh points, from a number of intervals or points."""
     found = np.linspace(0.0, 1.0, value + 1) if isinstance(value, int) and value > 1 else real_vector("mesh", value)
-    if found.ndim != 1 or found.size < 3 or found[0] != 0.0 or found[-1] != 1.0 or not (np.diff(found) > 0.0).all():
-        raise complain(ValueError, "mesh", "a number of intervals, at least 2, or times that rise from 0 to 1", value)
+    rises = found.ndim == 1 and found.size > 2 and found[0] == 0.0 and found[-1] == 1.0 and (np.diff(found) > 0.0).all()
+    expect(rises, "mesh", "a number of intervals, at least 2, or times that rise from 0 to 1", value)
     return found
 
 
 def check_times(times: Array, states: Array) -> None:
+<<<<<<< HEAD
     """Raise ValueError unless times, four or more, rise."""
     expect(times.shape == states.shape[:1], "x", f"a row for each of the times, {times.shape}", states.shape)
     expect(len(times) > 3 and (np.diff(times) > 0.0).all(), "t", "four times or more that rise", times)
+=======
+    """Raise ValueError unless times rise."""
+    rise = times.shape == (len(states),) and len(times) > 3 and (np.diff(times) > 0.0).all()
+    expect(rise, "t", f"{len(states)} times that rise, one a state", times)
+>>>>>>> s9f
 
 
 def spread(states: Array) -> Array:

@@ -1,16 +1,14 @@
-"""Collocation equations near an orbit, and events on its path."""
+"""Collocation equations near an orbit."""
 
 from __future__ import annotations
 
-from functools import cached_property
-from operator import attrgetter
-from typing import Any
+from collections.abc import Callable
+from functools import cached_property, lru_cache
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.status import Kind
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 from problems.orbits.here import Here
@@ -30,7 +28,6 @@ class Equations:
     grid: Grid
     scale: Array
     states: Array
-    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
 
     @cached_property
     def _reference(self) -> Array:
@@ -45,28 +42,13 @@ class Equations:
 
     def here(self, y: Array, lam: float) -> Here:
         """The equations at a point, cached."""
-        key = np.append(y, lam).tobytes()
-        if key not in self._recent:
-            y, size = np.array(y, dtype=float), self.states.size
-            X, T, times = y[:size].reshape(self.states.shape), float(y[size]), y[size + 1 :]
-            self._recent[key] = Here(self.flow, self.grid, self.scale, self._reference, X, T, times, float(lam))
-            if len(self._recent) > ORBITS_KEPT:
-                del self._recent[next(iter(self._recent))]
-        return self._recent[key]
+        return self._at(np.append(y, lam).tobytes())
 
+    @cached_property
+    def _at(self) -> Callable[[bytes], Here]:
+        return lru_cache(ORBITS_KEPT)(self._made)
 
-@frozen
-class Watch:
-    """An event: `quantity`, an attribute path of `Here`, takes a value."""
-
-    orbit: Any
-    quantity: str
-    name: str
-    value: float = 0.0
-    terminal: int = 0
-    direction: int = 0
-    kind: Kind = field(default=Kind.EVENT, init=False)
-
-    def monitor(self, u: Array, v: Array) -> float:
-        """The quantity minus the value."""
-        return float(attrgetter(self.quantity)(self.orbit.equations.here(u[:-1], float(u[-1])))) - self.value
+    def _made(self, key: bytes) -> Here:
+        u, size = np.frombuffer(key), self.states.size
+        X, times = u[:size].reshape(self.states.shape), u[size + 1 : -1]
+        return Here(self.flow, self.grid, self.scale, self._reference, X, float(u[size]), times, float(u[-1]))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.products import (
     AGREEMENT,
@@ -73,15 +73,13 @@ def field_of(function: Any, jacobian: Any, second: Any, point: Array, size: Arra
     Raises `TypeError`, `ValueError` unless f returns n numbers.
     """
     for name, given in (("f", function), ("jacobian", jacobian)):
-        if not callable(given) and (name == "f" or given is not None):
-            raise complain(TypeError, name, "a function of (x, p)", given)
+        expect(callable(given) or (given is None and name != "f"), name, "a function of (x, p)", given, TypeError)
     x = point[:, None] + TRIED_ASIDE * size[:, None] * np.cos(
         np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0))
     )
     beside = () if second is None else (second,)
     single = np.asarray(function(x[:, 0].copy(), p, *beside))
-    if single.shape != (len(x),) or single.dtype.kind not in "fiu":
-        raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)
+    expect(single.shape == (len(x),) and single.dtype.kind in "fiu", "f", f"{len(x)} real numbers, as x has", single)
     alone = Field(function, False, jacobian, beside)
     found = evolve(alone, columns=_agrees(lambda: evolve(alone, columns=True)(x.copy(), p), alone(x, p)))
     if jacobian is not None:

@@ -8,14 +8,10 @@ import numpy as np
 from attrs import frozen
 from scipy.linalg import eig
 
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 
 FOLD_ANGLE = 1e-4
 """Pairs with smaller arguments belong to folds of cycles: round-off splits a double multiplier by its root."""
-
-OUTSIDE_CIRCLE = 1e-6
-"""Unstable moduli exceed 1 by more: at folds multipliers are known to the root of round-off."""
-
 
 TRIVIAL_FOUND = 0.5
 """If the trivial multiplier is off by more, all are lost."""
@@ -48,8 +44,8 @@ class Multipliers:
 
     @property
     def unstable(self) -> int:
-        """Number of multipliers outside the unit circle."""
-        return int((np.abs(self.values[1:]) > 1.0 + OUTSIDE_CIRCLE).sum())
+        """Number of multipliers outside the unit circle, which folds split by the root of round-off."""
+        return int((np.abs(self.values[1:]) > 1.0 + SIX_DIGITS).sum())
 
     @property
     def lost(self) -> bool:

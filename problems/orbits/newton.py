@@ -11,7 +11,6 @@ from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.correctors.base import far_from_round_off
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
-from continuation.linear import factor_bordered
 from continuation.metric import norm
 
 ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
@@ -27,9 +26,7 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
     found, evaluator = Iteration(u, ORBIT_NEWTON), Evaluator(homotopy, Counts())
 
     def increment() -> Array:
-        y, lam = found.x[:-1], float(found.x[-1])
-        matrix, column = homotopy.jacobian(y, lam)
-        return factor_bordered(matrix, column, border).solve(-homotopy.residual(y, lam), 0.0)
+        return evaluator.factor(found.x, border).solve(-evaluator.residual(found.x), 0.0)
 
     def done(size: float) -> bool:
         if size <= ORBIT_FOUND or found.ratio < HALVING:

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from operator import attrgetter
 from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import Factory, evolve, field, fields_dict, frozen
 
-from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
+from continuation.arguments.checks import FINITE, POSITIVE_FINITE, expect, real_vector
 from continuation.arrays import Array, generic_vector
 from continuation.curves.beginning import as_point
 from continuation.evaluation.products import sizes
-from continuation.events import Event
+from continuation.events import Event, Monitor
 from continuation.metric import Weighted
 from continuation.step.extent import REPLACED
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
 from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, check_times, spread
-from problems.orbits.equations import PHASE_COSINE, Equations, Watch
+from problems.orbits.equations import PHASE_COSINE, Equations
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
 from problems.orbits.models import Model
@@ -82,10 +83,9 @@ class PeriodicOrbit:
     references: ClassVar[tuple[str, ...]] = (DE_BOOR_SWARTZ, WRIGHT)
 
     def __attrs_post_init__(self) -> None:
-        if len(self.states) != (wanted := (self.mesh.size - 1) * self.degree):
-            raise ValueError(f"states: expected {wanted} rows, one a node, found {len(self.states)}")
-        if self.scale.shape != self.states.shape[1:] or not (self.scale > 0.0).all():
-            raise complain(ValueError, "scale", f"{self.states.shape[1]} positive numbers", self.scale)
+        (rows, n), wanted = self.states.shape, (self.mesh.size - 1) * self.degree
+        expect(rows == wanted, "states", f"{wanted} rows, one a node", rows)
+        expect(self.scale.shape == (n,) and (self.scale > 0.0).all(), "scale", f"{n} positive numbers", self.scale)
         assert self.equations
 
     def __getstate__(self) -> dict[str, Any]:
@@ -181,8 +181,7 @@ class PeriodicOrbit:
         """
         y, p = as_point(point, "point")
         N, left = divmod(y.size, components * degree + 1)
-        if left or N < 2:
-            raise ValueError(f"point: expected N ({components} x {degree} + 1) unknowns, found {y.size}")
+        expect(N > 1 and not left, "point", f"N ({components} x {degree} + 1) unknowns", y.size)
         size = N * degree * components
         mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
         return cls(f, y[:size].reshape(-1, components), y[size], p, mesh, degree, **beside)
@@ -295,11 +294,18 @@ class PeriodicOrbit:
     @property
     def events(self) -> tuple[Event, ...]:
         """Period doubling, torus, Hopf point, failure of the phase condition."""
+
+        def watched(quantity: str, name: str, value: float = 0.0, **how: int) -> Monitor:
+            def seen(u: Array, v: Array) -> float:
+                return float(attrgetter(quantity)(self.equations.here(u[:-1], float(u[-1])))) - value
+
+            return Monitor(seen, name, **how)
+
         return (
-            Watch(self, "multipliers.doubling", "period doubling"),
-            Watch(self, "multipliers.torus", "torus"),
-            Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
-            Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
+            watched("multipliers.doubling", "period doubling"),
+            watched("multipliers.torus", "torus"),
+            watched("amplitude", "Hopf point", self.smallest, terminal=1, direction=-1),
+            watched("phase_cosine", "phase condition fails", PHASE_COSINE, terminal=1),
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:

@@ -36,11 +36,6 @@ def plot_orbits(
         Horizontal component, or time.
     of : int, default 1
         Vertical component.
-
-    Raises
-    ------
-    ImportError
-        Without matplotlib.
     """
     axes = axes_or_new(axes)
     t = np.linspace(0.0, 1.0, DRAWN_TIMES)

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import eig
 from scipy.optimize import brentq
 
-from continuation.arguments.checks import complain
+from continuation.arguments.checks import expect
 from continuation.arrays import ROOT_OF_ROUND_OFF, Array
 from continuation.contraction import HALVING
 from continuation.evaluation.products import sizes
@@ -25,7 +25,7 @@ HOPF_PAIR = 1e-2
 LEAST_MOTION = 1e-2
 """Least relative scale: round-off must not measure a component at rest."""
 
-NONLINEAR, MIDDLE, RADII_TRIED = 0.1, 0.3, 60
+NONLINEAR, RADII_TRIED = 0.1, 60
 """At an orbit's size nonlinear terms are between this part of the linear ones and all of them; the most radii tried."""
 
 ONE_RETURN = 1e-3
@@ -89,7 +89,7 @@ def _nonlinear_at(guess: float, share_of: Callable[[float], float]) -> float:
             if NONLINEAR <= share <= 1.0:
                 return r
             # Quadratic or cubic terms; outside its domain f is nonlinear enough.
-            r *= 1.0 / min(max(np.sqrt(share / MIDDLE), 0.1), 10.0) if share < np.inf else 0.1
+            r *= 1.0 / min(max(np.sqrt(share / np.sqrt(NONLINEAR)), 0.1), 10.0) if share < np.inf else 0.1
     return guess
 
 
@@ -150,8 +150,8 @@ def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[
         missed = np.linalg.norm((spline(times) - end) / scale, axis=-1)
         if missed.min(initial=np.inf) <= NO_RETURN:
             break
-    else:
-        raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, once round or more", x)
+    settled = missed.min(initial=np.inf) <= NO_RETURN
+    expect(settled, "x", "a simulation that ends on a periodic orbit, once round or more", x)
     begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
     T = float(t[-1]) - begin
     fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)

@@ -14,7 +14,6 @@ from attrs import frozen
 from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.lcp.search.outcome import Solution
 from problems.lcp.search.solver import solve
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import (
@@ -90,37 +89,28 @@ def AmericanPut(
         A = sp.diags_array(implicit(step), offsets=[-1, 0, 1], shape=(n, n), format="csr")
         return LCP(A, lifted(step, payoff) - known)
 
-    def march(solver: Callable[[LCP], Any]) -> Exercise:
+    def march(solver: Callable[[LCP, Any], Any]) -> Exercise:
         times = maturity * (np.arange(steps + 1) / steps) ** 2
         # Crank-Nicolson alone oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
-        values, edges, well = payoff.copy(), [strike], True
+        values, edges = payoff.copy(), [strike]
+        found: Any = None
         for k, dt in enumerate(np.diff(times)):
             step = dt if k < 4 else 0.5 * dt
-            found = solver(stepped(step, values[1:-1] if k < 4 else 2.0 * values[1:-1] - lifted(step, values)))
-            well = bool(found.success) and found.x is not None
-            if not well:
+            known = values[1:-1] if k < 4 else 2.0 * values[1:-1] - lifted(step, values)
+            found = solver(stepped(step, known), found)
+            if not found.success:
                 break
             # Tiny far values lack the strike's digits.
             values[1:-1] = (strike + payoff[1:-1] + found.x) - strike
             # The boundary falls with the time left, which coarse first steps do not show.
             edges.append(min(edge(found.x), edges[-1]))
-        return Exercise(values, times[: len(edges)], np.array(edges), well)
+        return Exercise(values, times[: len(edges)], np.array(edges), bool(found.success))
 
     def edge(above: Array) -> float:
         """The first price above the payoff."""
         beyond = above > 1e-12 * strike
         return strike * exp(float(x[int(np.argmax(beyond)) + 1])) if beyond.any() else strike
-
-    def solved() -> Exercise:
-        found: Solution | None = None
-
-        def step(problem: LCP) -> Solution:
-            nonlocal found
-            found = solve(problem, guess=found)
-            return found
-
-        return march(step)
 
     def answer(solution: Any) -> Quantities:
         """A cubic keeps second order."""
@@ -150,8 +140,9 @@ def AmericanPut(
         units={"price": "money", "delta": "", "exercise below": "money"},
         unknowns=(Unknown("values above the payoff", n, "where to exercise, and the price elsewhere"),),
         problem=lambda: stepped(0.5 * maturity / steps**2, payoff[1:-1]),
-        solve=solved, answer=answer, exact=exact, picture=drawn,
-        rivals=(Rival("Brennan-Schwartz", "", lambda scene: answer(march(_eliminated))),),
+        solve=lambda: march(lambda problem, last: solve(problem, guess=last)),
+        answer=answer, exact=exact, picture=drawn,
+        rivals=(Rival("Brennan-Schwartz", "", lambda scene: answer(march(lambda problem, _: _eliminated(problem)))),),
     )  # fmt: skip
 
 

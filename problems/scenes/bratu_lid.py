@@ -6,41 +6,16 @@ from math import acosh, exp, sqrt
 from typing import Annotated, Any
 
 import numpy as np
-from attrs import frozen
 from scipy.optimize import brentq
 
 from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.linear import Banded
 from continuation.tracing import solve_at
 from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import BratuForce
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import Positive, Quantities, Scene, Unknown, with_parameters
-
-
-@frozen
-class HalfLayer:
-    """`BratuForce` of an even solution on one half, the middle last."""
-
-    n: int
-
-    @property
-    def _whole(self) -> BratuForce:
-        return BratuForce(Bratu1D(2 * self.n - 1))
-
-    def __call__(self, x: Any, lam: Any) -> Any:
-        """The value."""
-        return self._whole(np.concatenate((x, x[-2::-1])), lam)[: self.n]
-
-    def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
-        """Tridiagonal matrix; shape (n,)."""
-        F_x, F_lam = self._whole.slope(np.concatenate((x, x[-2::-1])), lam)
-        bands = F_x.ab[:, : self.n].copy()
-        # Both neighbours of the middle are one unknown.
-        bands[2, -2] *= 2.0
-        return Banded(bands, 1, 1), F_lam[: self.n]
 
 
 @with_parameters
@@ -62,7 +37,7 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, intege
     ----------
     Bratu, Bull. Soc. Math. France 42 (1914).
     """
-    layer, weight = HalfLayer(n), np.append(np.ones(n - 1), 0.5)
+    layer, weight = BratuForce(Bratu1D(2 * n - 1), even=True), np.append(np.ones(n - 1), 0.5)
 
     def problem() -> NormalMap:
         return NormalMap(layer, layer.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=lid, target=max(load, 3.6))

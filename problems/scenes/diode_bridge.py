@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import expect
 from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
@@ -35,8 +36,7 @@ def DiodeBridge(
     ----------
     Acary and Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008, chapter 11.
     """
-    if abs(voltage) > amplitude:
-        raise ValueError(f"voltage: expected at most the amplitude, {amplitude}, found {voltage}")
+    expect(abs(voltage) <= amplitude, "voltage", f"at most the amplitude, {amplitude}", voltage)
     R, g = load, 1.0 / source_resistance
     A = np.array([[R, R, -1.0, 0.0], [R, R, 0.0, -1.0], [1.0, 0.0, g, -g], [0.0, 1.0, -g, g]])
     one = np.array([0.0, 0.0, -g, g])

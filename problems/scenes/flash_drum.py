@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
+from continuation.arguments.checks import expect
 from continuation.tracing import solve_at
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.pictures import Picture, mark, picture
@@ -53,13 +54,10 @@ def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature
     """
     cold, warm = 70.0, 120.0
     balance = RachfordRice((benzene, 1.0 - benzene), pressure)
-    if benzene >= 1.0:
-        raise ValueError(f"benzene: expected a number between 0 and 1, found {benzene}")
-    if not cold <= temperature <= warm:
-        raise ValueError(f"temperature: expected {cold:g} to {warm:g}, found {temperature}")
-    if not balance(0.0, cold) > 0.0 > balance(1.0, warm):
-        raise ValueError(f"pressure: expected one at which the mixture boils from {cold:g} to {warm:g} "
-                         f"degrees, found {pressure}")  # fmt: skip
+    expect(benzene < 1.0, "benzene", "a number between 0 and 1", benzene)
+    expect(cold <= temperature <= warm, "temperature", f"{cold:g} to {warm:g}", temperature)
+    boils = balance(0.0, cold) > 0.0 > balance(1.0, warm)
+    expect(boils, "pressure", f"one at which the mixture boils from {cold:g} to {warm:g} degrees", pressure)
 
     def problem() -> NormalMap:
         return NormalMap(balance, x0=np.zeros(1), lam0=cold, lower=0.0, upper=1.0, target=warm)

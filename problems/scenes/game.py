@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.solutions import solutions
@@ -19,8 +20,7 @@ from problems.scenes.scene import Quantities, Rival, Scene, Unknown, with_parame
 def payoffs(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     """Tuples can be compared."""
     matrix = real_array(name, value)
-    if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
-        raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
+    expect(matrix.ndim == 2 and matrix.size and np.isfinite(matrix).all(), name, "a matrix of finite numbers", value)
     return tuple(tuple(row) for row in matrix.tolist())
 
 
@@ -52,8 +52,7 @@ def Game(
     default.
     """
     mine, others = np.array(rows), np.array(columns)
-    if mine.shape != others.shape:
-        raise ValueError(f"columns: expected a matrix of the shape of rows, {mine.shape}, found {others.shape}")
+    expect(mine.shape == others.shape, "columns", f"the shape of rows, {mine.shape}", others.shape)
     m, n = mine.shape
 
     def answer(solution: Any) -> Quantities:

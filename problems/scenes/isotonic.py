@@ -6,9 +6,9 @@ from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.optimize import isotonic_regression
 
 from continuation.arguments.checks import integer
-from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import mark, picture
 from problems.scenes.rivals import QUADRATIC
@@ -42,7 +42,7 @@ def Isotonic(samples: Annotated[int, integer(2)] = 100, noise: NotNegative = 0.3
         return {"fit": data - np.diff(np.pad(z, 1)), "steps": 1.0 + float((z == 0.0).sum())}
 
     def exact() -> Quantities:
-        fit = _pooled(data)
+        fit = isotonic_regression(data).x
         return {"fit": fit, "steps": 1.0 + float((np.diff(fit) > 0.0).sum())}
 
     return Scene(
@@ -54,17 +54,5 @@ def Isotonic(samples: Annotated[int, integer(2)] = 100, noise: NotNegative = 0.3
             mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
             xlabel="sample", ylabel="response",
         ),
-        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), *QUADRATIC),
+        rivals=(Rival("pool adjacent violators", "", lambda scene: {"fit": isotonic_regression(data).x}), *QUADRATIC),
     )  # fmt: skip
-
-
-def _pooled(data: Array) -> Array:
-    """Pool adjacent violators."""
-    blocks: list[tuple[float, int]] = []
-    for value in data.tolist():
-        total, size = value, 1
-        while blocks and blocks[-1][0] * size >= total * blocks[-1][1]:
-            before, many = blocks.pop()
-            total, size = total + before, size + many
-        blocks.append((total, size))
-    return np.repeat([total / size for total, size in blocks], [size for _, size in blocks])

@@ -90,8 +90,7 @@ def Pile(
         return LCP(A, free_motion(u)), J, inverse, free
 
     def fall() -> Fall:
-        (places, velocities), gaps, well = start, [], True
-        history = [start]
+        (places, velocities), history, well = start, [start], True
         for _ in range(steps):
             problem, J, inverse, free = stepped(places, velocities)
             found: Any = solve(problem, tolerance=TIGHT)
@@ -101,12 +100,11 @@ def Pile(
             velocities = (free + inverse * (J.T @ impulses(found.x))).reshape(-1, 3)
             places = places + step * velocities
             history.append((places, velocities))
-            gaps.append(touching(places)[1].min())
         where, fast = (np.array(part) for part in zip(*history))
         moving = 0.5 * mass * (fast[..., :2] ** 2).sum(axis=(1, 2))
-        turning = 0.5 * mass * side**2 / 6.0 * (fast[..., 2] ** 2).sum(axis=1)
+        turning = 0.5 * inertia * (fast[..., 2] ** 2).sum(axis=1)
         energies = moving + turning + mass * gravity * where[..., 1].sum(axis=1)
-        return Fall(where, fast, energies, np.array(gaps), well)
+        return Fall(where, fast, energies, np.array([touching(one)[1].min() for one in where[1:]]), well)
 
     def drawn(solution: Any) -> Picture:
         places, wide = solution.places, 0.5 * boxes * side

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from continuation.arguments.checks import number
+from continuation.arguments.checks import expect, number
 from continuation.arrays import Array
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
@@ -62,8 +62,7 @@ def Portfolio(
     Markowitz, J. Finance 7 (1952).
     """
     n, m, s = len(means), np.array(means), np.array(variances)
-    if s.size != n:
-        raise ValueError(f"variances: expected {n} numbers, one a mean, found {s.size}")
+    expect(s.size == n, "variances", f"{n} numbers, one a mean", s.size)
     deviation = np.sqrt(s)
     covariance = np.outer(deviation, deviation) * (correlation + (1.0 - correlation) * np.eye(n))
 

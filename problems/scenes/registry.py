@@ -10,12 +10,7 @@ from continuation.arguments.plugins import SCENES, Factory, Plugin
 
 
 def available() -> dict[str, Plugin]:
-    """All registered names, without importing scenes.
-
-    Returns
-    -------
-    dict of str to Plugin
-    """
+    """All registered names, without importing scenes."""
     return plugins.available(SCENES)
 
 
@@ -26,10 +21,6 @@ def find(name: str) -> Factory:
     ----------
     name : str
         A registered name, or ``module:Class``.
-
-    Returns
-    -------
-    type
 
     Raises
     ------
@@ -48,10 +39,6 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
         As for `find`.
     values : mapping, optional
         Parameters by name.
-
-    Returns
-    -------
-    Scene
 
     Raises
     ------

@@ -175,10 +175,6 @@ def order(problem: Any) -> int:
     Parameters
     ----------
     problem : LCP, MixedLCP, Program or homotopy
-
-    Returns
-    -------
-    int
     """
     found = conditions(problem)
     return int(found.n) if isinstance(found, MixedLCP) else len(found.start()[0])

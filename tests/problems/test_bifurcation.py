@@ -34,9 +34,3 @@ def test_wild_iterates_make_no_noise(problem, size):
     for lam in (0.0, 1.0, size):
         assert problem.residual(y, lam).shape == y.shape
         problem.jacobian(y, lam)
-
-
-def test_aircraft_without_an_equilibrium_near_level_flight_says_so(monkeypatch):
-    monkeypatch.setattr("problems.bifurcation.aircraft._NEWTON_STEPS", 1)
-    with pytest.raises(ArithmeticError, match=r"elevator = 0\.1: no equilibrium at aileron 0"):
-        Aircraft(elevator=0.1).start()

@@ -58,11 +58,6 @@ def classify(A: Any) -> Classification:
     dict of str to Membership
         Beyond the limits of exponential tests (order 12 for minors and index sets, 8 for sign vectors and E0^s, 5 for
         cones) the answer is None.
-
-    Raises
-    ------
-    ValueError
-        If A is not a square matrix of finite real numbers.
     """
     matrix = ExactMatrix.of(A)
     return {membership.name: membership for membership in (test(matrix) for test in _TESTS)}

@@ -25,50 +25,50 @@ PERTURBATIONS = 400
 """Perturbations tried before the answer `not decided`."""
 
 
-@matrix_class
+@matrix_class("N-bar", N_BAR)
 def is_n_bar(matrix: ExactMatrix) -> Membership:
     """N-bar: the limit of N-matrices."""
-    return _limit(matrix, "N-bar", matrix.n, N_BAR)
+    return _limit(matrix, matrix.n)
 
 
-@matrix_class
+@matrix_class("almost N-bar", ALMOST_N_BAR)
 def is_almost_n_bar(matrix: ExactMatrix) -> Membership:
     """Almost N-bar: the limit of almost N-matrices."""
-    return _limit(matrix, "almost N-bar", matrix.n - 1, ALMOST_N_BAR)
+    return _limit(matrix, matrix.n - 1)
 
 
-@matrix_class
+@matrix_class("N-bar of exact order k", N_BAR_EXACT)
 def is_n_bar_of_exact_order(matrix: ExactMatrix) -> Membership:
     """N-bar of exact order k: the limit of N-matrices of exact order k."""
-    return of_exact_order(matrix, "N-bar", lambda name, last: _limit(matrix, name, last, N_BAR_EXACT))
+    return of_exact_order(matrix, lambda last: _limit(matrix, last))
 
 
-def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:
-    weak = judge(matrix, name, two_signs("nonpositive", last, "nonnegative"), cited)
+def _limit(matrix: ExactMatrix, last: int) -> Membership:
+    weak = judge(matrix, two_signs("nonpositive", last, "nonnegative"))
     if not weak.holds:
         return weak
-    if judge(matrix, name, two_signs("negative", last, "positive"), cited).holds:
-        return Membership(name, True, Evidence("its minors have the strict signs: a constant sequence"), cited)
+    if judge(matrix, two_signs("negative", last, "positive")).holds:
+        return Membership(True, Evidence("its minors have the strict signs: a constant sequence"))
     signature = _signature(matrix)
     if signature is None and (last >= 3 or last == matrix.n):
         sentence = (
             "no diagonal S of signs makes S A S nonpositive, as one does for every N-matrix (the cycle products of its "
             "submatrices of order 3 are negative), hence for every limit"
         )
-        return Membership(name, False, Evidence(sentence), cited)
+        return Membership(False, Evidence(sentence))
     found = _perturbation(matrix, last, signature)
     if found is None:
         sentence = (
             "the minors have the weak signs that a limit needs, "
             f"but none of {PERTURBATIONS} perturbations shows a sequence"
         )
-        return Membership(name, None, Evidence(sentence), cited)
+        return Membership(None, Evidence(sentence))
     first, second = found
     sentence = (
         f"A + t B + t^2 C has the strict signs for every small t > 0, "
         f"B = {[list(row) for row in first]}, C = {[list(row) for row in second]}"
     )
-    return Membership(name, True, Evidence(sentence), cited)
+    return Membership(True, Evidence(sentence))
 
 
 def _signature(matrix: ExactMatrix) -> Signature | None:
@@ -111,4 +111,4 @@ def _strict_nearby(matrix: ExactMatrix, first: Rows, second: Rows, last: int) ->
     ]
     minors = principal_minors(rows)
     rule = two_signs("negative", last, "positive")
-    return all(SIGNS[rule(mask.bit_count())](minors[mask]) for mask in index_sets(matrix.n))
+    return all(SIGNS[rule(mask.bit_count())](minors[mask], 0) for mask in index_sets(matrix.n))

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any
 
 import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.classes.exact import Indices, IntRow, over_common_denominator, solve
+from problems.lcp.classes.exact import Indices, IntRow, dot, over_common_denominator, solve
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, exactly, feasible_point
 from problems.lcp.data.problem import MixedLCP
 
@@ -54,7 +53,7 @@ def piece_point(
             return None
     signs = [(at_least if s < 0 else at_most)(rows[i], sides[i])
              for i, s in enumerate(state) if s and bounds[i][0] != bounds[i][1]]  # fmt: skip
-    if solved is not None and any(_times(row, numerators) < side * d for row, side in signs):
+    if solved is not None and any(dot(row, numerators) < side * d for row, side in signs):
         return None
     found: list[Fraction] = [Fraction(value, d) for value in numerators]
     only = True
@@ -67,17 +66,13 @@ def piece_point(
         if not found:
             return None
         cone = [*exactly([(row, 0) for row, _ in equations]),
-                *((row, 0) for row, side in signs if _times(row, found) == side)]  # fmt: skip
+                *((row, 0) for row, side in signs if dot(row, found) == side)]  # fmt: skip
         moves = [side(one, right) for one in units for side, right in ((at_least, 1), (at_most, -1))]
         only = not any(_free([*cone, move], len(inside)) for move in moves)
     x = [Fraction(value, unit) for value in ends]
     for i, part in zip(inside, found):
         x[i] = part / unit
-    return FacePoint(tuple(x), tuple(Fraction(_times(row, x) + c) for row, c in zip(entries, q)), only)
-
-
-def _times(row: IntRow, x: Sequence[Any]) -> Any:
-    return sum(a * v for a, v in zip(row, x))
+    return FacePoint(tuple(x), tuple(Fraction(dot(row, x) + c) for row, c in zip(entries, q)), only)
 
 
 def _free(constraints: Sequence[Constraint], m: int) -> list[Fraction] | None:

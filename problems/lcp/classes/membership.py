@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import wraps
 from inspect import Parameter, Signature, cleandoc
+from textwrap import shorten
 from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from problems.lcp.classes.exact import ExactMatrix
 
@@ -45,19 +46,19 @@ class Membership:
 
     Parameters
     ----------
-    name : str
-        The class.
     holds : bool or None
         None if not decided.
     certificate : Evidence
         The reason.
+    name : str
+        The class.
     cited : str
         Source of the criterion.
     """
 
-    name: str
     holds: bool | None
     certificate: Evidence
+    name: str = ""
     cited: str = CPS
 
     def __bool__(self) -> bool:
@@ -90,47 +91,46 @@ ValueError
 """
 
 
-def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:
-    """Extend a test of exact matrices, and its docstring, to any matrix.
+def matrix_class(name: str, cited: str) -> Callable[[Callable[[ExactMatrix], Membership]], Callable[[Any], Membership]]:
+    """Decorate a test of exact matrices: it takes any matrix, and its answers have the class's name and source.
 
     Parameters
     ----------
-    test : callable
-        `ExactMatrix` to `Membership`.
-
-    Returns
-    -------
-    callable
-        Any matrix to `Membership`.
+    name, cited : str
+        As in `Membership`.
     """
 
-    @wraps(test)
-    def of(A: Any) -> Membership:
-        return test(ExactMatrix.of(A))
+    def decorated(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:
+        @wraps(test)
+        def of(A: Any) -> Membership:
+            return evolve(test(ExactMatrix.of(A)), name=name, cited=cited)
 
-    of.__doc__ = cleandoc(f"{test.__doc__}") + _SECTIONS
-    of.__signature__ = Signature([Parameter("A", Parameter.POSITIONAL_OR_KEYWORD)])  # type: ignore[attr-defined]
-    return of
+        of.__doc__ = cleandoc(f"{test.__doc__}") + _SECTIONS
+        of.__signature__ = Signature([Parameter("A", Parameter.POSITIONAL_OR_KEYWORD)])  # type: ignore[attr-defined]
+        return of
+
+    return decorated
 
 
 MOST_CASES = 4096
 """Most minors or linear programs of a test: some 0.1 s, order 12 where there is one for each index set."""
 
 
-def undecided(name: str, cases: int, cited: str) -> Membership:
+def undecided(cases: int) -> Membership:
     """The answer of a test that has too many cases."""
-    sentence = f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}"
-    return Membership(name, None, Evidence(sentence), cited)
+    return Membership(
+        None, Evidence(f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}")
+    )
 
 
-def show_set(indices: Sequence[int]) -> str:
-    """An index set as text."""
-    return "{" + ", ".join(map(str, indices)) + "}"
-
-
-def show_vector(vector: Sequence[Fraction]) -> str:
+def shown(values: Sequence[int] | Sequence[Fraction]) -> str:
     """A vector as text."""
-    return "(" + ", ".join(map(str, vector)) + ")"
+    return f"({', '.join(map(str, values))})"
+
+
+def shown_set(indices: Sequence[int]) -> str:
+    """An index set as text."""
+    return f"{{{shown(indices)[1:-1]}}}"
 
 
 def table(classification: Classification, width: int = 110) -> str:
@@ -143,11 +143,10 @@ def table(classification: Classification, width: int = 110) -> str:
     width : int
         Longest evidence in characters.
     """
-    first = max(len(name) for name in classification)
-    second = max(len(text) for text in ANSWERS.values())
-    lines = []
-    for name, membership in classification.items():
-        evidence = str(membership.certificate)
-        short = evidence if len(evidence) <= width else evidence[: width - 3] + "..."
-        lines.append(f"{name:<{first}}  {ANSWERS[membership.holds]:<{second}}  {short}")
-    return "\n".join(lines)
+    from continuation.chart.table import Table
+
+    rows = [
+        (name, ANSWERS[one.holds], shorten(str(one.certificate), max(width, 3), placeholder="..."))
+        for name, one in classification.items()
+    ]
+    return Table(("class", "answer", "evidence"), rows).text()

@@ -43,14 +43,14 @@ def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
         return (Fraction(0),) * n
     table = [[*row, 1, -right] for row, right in constraints]
     free, basic = [*range(1, n + 1), 0], list(range(n + 1, n + 1 + len(table)))
-    denominator = _exchange(table, basic, free, worst, n, 1)
+    denominator = exchange(table, basic, free, worst, n, 1)
     while 0 in basic and table[basic.index(0)][-1] > 0:
         falling = [j for j, v in enumerate(table[basic.index(0)][:-1]) if v < 0]
         if not falling:
             return None
         entering = min(falling, key=free.__getitem__)
         leaving = _leaving(table, basic, entering)
-        denominator = _exchange(table, basic, free, leaving, entering, denominator)
+        denominator = exchange(table, basic, free, leaving, entering, denominator)
     found = dict(zip(basic, table))
     return tuple(Fraction(found[i][-1], denominator) if i in found else Fraction(0) for i in range(1, n + 1))
 
@@ -71,9 +71,10 @@ def _leaving(table: list[list[int]], basic: list[int], entering: int) -> int:
     return best
 
 
-def _exchange(
+def exchange(
     table: list[list[int]], basic: list[int], free: list[int], leaving: int, entering: int, denominator: int
 ) -> int:
+    """Exchange a basic and a free variable: pivot in integers over the new denominator, which is returned."""
     top = table[leaving]
     pivot, sign = abs(top[entering]), 1 if top[entering] > 0 else -1
     for i, row in enumerate(table):

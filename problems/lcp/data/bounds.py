@@ -33,6 +33,13 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     return bounds
 
 
+def without_equal_bounds(low: Array, high: Array) -> None:
+    """Raise ValueError, naming the first index, where low = high."""
+    if (low == high).any():
+        i = int(np.argmax(low == high))
+        raise ValueError(f"lower: expected less than upper, found both {low[i]} at index {i}; leave x[{i}] out")
+
+
 def ordered_bounds(low: Array, high: Array, name: str = "lower", other: str = "upper") -> None:
     """Raise ValueError, naming the first index, where low > high."""
     if (low > high).any():

@@ -41,6 +41,17 @@ def semidefinite(symmetric: Array) -> bool:
     return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
 
+def scaled(A: Matrix, columns: Array, diagonal: Array) -> Matrix:
+    """``A diag(columns) + diag(diagonal)``, stored as A: dense, sparse or `Banded`."""
+    if isinstance(A, Banded):
+        return scaled_band(A, 1.0, columns, diagonal)
+    if sp.issparse(A):
+        return (A @ sp.diags_array(columns) + sp.diags_array(diagonal)).asformat(A.format)
+    dense = A * columns
+    dense[np.diag_indices(len(A))] += diagonal
+    return dense
+
+
 def scaled_band(band: Banded, rows: float | Array, columns: Array, diagonal: Array) -> Banded:
     """``diag(rows) A diag(columns) + diag(diagonal)`` of a banded A."""
     ab = band.ab * columns * _by_rows(band, rows)
@@ -178,18 +189,9 @@ class Structure:
         ----------
         factor : float
         columns, diagonal : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, sparse array or Banded
         """
-        if self.band is not None:
-            return scaled_band(self.band, factor, columns, diagonal)
-        if self.problem.sparse:
-            return sp.csc_array(self.problem.A @ sp.diags_array(factor * columns) + sp.diags_array(diagonal))
-        dense = self.problem.A * (factor * columns)
-        dense[np.diag_indices(self.n)] += diagonal
-        return dense
+        found = scaled(self.problem.A if self.band is None else self.band, factor * columns, diagonal)
+        return found.tocsc() if sp.issparse(found) else found
 
     def normal(self, factor: float, weights: Array, diagonal: Array) -> Matrix:
         """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, shape (n, n), stored as A.
@@ -198,10 +200,6 @@ class Structure:
         ----------
         factor : float
         weights, diagonal : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, sparse array or Banded
         """
         if self.band is not None:
             return normal_band(self.band, factor, weights, diagonal)

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
-from continuation.arguments.checks import integer
+from continuation.arguments.checks import expect, integer
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import check_finite, finite_vector, real_array, sound_sparse
@@ -57,11 +57,6 @@ class MixedLCP:
         Default -inf and inf.
     primal : int, optional
         Number of variables of a quadratic program among the unknowns, which come first; default 0: unknown.
-
-    Raises
-    ------
-    ValueError
-        For arguments that are not numeric, finite, or of the right shape, or lower > upper.
 
     References
     ----------
@@ -135,10 +130,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         product: Array = self.A @ x + self.q
         return product
@@ -149,10 +140,6 @@ class MixedLCP:
         Parameters
         ----------
         x, w : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         return np.maximum(np.minimum(x - self.lower, w), x - self.upper)
 
@@ -199,10 +186,6 @@ class MixedLCP:
         Parameters
         ----------
         x, w : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
         """
         state = self.states(x, w)
         return np.where(state == BETWEEN, x, self.at(state))
@@ -213,10 +196,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return float(np.abs(self.natural_map(x, self.w(x))).max(initial=0.0))
 
@@ -226,10 +205,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return 1.0 + self.size_of_terms(x)
 
@@ -252,10 +227,6 @@ class MixedLCP:
         Parameters
         ----------
         x : ndarray, shape (n,)
-
-        Returns
-        -------
-        float
         """
         return self.natural_residual(x) / self.scale(x)
 
@@ -284,11 +255,6 @@ class LCP(MixedLCP):
         Sparse input stays sparse (CSR).
     q : array_like, shape (n,)
         n may be 0.
-
-    Raises
-    ------
-    ValueError
-        For arguments that are not numeric, finite, or of the right shape.
 
     References
     ----------
@@ -320,11 +286,9 @@ class LCP(MixedLCP):
 
 def require_lcp(problem: Any) -> None:
     """Raise TypeError unless `problem` is an LCP."""
-    if not isinstance(problem, LCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    expect(isinstance(problem, LCP), "problem", "an LCP", problem, TypeError)
 
 
 def require_problem(problem: Any) -> None:
     """Raise TypeError unless `problem` is a MixedLCP."""
-    if not isinstance(problem, MixedLCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    expect(isinstance(problem, MixedLCP), "problem", "an LCP", problem, TypeError)

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.lcp.data.matrix_structure import semidefinite
@@ -127,15 +128,6 @@ def from_qp(
     rows_lower : array_like, shape (m,), or one number, optional
         Lower sides of rows.
 
-    Returns
-    -------
-    Program
-
-    Raises
-    ------
-    ValueError
-        For inconsistent arguments.
-
     References
     ----------
     Cottle, Pang and Stone, section 1.2.
@@ -143,10 +135,8 @@ def from_qp(
     c = finite_vector("c", c)
     n = c.size
     P = _matrix("P", P, n)
-    if P.shape[0] != n:
-        raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
-    if abs(P - P.T).sum() != 0.0:
-        raise ValueError("P: expected a symmetric matrix, found another; give (P + P') / 2")
+    expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
+    expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
     if not sp.issparse(P):
         P.flags.writeable = False
     if (G is None) != (h is None and rows_lower is None):
@@ -194,15 +184,6 @@ def from_lp(
     ----------
     c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
         As for `from_qp`.
-
-    Returns
-    -------
-    Program
-
-    Raises
-    ------
-    ValueError
-        For inconsistent arguments.
     """
     c = finite_vector("c", c)
     P = sp.csr_array((c.size, c.size))
@@ -213,8 +194,8 @@ def from_lp(
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
-    if matrix.ndim != 2 or matrix.shape[1] != columns:
-        raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
+    fine = matrix.ndim == 2 and matrix.shape[1] == columns
+    expect(fine, name, f"{columns} columns, one a number of c", matrix.shape)
     check_finite(name, matrix)
     return matrix
 

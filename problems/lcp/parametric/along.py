@@ -12,6 +12,7 @@ from attrs import evolve
 
 from continuation.archive.atomic import new_file
 from continuation.archive.growing import save_all
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.counts import Counts
@@ -171,8 +172,7 @@ def _interval(t: Any) -> tuple[float, float]:
         first, last = (float(value) for value in t)
     except (TypeError, ValueError):
         raise ValueError(f"t: expected two numbers, where the path begins and where it ends, found {t!r}") from None
-    if math.isnan(first) or math.isnan(last) or first == last:
-        raise ValueError(f"t: expected two different numbers, found {t!r}")
+    expect(first < last or last < first, "t", "two different numbers", t)
     return first, last
 
 

@@ -14,7 +14,8 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arguments.checks import expect
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.path import Path
 from continuation.path.path import require_path
 from problems.lcp.data.problem import MixedLCP, State, require_problem
@@ -22,9 +23,6 @@ from problems.lcp.parametric.along import levels_of
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.rational import Integers, fractions, full_row_rank, integers, solve_exactly
 from problems.options import finite_vector
-
-SAME_CORNER = 1e-6
-"""Largest relative distance of an exact corner from the path's; beyond, another path is proved."""
 
 Exactly = tuple[Fraction, ...]
 
@@ -69,16 +67,10 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     level : array_like, shape (n,), or one number
         As for `along`.
 
-    Returns
-    -------
-    ExactPath
-
     Raises
     ------
     UnprovenError
         If the path is not as claimed.
-    TypeError, ValueError
-        For bad input.
     """
     require_problem(problem)
     require_path(path)
@@ -86,8 +78,8 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     levels = levels_of(level, problem)
     if problem.sparse:
         problem = evolve(problem, A=problem.A.toarray())
-    if len(path) < 2 or path.endpoint.u.size != problem.n + 1:
-        raise ValueError(f"path: expected two points of {problem.n} unknowns at least, found {path!r}")
+    fine = len(path) > 1 and path.endpoint.u.size == problem.n + 1
+    expect(fine, "path", f"two points of {problem.n} unknowns at least", path)
     exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
     u = path.u
     # Both ends hold a bound exactly.
@@ -175,7 +167,8 @@ class _Exactly:
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, where its pieces do not meet")
         whole = fractions(*solved)
         off = max(abs(float(a) - b) for a, b in zip(whole, near.tolist()))
-        if off > SAME_CORNER * (1.0 + float(np.abs(near).max())):
+        # Farther away another path would be proved.
+        if off > SIX_DIGITS * (1.0 + float(np.abs(near).max())):
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, found the nearest one {off:.1e} away")
         return whole
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lu_solve
 from scipy.linalg.lapack import dgetrf
 
+from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.corner import rays
@@ -78,10 +79,6 @@ class Sensitivity:
         dq : array_like, shape (n,), optional
         dA : array_like, shape (n, n), optional
 
-        Returns
-        -------
-        ndarray, shape (n,)
-
         Raises
         ------
         NotDifferentiableError
@@ -113,10 +110,6 @@ class Sensitivity:
         Parameters
         ----------
         g : array_like, shape (n,)
-
-        Returns
-        -------
-        Gradient
         """
         n, inside = self.x.size, self.moving
         q = np.zeros(n)
@@ -166,6 +159,5 @@ def _only(S: Array, r: Array) -> Array:
 
 def _square(name: str, value: Any, n: int) -> Array:
     matrix = real_array(name, value)
-    if matrix.shape != (n, n) or not np.isfinite(matrix).all():
-        raise ValueError(f"{name}: expected finite numbers of shape {(n, n)}, found shape {matrix.shape}")
+    expect(matrix.shape == (n, n) and np.isfinite(matrix).all(), name, f"finite numbers of shape {(n, n)}", matrix)
     return matrix

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 
 from continuation.arguments.checks import check_flag
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.budget import Budget
 from continuation.counts import Counts
 from problems.lcp.active_set.face import Faces
@@ -25,9 +25,6 @@ from problems.lcp.proof.verdict import confirmed
 from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
 from problems.lcp.search.solver import solve
 from problems.options import check_budget, check_seed, check_tolerance
-
-SAME_SOLUTION = 1e-7
-"""Relative difference up to which solutions are equal."""
 
 IN_VAIN = 30
 """Directions in a row without a new solution, at least twice the number found, that end the search."""
@@ -97,15 +94,6 @@ def solutions(
     tolerance : float
         As for `solve`.
 
-    Returns
-    -------
-    Solutions
-
-    Raises
-    ------
-    TypeError, ValueError
-        For bad input.
-
     References
     ----------
     Cottle, Pang and Stone, section 4.5; for games, Shapley, Math. Programming Study 1, 1974.
@@ -170,7 +158,7 @@ class _Search:
         return True
 
     def _known(self, x: Array) -> bool:
-        size = SAME_SOLUTION * float(np.abs(x).max(initial=0.0))
+        size = SIX_DIGITS * float(np.abs(x).max(initial=0.0))
         return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in self.found)
 
     def run(self) -> str:

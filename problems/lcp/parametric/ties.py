@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.kinks.pivots import way
 from problems.lcp.parametric.corner import LARGEST_LISTED, rays
-from problems.lcp.parametric.walk import FLAT, SLOW_RATE, Walk
+from problems.lcp.parametric.walk import FLAT, Walk
 
 
 @frozen(eq=False)
@@ -57,7 +57,7 @@ def aim(walk: Walk, direction: Array, step: float = 0.0) -> None:
     n = walk.problem.n
     moves_x = walk.stairs.moves_x[walk.state.astype(np.intp) + 1, np.arange(n)]
     moving = np.abs(np.where(np.append(moves_x, True), direction, 0.0))
-    driver = n if moving[n] > SLOW_RATE * moving.max() else int(np.argmax(moving))
+    driver = n if moving[n] > SIX_DIGITS * moving.max() else int(np.argmax(moving))
     walk.driver, walk.sign = driver, float(np.sign(direction[driver]))
     walk.value = float(walk.u[0, driver] + step * walk.u[1, driver])
 

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, largest
+from continuation.arrays import SIX_DIGITS, Array, largest
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis
 from problems.lcp.parametric.stairs import Stairs
@@ -18,9 +18,6 @@ integer problems 1e-13 to 1e-7 give the same; 1e-6 is too loose for cond X = 1e6
 
 ZERO_SWITCH = 1e-14
 """Smaller switches, relative to their row's terms, and rates of t are zero."""
-
-SLOW_RATE = 1e-6
-"""Relative rate of t below which its rounding is estimated."""
 
 OUTSIDE_LIMITS = 1e-9
 """Largest violation of limits by rounding, relative to the row."""
@@ -105,7 +102,8 @@ class Walk:
         self.noise = np.array([[place], [motion]]) * self.terms
         self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
         self.still = False
-        if j != n and abs(self.dt) <= SLOW_RATE * motion:
+        # The rounding of a slow t is estimated.
+        if j != n and abs(self.dt) <= SIX_DIGITS * motion:
             of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
             self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
         whole[0, :n] += fixed
