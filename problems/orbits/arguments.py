@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
-<<<<<<< HEAD
-from continuation.arguments.checks import POSITIVE_FINITE, complain, expect, integer, real_vector
-=======
 from continuation.arguments.checks import POSITIVE_FINITE, expect, integer, real_vector
->>>>>>> s9f
 from continuation.arrays import EPS, Array
 from continuation.evaluation.products import sizes
 from problems.orbits.grid import Grid
@@ -51,15 +47,9 @@ def as_mesh(value: Any) -> Array:
 
 
 def check_times(times: Array, states: Array) -> None:
-<<<<<<< HEAD
     """Raise ValueError unless times, four or more, rise."""
     expect(times.shape == states.shape[:1], "x", f"a row for each of the times, {times.shape}", states.shape)
     expect(len(times) > 3 and (np.diff(times) > 0.0).all(), "t", "four times or more that rise", times)
-=======
-    """Raise ValueError unless times rise."""
-    rise = times.shape == (len(states),) and len(times) > 3 and (np.diff(times) > 0.0).all()
-    expect(rise, "t", f"{len(states)} times that rise, one a state", times)
->>>>>>> s9f
 
 
 def spread(states: Array) -> Array:
