@@ -22,7 +22,6 @@ from continuation.archive.hdf5 import StructureError, member, read_arrays, write
 from continuation.archive.provenance import OPTIONS, Checkpoint, pack, process, whole
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import kept_whole
-from continuation.archive.store import Store
 from continuation.archive.writer import PathLog
 from continuation.certificate.cells import COLUMNS, Cells
 from continuation.certificate.certifying import recheck as checked_again
@@ -105,7 +104,16 @@ def resume(
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         stored = float(source.points.some("residual_norm", slice(rows - 1, rows))[0])
         check_homotopy(tracer.homotopy, checkpoint.state.here.u, stored)
-        store = _beginning(source, checkpoint, rows, target, archive is None)
+        parent = f"{source.file.name} ({source.attributes.get('created', '')})"
+        store = copy(
+            [share_of(source, last=checkpoint.path, points=rows)],
+            target,
+            what=f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}",
+            more={**process(), "parent": parent},
+            checkpoint=pack(checkpoint),
+            replace=archive is None,
+            grows=True,
+        )
     log = PathLog.continued(store, checkpoint, tracer, whole_path)
     try:
         with open_archive(store.file) as held:
@@ -197,13 +205,6 @@ def _options(
     names = [name for name in OPTIONS if isinstance(trees, dict) and name in trees and name not in given]
     stored = {name: _made(source, name, trees[name], whole, known, f"{name}=") for name in names}
     return {"box": None, **stored, **given}
-
-
-def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
-    parent = f"{source.file.name} ({source.attributes.get('created', '')})"
-    what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
-    share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
-    return copy([share], target, what=what, more=more, checkpoint=pack(checkpoint), replace=replace, grows=True)
 
 
 GROUP = "certificate"

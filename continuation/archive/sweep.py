@@ -28,7 +28,7 @@ from attrs import define, field, frozen
 
 from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
-from continuation.archive.growing import Share, append, share_of_path
+from continuation.archive.growing import Share, grow, share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
@@ -180,7 +180,7 @@ class _Kept:
             self.paths[number] = found
         else:
             assert self.target is not None
-            append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
+            grow(self.parts.get(found.layout) or self._part(found, task), [found], file=self.target.name)
         if _status(found) is Status.INTERRUPTED:
             raise KeyboardInterrupt
 
@@ -199,8 +199,7 @@ class _Kept:
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
-        make = partial(Store, layout=share.layout, attributes=root_attributes(tracer, "", {}), problem=problem)
-        store = put(self.target.with_name(name), make, grows=True)
+        store = put(self.target.with_name(name), share.layout, root_attributes(tracer, "", {}), problem, grows=True)
         self.stack.callback(store.close)
         self.parts[share.layout] = store
         return store
