@@ -24,8 +24,8 @@ from continuation.archive.reader import Archive, StoredSteps, open_archive
 from continuation.archive.rows import (
     Block,
     Table,
-    dataframe,
     dataset,
+    flat,
     joined,
     layout_of,
     record_of,
@@ -39,6 +39,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
+from continuation.status import Status
 
 
 @frozen(eq=False)
@@ -61,6 +62,11 @@ class Share:
     def size(self) -> int:
         """The number of points."""
         return int(self.rows.stop - self.rows.start)
+
+    @property
+    def status(self) -> Status:
+        """The first path's status."""
+        return Status(int(self.paths["status"][0]))
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
@@ -95,17 +101,20 @@ def leading(shares: Sequence[Share]) -> Contents:
 def grow(store: Store, shares: Sequence[Share], *, file: str = "", checkpoint: bytes | None = None) -> int:
     """Append shares; returns the number of the first path.
 
-    The last commit adds the paths and the checkpoint. New paths are of `file`, copied ones keep their source.
+    The last commit adds the paths and the checkpoint. New paths are of `file`, and one commit, so that a kill leaves
+    none in part; copied ones keep their source.
     """
     first = path = store.committed.paths
-    points, rows = list[Block](), list[Block]()
+    points, rows, held = list[Block](), list[Block](), 0
     for share in shares:
         size = share.points.at_once
         for start in range(share.rows.start, share.rows.stop, size):
-            if sum(len(block["kind"]) for block in points) >= size:
+            if not file and held >= size:
                 store.commit(joined(points))
-                points = []
-            points.append(_numbered(share, store, slice(start, min(start + size, share.rows.stop)), path))
+                points, held = [], 0
+            stop = min(start + size, share.rows.stop)
+            points.append(_numbered(share, store, slice(start, stop), path))
+            held += stop - start
         count = len(share.paths["path"])
         numbers = np.arange(path, path + count)
         found = {**share.paths, "path": numbers}
@@ -175,8 +184,10 @@ def dataset_of(path: Path) -> Any:
 
 def dataframe_of(path: Path) -> Any:
     """The path as a `pandas.DataFrame` with names."""
+    import pandas
+
     share = share_of_path(path)
-    frame = dataframe(share.points)
+    frame = pandas.DataFrame(flat(share.points))
     frame["event"] = [share.names[k] if k >= 0 else "" for k in share.points["event_index"]]
     called = {f"y_{i}": name for i, name in enumerate(path.labels.names)}
     if path.labels.parameter_name:
@@ -187,7 +198,11 @@ def dataframe_of(path: Path) -> Any:
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
     """Write paths of one homotopy to a new archive."""
     target, shares = new_file("file", file), [share_of_path(path, member=k) for k, path in enumerate(many)]
-    fill = partial(grow, shares=shares, file=target.name)
+
+    def fill(store: Store) -> None:
+        for share in shares:
+            grow(store, [share], file=target.name)
+
     put(target, shares[0].layout, _attributes(many[0], title or "A path"), fill=fill)
 
 

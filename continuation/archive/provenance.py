@@ -182,8 +182,8 @@ def _fetched(raw: bytes) -> Callable[[Any], Any]:
     def fetch(place: Any) -> Any:
         # Numbers follow the description's order.
         if place["number"] == len(made):
-            offset = sum(array.nbytes for array in made)
-            made.append(numbers(raw[offset:], place["dtype"], place["shape"]).copy())
+            begin = sum(array.nbytes for array in made)
+            made.append(numbers(raw[begin:], place["dtype"], place["shape"]).copy())
         return made[place["number"]]
 
     return fetch

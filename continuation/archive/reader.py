@@ -18,8 +18,8 @@ from continuation.archive.provenance import Checkpoint, unpack
 from continuation.archive.rows import (
     ROWS_AT_ONCE,
     Table,
-    dataframe,
     dataset,
+    flat,
     from_columns,
     kept_whole,
     record_of,
@@ -188,7 +188,9 @@ class Archive(Sequence[Path]):
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, with unknowns ``y_0``, ``y_1``, ..."""
-        return dataframe(self.points)
+        import pandas
+
+        return pandas.DataFrame(flat(self.points))
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point to resume the last path from, or None."""

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 from attrs import field, frozen
 
-from continuation.archive.checks import GROUP, PLACES, RECORDS, blank
+from continuation.archive.hdf5 import GROUP, PLACES, RECORDS, blank
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
@@ -153,9 +153,16 @@ class Layout:
     controller: int = 4
     more: frozenset[str] = LATER
 
+    @lru_cache(maxsize=64)  # noqa: B019
     def columns(self, table: str) -> tuple[Column, ...]:
         """The columns of a table."""
-        return _columns(self.more, table)
+        own = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in self.own(OBSERVED)]
+        own += [
+            Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",))
+            for name in self.own(PARAMETER)
+        ]
+        known = (*POINT_COLUMNS, *PATH_COLUMNS, *own)
+        return tuple(c for c in known if c.dimensions[0] == table and (c.name not in LATER or c.name in self.more))
 
     def own(self, prefix: str) -> tuple[str, ...]:
         """The homotopy's columns, without prefix."""
@@ -165,9 +172,10 @@ class Layout:
         """The column's dimensions beyond the first."""
         return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
+    @lru_cache(maxsize=64)  # noqa: B019
     def row_bytes(self, table: str) -> int:
         """Bytes of a row."""
-        return _row_bytes(self, table)
+        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
 
     def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
         """All columns of a table; missing ones and cells are filled."""
@@ -181,22 +189,6 @@ class Layout:
                 values = missing
             whole[column.name] = np.ascontiguousarray(values)
         return whole
-
-
-@lru_cache(maxsize=64)
-def _row_bytes(layout: Layout, table: str) -> int:
-    return sum(column.storage.itemsize * math.prod(layout.width(column)) for column in layout.columns(table))
-
-
-@lru_cache(maxsize=64)
-def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
-    own = Layout(1, more=more).own
-    seen = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in own(OBSERVED)]
-    said = [
-        Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",)) for name in own(PARAMETER)
-    ]
-    known = (*POINT_COLUMNS, *PATH_COLUMNS, *seen, *said)
-    return tuple(c for c in known if c.dimensions[0] == table and (c.name not in LATER or c.name in more))
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:

@@ -19,8 +19,17 @@ import numpy as np
 from h5py import h5d, h5s, h5t
 
 from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, publish, short
-from continuation.archive.checks import GROUP, PLACES, RECORD, RECORDS, Committed, digest, of_attributes, seal
-from continuation.archive.hdf5 import write_problem
+from continuation.archive.hdf5 import (
+    GROUP,
+    PLACES,
+    RECORD,
+    RECORDS,
+    Committed,
+    digest,
+    of_attributes,
+    seal,
+    write_problem,
+)
 from continuation.archive.provenance import HEAD
 from continuation.archive.schema import EVENT_NAME, LIBVER, RESUME, Layout, empty, text
 

@@ -156,8 +156,8 @@ class PathLog:
             held, found = store.layout.unknowns, step.u.size - 1
             raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {found}")
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
-            held = dict(enumerate(tracer.path.steps))
-            stored: Any = StoredSteps(self.file, path.number, held, len(held))
+            before = dict(enumerate(tracer.path.steps))
+            stored: Any = StoredSteps(self.file, path.number, before, len(before))
             tracer.path.steps = stored
         events = [*takewhile(lambda e: e.step == step.index, reversed(tracer.path.events))]
         found_rows = rows_at(step, events[::-1])
