@@ -153,16 +153,9 @@ class Layout:
     controller: int = 4
     more: frozenset[str] = LATER
 
-    @lru_cache(maxsize=64)  # noqa: B019
     def columns(self, table: str) -> tuple[Column, ...]:
         """The columns of a table."""
-        own = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in self.own(OBSERVED)]
-        own += [
-            Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",))
-            for name in self.own(PARAMETER)
-        ]
-        known = (*POINT_COLUMNS, *PATH_COLUMNS, *own)
-        return tuple(c for c in known if c.dimensions[0] == table and (c.name not in LATER or c.name in self.more))
+        return _columns(self.more, table)
 
     def own(self, prefix: str) -> tuple[str, ...]:
         """The homotopy's columns, without prefix."""
@@ -189,6 +182,17 @@ class Layout:
                 values = missing
             whole[column.name] = np.ascontiguousarray(values)
         return whole
+
+
+@lru_cache(maxsize=64)
+def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
+    own = Layout(1, more=more).own
+    seen = [Column(OBSERVED + name, "f8", "1", f"{name}, observed by the homotopy") for name in own(OBSERVED)]
+    said = [
+        Column(PARAMETER + name, "f8", "1", f"parameter {name} of the homotopy", ("path",)) for name in own(PARAMETER)
+    ]
+    known = (*POINT_COLUMNS, *PATH_COLUMNS, *seen, *said)
+    return tuple(c for c in known if c.dimensions[0] == table and (c.name not in LATER or c.name in more))
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
