@@ -6,13 +6,12 @@ netCDF-4 tool (h5py, xarray) reads these files.
 
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError
 from continuation.archive.codec import SupportsArchive
-from continuation.archive.page import describe
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.resume import add_proof, recheck, resume
 from continuation.archive.rows import Table
 from continuation.archive.schema import SCHEMA
 from continuation.archive.sweep import trace_many
-from continuation.archive.transfer import export, merge, recover
+from continuation.archive.transfer import describe, export, merge, recover
 from continuation.archive.writer import Limits, PathLog
 
 __all__ = [

@@ -76,13 +76,11 @@ def as_file(argument: str, value: Any) -> File:
 
 def new_file(argument: str, value: Any) -> File:
     """The path of a file that does not exist."""
-    file = as_file(argument, value)
-    check_new(file)
-    return file
+    return check_new(as_file(argument, value))
 
 
-def check_new(file: File) -> None:
-    """Raise `ArchiveError` unless the file can be made."""
+def check_new(file: File) -> File:
+    """The file; `ArchiveError` unless it can be made."""
     if os.path.lexists(file):
         raise exists(file)
     said = (
@@ -96,6 +94,7 @@ def check_new(file: File) -> None:
     )
     if said:
         raise ArchiveError(f"{file}: {said}")
+    return file
 
 
 def exists(file: File) -> ArchiveExistsError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
@@ -15,18 +16,24 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, is_held, short
-from continuation.archive.checks import (
+from continuation.archive.hdf5 import (
     GROUP,
     PLACES,
+    PROBLEM,
     RECORD,
     RECORDS,
+    Allowance,
     DamageError,
+    Image,
     Ledger,
+    LimitError,
+    dataset,
     digest,
     latest,
+    member,
     of_attributes,
+    read_problem,
 )
-from continuation.archive.hdf5 import PROBLEM, Allowance, Image, LimitError, dataset, member, read_problem
 from continuation.archive.rows import Table
 from continuation.archive.schema import (
     EVENT_NAME,
@@ -50,6 +57,9 @@ WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
 
 TABLES = ("point", "path")
+
+Problem = tuple[str, Mapping[str, Any]]
+"""JSON and arrays."""
 
 
 class Contents:
@@ -235,14 +245,13 @@ class Contents:
 
         return self.guarded(lambda: self._or_else("its checkpoints cannot be read", read, []))
 
-    def problem(self) -> tuple[str, Mapping[str, Any]]:
+    def problem(self) -> Problem:
         """The problem group."""
 
-        def read() -> tuple[str, Mapping[str, Any]]:
-            group = member(self.root, PROBLEM) if PROBLEM in self._present else None
-            return read_problem(group, self.allowance)
+        def read() -> Problem:
+            return read_problem(member(self.root, PROBLEM), self.allowance) if PROBLEM in self._present else nothing
 
-        nothing = read_problem(None, self.allowance)
+        nothing: Problem = json.dumps({"unstorable": "the file holds no problem"}), {}
         return self.guarded(lambda: self._or_else("its problem cannot be read", read, nothing))
 
 

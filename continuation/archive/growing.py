@@ -24,8 +24,8 @@ from continuation.archive.reader import Archive, StoredSteps, open_archive
 from continuation.archive.rows import (
     Block,
     Table,
-    dataframe,
     dataset,
+    flat,
     joined,
     layout_of,
     record_of,
@@ -39,6 +39,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
+from continuation.status import Status
 
 
 @frozen(eq=False)
@@ -61,6 +62,11 @@ class Share:
     def size(self) -> int:
         """The number of points."""
         return int(self.rows.stop - self.rows.start)
+
+    @property
+    def status(self) -> Status:
+        """The first path's status."""
+        return Status(int(self.paths["status"][0]))
 
 
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
@@ -92,13 +98,33 @@ def leading(shares: Sequence[Share]) -> Contents:
     return found
 
 
-def append(store: Store, share: Share, file: str) -> int:
-    """Append a finished path of `file` in one commit; returns its number."""
-    number = store.committed.paths
-    points = _numbered(share, store, share.rows, number) if share.size else None
-    source = np.array([text(f"{store.identifier} {number} {file}", SOURCE.length)], dtype=SOURCE.storage)
-    store.commit(points, {**_rows(share, store, number), "source": source})
-    return number
+def grow(store: Store, shares: Sequence[Share], *, file: str = "", checkpoint: bytes | None = None) -> int:
+    """Append shares; returns the number of the first path.
+
+    The last commit adds the paths and the checkpoint. New paths are of `file`, and one commit, so that a kill leaves
+    none in part; copied ones keep their source.
+    """
+    first = path = store.committed.paths
+    points, rows, held = list[Block](), list[Block](), 0
+    for share in shares:
+        size = share.points.at_once
+        for start in range(share.rows.start, share.rows.stop, size):
+            if not file and held >= size:
+                store.commit(joined(points))
+                points, held = [], 0
+            stop = min(start + size, share.rows.stop)
+            points.append(_numbered(share, store, slice(start, stop), path))
+            held += stop - start
+        count = len(share.paths["path"])
+        numbers = np.arange(path, path + count)
+        found = {**share.paths, "path": numbers}
+        if file:
+            sources = [text(f"{store.identifier} {number} {file}", SOURCE.length) for number in numbers]
+            found["source"] = np.array(sources, dtype=SOURCE.storage)
+        rows.append(store.layout.filled(found, "path", count))
+        path += count
+    store.commit(joined(points) if points else None, joined(rows) if path > first else None, checkpoint)
+    return first
 
 
 def copy(
@@ -127,32 +153,8 @@ def copy(
     layout = Layout(head.layout.unknowns, width, names)
     about = {**head.attributes, **history(head.attributes, what), **(more or {}), "schema": SCHEMA}
 
-    def fill(store: Store) -> None:
-        for block in _blocks(shares, store):
-            store.commit(block)
-        counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
-        rows = [_rows(share, store, number) for share, number in zip(shares, counts)]
-        store.commit(paths=joined(rows) if counts[-1] else None, checkpoint=checkpoint)
-
-    make = partial(Store, layout=layout, attributes=about, problem=head.problem(), compressed=compressed)
-    return put(target, make, fill, replace=replace, grows=grows)
-
-
-def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
-    waiting: list[Block] = []
-    held = path = 0
-    for share in shares:
-        size = share.points.at_once
-        for start in range(share.rows.start, share.rows.stop, size):
-            rows = slice(start, min(start + size, share.rows.stop))
-            waiting.append(_numbered(share, store, rows, path))
-            held += rows.stop - rows.start
-            if held >= size:
-                yield joined(waiting)
-                waiting, held = [], 0
-        path += len(share.paths["path"])
-    if waiting:
-        yield joined(waiting)
+    fill = partial(grow, shares=shares, checkpoint=checkpoint)
+    return put(target, layout, about, head.problem(), fill, compressed=compressed, replace=replace, grows=grows)
 
 
 def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
@@ -165,11 +167,6 @@ def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
     # Index -1 (no event) selects the last entry, -1.
     block["event_index"] = numbers[events]
     return store.layout.filled(block, "point", rows.stop - rows.start)
-
-
-def _rows(share: Share, store: Store, path: int) -> Block:
-    count = len(share.paths["path"])
-    return store.layout.filled({**share.paths, "path": np.arange(path, path + count)}, "path", count)
 
 
 def _attributes(path: Path, title: str = "A path") -> dict[str, Any]:
@@ -187,8 +184,10 @@ def dataset_of(path: Path) -> Any:
 
 def dataframe_of(path: Path) -> Any:
     """The path as a `pandas.DataFrame` with names."""
+    import pandas
+
     share = share_of_path(path)
-    frame = dataframe(share.points)
+    frame = pandas.DataFrame(flat(share.points))
     frame["event"] = [share.names[k] if k >= 0 else "" for k in share.points["event_index"]]
     called = {f"y_{i}": name for i, name in enumerate(path.labels.names)}
     if path.labels.parameter_name:
@@ -198,14 +197,13 @@ def dataframe_of(path: Path) -> Any:
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
     """Write paths of one homotopy to a new archive."""
-    target = new_file("file", file)
-    shares = [share_of_path(path, member=k) for k, path in enumerate(many)]
+    target, shares = new_file("file", file), [share_of_path(path, member=k) for k, path in enumerate(many)]
 
     def fill(store: Store) -> None:
         for share in shares:
-            append(store, share, target.name)
+            grow(store, [share], file=target.name)
 
-    put(target, partial(Store, layout=shares[0].layout, attributes=_attributes(many[0], title or "A path")), fill)
+    put(target, shares[0].layout, _attributes(many[0], title or "A path"), fill=fill)
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
@@ -250,15 +248,14 @@ class Growing:
     def add(self, path: Path) -> Path:
         """Append a path and return it as kept."""
         share = share_of_path(path, member=self._store.committed.paths if self._store else 0)
-        if self._store is None:
-            about = _attributes(path, self.title)
-            self._store = put(self.file, partial(Store, layout=share.layout, attributes=about), grows=True)
-        return self._kept(path, append(self._store, share, self.file.name))
+        self._store = self._store or put(self.file, share.layout, _attributes(path, self.title), grows=True)
+        return self._kept(path, grow(self._store, [share], file=self.file.name))
 
     def _kept(self, path: Path, number: int) -> Path:
         if self.keep == "all":
             return path
-        steps: Any = StoredSteps(self.file, number, [path.steps[0], path.steps[-1]], len(path.steps))
+        last = len(path.steps) - 1
+        steps: Any = StoredSteps(self.file, number, {0: path.steps[0], last: path.steps[-1]}, last + 1)
         return evolve(path, steps=steps)
 
     def close(self) -> None:

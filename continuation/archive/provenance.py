@@ -158,7 +158,7 @@ _INLINE_BYTES = 1 << 16
 class Checkpoint:
     """A point after `rows` rows, from which a path continues exactly.
 
-    `counts`, `seconds`: work so far. `run`: options, homotopy, index in a sweep.
+    `counts`, `seconds`: work so far. `run`: options and homotopy.
     """
 
     sequence: int
@@ -182,8 +182,8 @@ def _fetched(raw: bytes) -> Callable[[Any], Any]:
     def fetch(place: Any) -> Any:
         # Numbers follow the description's order.
         if place["number"] == len(made):
-            offset = sum(array.nbytes for array in made)
-            made.append(numbers(raw[offset:], place["dtype"], place["shape"]).copy())
+            begin = sum(array.nbytes for array in made)
+            made.append(numbers(raw[begin:], place["dtype"], place["shape"]).copy())
         return made[place["number"]]
 
     return fetch
@@ -198,7 +198,7 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
     return np.frombuffer(raw, kind, count).reshape(shape, order=order)
 
 
-def describe_run(tracer: Tracer, member: int | None, first: bool = False) -> dict[str, Any]:
+def describe_run(tracer: Tracer, first: bool = False) -> dict[str, Any]:
     """Options and homotopy as JSON, or why they are "unstorable".
 
     `first`: the problem group describes the homotopy.
@@ -211,7 +211,7 @@ def describe_run(tracer: Tracer, member: int | None, first: bool = False) -> dic
         values["events"] = watched[begin + len(own) :]
     options = {name: described(value, _whole) for name, value in values.items()}
     homotopy = {"problem": True} if first else described(tracer.homotopy, _whole)
-    return {"options": options, "homotopy": homotopy, "member": member}
+    return {"options": options, "homotopy": homotopy}
 
 
 def _whole(name: str, array: Any) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
 from numbers import Integral
 from os import PathLike
@@ -18,8 +18,8 @@ from continuation.archive.provenance import Checkpoint, unpack
 from continuation.archive.rows import (
     ROWS_AT_ONCE,
     Table,
-    dataframe,
     dataset,
+    flat,
     from_columns,
     kept_whole,
     record_of,
@@ -188,7 +188,9 @@ class Archive(Sequence[Path]):
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, with unknowns ``y_0``, ``y_1``, ..."""
-        return dataframe(self.points)
+        import pandas
+
+        return pandas.DataFrame(flat(self.points))
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point to resume the last path from, or None."""
@@ -232,26 +234,23 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
 
 
 class StoredSteps(Sequence[Step]):
-    """Steps of a path: ends (and uncommitted ones) in memory, others in the file.
+    """Steps of a path: the ends, and those not yet committed, are held in memory; the others are in the file.
 
     Segments need stored tangents.
     """
 
-    def __init__(self, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
-        held = list(steps)
-        self._file, self._path, self._first = file, path, held[:1]
-        self._last, self._count = (held, len(held)) if count is None else (held[-1:], count)
-        self._some: tuple[int, list[Step]] = 0, []
+    def __init__(self, file: File, path: int, held: Mapping[int, Step], count: int) -> None:
+        self._file, self._path, self._held, self._count = file, path, dict(held), count
+        self._window = dict[int, Step]()
 
     def append(self, step: Step) -> None:
         """Add the next step."""
-        self._first = self._first or [step]
-        self._last.append(step)
+        self._held[self._count] = step
         self._count += 1
 
     def committed(self) -> None:
         """Keep only the ends in memory."""
-        self._last = self._last[-1:]
+        self._held = {at: self._held[at] for at in (0, self._count - 1)}
 
     def __len__(self) -> int:
         return self._count
@@ -259,42 +258,42 @@ class StoredSteps(Sequence[Step]):
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(self._count))]
-        at, begin = range(self._count)[index], self._count - len(self._last)
-        if at >= begin or not at:
-            return self._last[at - begin] if at >= begin else self._first[0]
-        first, steps = self._some
-        if not first <= at < first + len(steps):
+        at = range(self._count)[index]
+        if at not in self._held and at not in self._window:
             with open_archive(self._file) as archive:
                 size = archive.points.at_once
-                # With the step before, for the segment.
-                first, before = at // size * size, max(at // size * size - 1, 0)
-                steps = _window(archive, self._path, before, min(first + size, begin))[0][first - before :]
-            self._some = first, steps
-        return steps[at - first]
+                first = at // size * size
+                steps = _window(archive, self._path, first, first + size)[0]
+            self._window = dict(enumerate(steps, first))
+        return self._held.get(at) or self._window[at]
 
     def __repr__(self) -> str:
         return f"<{self._count} steps in {self._file}>"
 
     def column(self, name: str) -> Any:
         """All steps' ``u``, ``tangent`` or ``arclength`` as an array."""
-        fields, begin = {"u": ("y", "parameter"), "arclength": ("arclength",)}.get(name), self._count - len(self._last)
-        if fields is None or not begin:
+        fields = {"u": ("y", "parameter"), "arclength": ("arclength",)}.get(name)
+        if fields is None or len(self._held) == self._count:
             return np.array([getattr(step, name) for step in self])
+        # The first step, and those from `begin` on, are held.
+        begin = self._count - len(self._held) + 1
         with open_archive(self._file) as archive:
             # Making steps takes 14 times as long.
             rows = archive.rows(self._path)
             steps = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[:begin]
             found = [archive.points.some(field, rows)[steps] for field in fields]
         stored = found[0] if len(found) == 1 else np.column_stack(found)
-        return np.concatenate((stored, [getattr(step, name) for step in self._last]))
+        return np.concatenate((stored, [getattr(self._held[at], name) for at in range(begin, self._count)]))
 
 
-def _window(archive: Archive, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
-    rows = archive.rows(path)
+def _window(archive: Archive, path: int, first: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
+    """Steps from `first` to `stop` - 1, read with the step before, to which a segment leads; events in their rows."""
+    rows, before = archive.rows(path), max(first - 1, 0)
     accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
-    begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))
-    observed = archive.layout.own(OBSERVED)
-    return from_columns(archive.points.block(slice(begin, end)), archive.event_names, observed, start)
+    start, begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (before, first, stop))
+    block = archive.points.block(slice(start, end))
+    steps, events = from_columns(block, archive.event_names, archive.layout.own(OBSERVED), before)
+    return steps[first - before :], events[np.count_nonzero(block["event_index"][: begin - start] >= 0) :]
 
 
 def _stored(archive: Archive, path: int) -> tuple[StoredSteps, list[LocatedEvent]]:
@@ -304,6 +303,5 @@ def _stored(archive: Archive, path: int) -> tuple[StoredSteps, list[LocatedEvent
     # A kink's rows follow its step's.
     eventful = np.unique((np.cumsum(accepted) - 1)[numbers >= 0] // ROWS_AT_ONCE).tolist() if count else []
     events = [event for k in eventful for event in _window(archive, path, k * ROWS_AT_ONCE, (k + 1) * ROWS_AT_ONCE)[1]]
-    # With the step before, for the segment.
-    last = _window(archive, path, max(count - 2, 0), count)[0][-1:] if count else []
-    return StoredSteps(archive.file, path, _window(archive, path, 0, min(count - 1, 1))[0] + last, count), events
+    ends = {at: _window(archive, path, at, at + 1)[0][0] for at in (0, count - 1) if count}
+    return StoredSteps(archive.file, path, ends, count), events

@@ -22,7 +22,6 @@ from continuation.archive.hdf5 import StructureError, member, read_arrays, write
 from continuation.archive.provenance import OPTIONS, Checkpoint, pack, process, whole
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import kept_whole
-from continuation.archive.store import Store
 from continuation.archive.writer import PathLog
 from continuation.certificate.cells import COLUMNS, Cells
 from continuation.certificate.certifying import recheck as checked_again
@@ -105,7 +104,16 @@ def resume(
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         stored = float(source.points.some("residual_norm", slice(rows - 1, rows))[0])
         check_homotopy(tracer.homotopy, checkpoint.state.here.u, stored)
-        store = _beginning(source, checkpoint, rows, target, archive is None)
+        parent = f"{source.file.name} ({source.attributes.get('created', '')})"
+        store = copy(
+            [share_of(source, last=checkpoint.path, points=rows)],
+            target,
+            what=f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}",
+            more={**process(), "parent": parent},
+            checkpoint=pack(checkpoint),
+            replace=archive is None,
+            grows=True,
+        )
     log = PathLog.continued(store, checkpoint, tracer, whole_path)
     try:
         with open_archive(store.file) as held:
@@ -129,7 +137,10 @@ def _tracer(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Any, options: Mapping[str, Any]
 ) -> Tracer:
     homotopy = stored_homotopy(source, checkpoint, known) if given is None else given
-    settings = _options(source, checkpoint, known, options)
+    trees: Any = checkpoint.run.get("options", {})
+    names = [name for name in OPTIONS if isinstance(trees, dict) and name in trees and name not in options]
+    stored = {name: _made(source, name, trees[name], whole, known, f"{name}=") for name in names}
+    settings: Any = {"box": None, **stored, **options}
     try:
         tracer = Tracer(homotopy, state=checkpoint.state, **settings)
         known_events, watched = len(checkpoint.state.monitors), len(tracer.settings.events)
@@ -190,22 +201,6 @@ def _made(
         raise ArchiveError(f"{source.file}: {said}") from None
 
 
-def _options(
-    source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
-) -> dict[str, Any]:
-    trees: Any = checkpoint.run.get("options", {})
-    names = [name for name in OPTIONS if isinstance(trees, dict) and name in trees and name not in given]
-    stored = {name: _made(source, name, trees[name], whole, known, f"{name}=") for name in names}
-    return {"box": None, **stored, **given}
-
-
-def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
-    parent = f"{source.file.name} ({source.attributes.get('created', '')})"
-    what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
-    share, more = share_of(source, last=checkpoint.path, points=rows), {**process(), "parent": parent}
-    return copy([share], target, what=what, more=more, checkpoint=pack(checkpoint), replace=replace, grows=True)
-
-
 GROUP = "certificate"
 
 
@@ -264,10 +259,14 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 def _check(columns: dict[str, Any]) -> None:
     # Cells may be wider than the path (`certifying.SupportsWrittenOut`).
     count, width = columns["begin"].shape
-    shapes = dict.fromkeys(COLUMNS, (count, width)) | {"slabs": (count,), "place": (count, 2)}
-    kinds = dict.fromkeys(COLUMNS, "f") | {"slabs": "i"}
-    for name, values in ((name, columns[name]) for name in COLUMNS):
-        if values.shape != shapes[name] or values.dtype.kind != kinds[name] or not np.isfinite(values).all():
+    shapes = {"slabs": (count,), "place": (count, 2)}
+    for name in COLUMNS:
+        values, kind = columns[name], "i" if name == "slabs" else "f"
+        if (
+            values.shape != shapes.get(name, (count, width))
+            or values.dtype.kind != kind
+            or not np.isfinite(values).all()
+        ):
             raise StructureError(f"{name} is of another shape, or holds numbers that are not finite")
     # Our files hold fewer slabs; more take long to check.
     if not all(1 <= slabs <= 64 for slabs in columns["slabs"]):

@@ -315,12 +315,5 @@ def flat(block: Mapping[str, Any]) -> dict[str, Any]:
     return columns
 
 
-def dataframe(points: Table) -> Any:
-    """A `pandas.DataFrame`, one row for each point."""
-    import pandas
-
-    return pandas.DataFrame(flat(points))
-
-
 def _text(values: Any) -> Any:
     return np.char.decode(values, "utf-8", "replace") if values.dtype.kind == "S" else values

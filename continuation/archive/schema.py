@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 from attrs import field, frozen
 
-from continuation.archive.checks import GROUP, PLACES, RECORDS, blank
+from continuation.archive.hdf5 import GROUP, PLACES, RECORDS, blank
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
@@ -165,9 +165,10 @@ class Layout:
         """The column's dimensions beyond the first."""
         return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
+    @lru_cache(maxsize=64)  # noqa: B019
     def row_bytes(self, table: str) -> int:
         """Bytes of a row."""
-        return _row_bytes(self, table)
+        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
 
     def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
         """All columns of a table; missing ones and cells are filled."""
@@ -181,11 +182,6 @@ class Layout:
                 values = missing
             whole[column.name] = np.ascontiguousarray(values)
         return whole
-
-
-@lru_cache(maxsize=64)
-def _row_bytes(layout: Layout, table: str) -> int:
-    return sum(column.storage.itemsize * math.prod(layout.width(column)) for column in layout.columns(table))
 
 
 @lru_cache(maxsize=64)

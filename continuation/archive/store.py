@@ -19,8 +19,17 @@ import numpy as np
 from h5py import h5d, h5s, h5t
 
 from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, publish, short
-from continuation.archive.checks import GROUP, PLACES, RECORD, RECORDS, Committed, digest, of_attributes, seal
-from continuation.archive.hdf5 import write_problem
+from continuation.archive.hdf5 import (
+    GROUP,
+    PLACES,
+    RECORD,
+    RECORDS,
+    Committed,
+    digest,
+    of_attributes,
+    seal,
+    write_problem,
+)
 from continuation.archive.provenance import HEAD
 from continuation.archive.schema import EVENT_NAME, LIBVER, RESUME, Layout, empty, text
 
@@ -29,26 +38,31 @@ _RECORDS, _SLOTS = f"{GROUP}/{RECORDS}", f"{RESUME}/slots"
 
 def put(
     target: File,
-    make: Callable[[File], Store],
-    fill: Callable[[Store], None] | None = None,
+    layout: Layout,
+    attributes: Mapping[str, Any],
+    problem: tuple[str, Mapping[str, Any]] | None = None,
+    fill: Callable[[Store], object] | None = None,
     *,
+    compressed: bool = False,
+    durable: bool = False,
     replace: bool = False,
     grows: bool = False,
 ) -> Store:
-    """Make and fill a new file beside `target`, then rename it.
+    """Make and fill a new file beside `target`, then rename it; `grows` leaves it open.
 
-    `make`: opens a store, of that file or of one that grew elsewhere. `grows`: leave it open.
+    `problem`: result of `problem_data`. `compressed`: by gzip. `durable`: wait for the disk at each commit.
     """
     if not replace:
         check_new(target)
     with beside(target) as part:
-        store = make(part)
+        _write_new(part, layout, attributes, problem, compressed)
+        store = Store(part, layout, str(attributes.get("identifier", "")), durable)
         try:
             if fill is not None:
                 fill(store)
             if not grows:
                 store.close()
-            publish(store.file, target, replace=replace)
+            publish(part, target, replace=replace)
         except BaseException:
             store.close()
             raise
@@ -56,39 +70,35 @@ def put(
         return store
 
 
+def _write_new(
+    part: File,
+    layout: Layout,
+    attributes: Mapping[str, Any],
+    problem: tuple[str, Mapping[str, Any]] | None,
+    compressed: bool,
+) -> None:
+    # HDF5 ends the process if writing fails while it closes a file.
+    made = BytesIO(empty(layout, compressed))
+    with h5py.File(made, "r+", libver=LIBVER) as new:
+        new.attrs.update(attributes)
+        if problem is not None:
+            write_problem(new, *problem)
+        new[GROUP].attrs.update({"attributes": np.uint32(of_attributes(attributes))})
+    with part.open("xb") as file:
+        file.write(made.getbuffer())
+
+
 Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written, locked until closed.
+    """A file being written, locked until closed."""
 
-    `problem`: result of `problem_data`. `compressed`: by gzip. `durable`: wait for the disk at each commit.
-    """
+    abandoned = False
 
-    def __init__(
-        self,
-        part: File,
-        layout: Layout,
-        attributes: Mapping[str, Any],
-        problem: tuple[str, Mapping[str, Any]] | None = None,
-        *,
-        compressed: bool = False,
-        durable: bool = False,
-    ) -> None:
-        self.file, self.layout, self.durable = part, layout, durable
-        self.identifier, self.events = str(attributes.get("identifier", "")), list[str]()
-        # Valid now or with the next commit.
-        self.committed = Committed(sequence=1)
-        self.abandoned = False
-        # HDF5 ends the process if writing fails while it closes a file.
-        made = BytesIO(empty(layout, compressed))
-        with h5py.File(made, "r+", libver=LIBVER) as new:
-            new.attrs.update(attributes)
-            if problem is not None:
-                write_problem(new, *problem)
-            new[GROUP].attrs.update({"attributes": np.uint32(of_attributes(attributes))})
-        with part.open("xb") as file:
-            file.write(made.getbuffer())
+    def __init__(self, part: File, layout: Layout, identifier: str, durable: bool) -> None:
+        self.file, self.layout, self.identifier, self.durable = part, layout, identifier, durable
+        self.events, self.committed = list[str](), Committed(sequence=1)
         # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
         self._h5 = h5py.File(part, "r+", libver=LIBVER, rdcc_nbytes=0)
         _LIVE.add(self)

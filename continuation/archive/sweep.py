@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
-    CancelledError,
     Executor,
     Future,
     ProcessPoolExecutor,
@@ -28,7 +27,7 @@ from attrs import define, field, frozen
 
 from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
-from continuation.archive.growing import Share, append, share_of_path
+from continuation.archive.growing import Share, grow, share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
@@ -44,8 +43,8 @@ from continuation.step.tracer import Tracer
 from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
-Result = Path | Share | BaseException
-"""A path or exception."""
+Result = Path | Share
+"""A path, as rows where there is an archive."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
 """Exceptions that cost one path; Ctrl-C ends the sweep."""
@@ -128,7 +127,7 @@ def trace_many(
 def _swept(
     executor: Executor | None, tasks: Sequence[Task], target: File | None, report: Progress, timeout: float | None
 ) -> list[Path]:
-    futures: dict[Future[Path | Share], int] = {}
+    futures: dict[Future[Result], int] = {}
     results: Iterator[tuple[int, Result]] = (
         ((task.number, traced(task)) for task in tasks)
         if executor is None
@@ -151,7 +150,7 @@ def _swept(
             for future, number in futures.items():
                 ended = future.done() and not future.cancelled() and future.exception() is None
                 # Ctrl-C reaches workers in a terminal, and stops threads: their paths have not ended.
-                if ended and _status(future.result()) is not Status.INTERRUPTED:
+                if ended and future.result().status is not Status.INTERRUPTED:
                     kept.add(number, future.result())
         kept.finish()
     paths = [kept.paths[number] for number in sorted(kept.paths)]
@@ -171,17 +170,13 @@ class _Kept:
 
     def add(self, number: int, found: Result) -> None:
         """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
-        task = self.tasks[number]
-        if isinstance(found, KeyboardInterrupt):
-            raise found
-        if isinstance(found, BaseException):
-            found = _sent(Path(status=Status.RAISED, message=sentence(found)), task)
         if isinstance(found, Path):
             self.paths[number] = found
         else:
             assert self.target is not None
-            append(self.parts.get(found.layout) or self._part(found, task), found, self.target.name)
-        if _status(found) is Status.INTERRUPTED:
+            store = self.parts.get(found.layout) or self._part(found, self.tasks[number])
+            grow(store, [found], file=self.target.name)
+        if found.status is Status.INTERRUPTED:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
@@ -199,19 +194,14 @@ class _Kept:
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
-        make = partial(Store, layout=share.layout, attributes=root_attributes(tracer, "", {}), problem=problem)
-        store = put(self.target.with_name(name), make, grows=True)
+        store = put(self.target.with_name(name), share.layout, root_attributes(tracer, "", {}), problem, grows=True)
         self.stack.callback(store.close)
         self.parts[share.layout] = store
         return store
 
 
-def _status(found: Path | Share) -> Status:
-    return found.status if isinstance(found, Path) else Status(int(found.paths["status"][0]))
-
-
 def _spread(
-    executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Path | Share], int]
+    executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Result], int]
 ) -> Iterator[tuple[int, Result]]:
     """Submit all tasks; those lost with a worker once more."""
     lost = list[int]()
@@ -230,12 +220,14 @@ def _spread(
         while ended:
             # Dask repeats lost tasks while their future is held.
             future = ended.pop()
-            number, raised = futures.pop(future), CancelledError() if future.cancelled() else future.exception()
-            # `traced` returns what a homotopy raises: this is the executor's.
-            if isinstance(raised, Exception):
+            number = futures.pop(future)
+            try:
+                found = future.result()
+            except Exception:
+                # `traced` returns what a homotopy raises: this is the executor's.
                 lost.append(number)
             else:
-                yield number, future.result() if raised is None else raised
+                yield number, found
             del future
     for number in sorted(lost):
         yield number, _again(executor, tasks[number], timeout)
@@ -248,10 +240,10 @@ def _again(executor: Executor, task: Task, timeout: float | None) -> Result:
     try:
         future = own.submit(traced, task)
         if not wait([future], timeout=timeout if pool else None).done:
-            return TimeoutError(f"took longer than {timeout or 0:g} s")
-        return future.exception() or future.result()
+            raise TimeoutError(f"took longer than {timeout or 0:g} s")
+        return future.result()
     except Exception as error:
-        return error
+        return _sent(Path(status=Status.RAISED, message=sentence(error)), task)
     finally:
         if pool:
             _end_processes(own)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from functools import partial
 from itertools import takewhile
 from numbers import Integral
 from os import PathLike
@@ -86,11 +85,6 @@ class PathLog:
     save_every : int
         Write every so many steps, and the first, the last and all events.
 
-    Attributes
-    ----------
-    member : int or None
-        Index of the next path in a sweep.
-
     Raises
     ------
     ArchiveError
@@ -100,7 +94,6 @@ class PathLog:
     """
 
     file: File
-    member: int | None = None
     _rows: tuple[int, list[Row]]
     """Number of the first uncommitted row; these rows."""
     _ended: dict[int, Record]
@@ -148,7 +141,7 @@ class PathLog:
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._ended = store.file, store, (points, []), {}
-        log._whole, log.member = whole, checkpoint.run["member"]
+        log._whole = whole
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
         log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, checkpoint.run, mark, mark)
@@ -163,7 +156,8 @@ class PathLog:
             held, found = store.layout.unknowns, step.u.size - 1
             raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {found}")
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
-            stored: Any = StoredSteps(self.file, path.number, tracer.path.steps)
+            before = dict(enumerate(tracer.path.steps))
+            stored: Any = StoredSteps(self.file, path.number, before, len(before))
             tracer.path.steps = stored
         events = [*takewhile(lambda e: e.step == step.index, reversed(tracer.path.events))]
         found_rows = rows_at(step, events[::-1])
@@ -196,8 +190,8 @@ class PathLog:
         row = record_of(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
         if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
-            row |= {"path": path.number, "n_points": self._rows[0] + len(self._rows[1]) - path.first}
-            row["member"] = path.number if self.member is None else self.member
+            row |= {"path": path.number, "member": path.number}
+            row["n_points"] = self._rows[0] + len(self._rows[1]) - path.first
             self._ended[path.number] = row
             if self._store is not None:
                 self._commit()
@@ -239,14 +233,12 @@ class PathLog:
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> Store:
         check_names("observe", observed)
-        homotopy = tracer.homotopy if tracer is not None else None
+        self._first = homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
         layout = layout_of(homotopy, unknowns, observed, state, self._ended.values())
-        self._first, problem = homotopy, problem_data(homotopy)
-        attributes = root_attributes(tracer, *self._about)
-        make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
-        self._store = store = put(self.file, make, grows=True)
-        return store
+        attributes, problem = root_attributes(tracer, *self._about), problem_data(homotopy)
+        self._store = put(self.file, layout, attributes, problem, durable=self._durable, grows=True)
+        return self._store
 
     def _commit(self) -> None:
         store, path = self._store, self._open
@@ -259,7 +251,7 @@ class PathLog:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
             first = self._first is path.tracer.homotopy
-            path.run = path.run or describe_run(path.tracer, self.member, first)
+            path.run = path.run or describe_run(path.tracer, first)
             (state, counts, held), seconds = path.resume, path.seconds + path.tracer.seconds
             named, sequence = dict(zip(COUNT_NAMES, counts)), store.committed.checkpoint + 1
             checkpoint = pack(Checkpoint(sequence, path.number, held, state, named, seconds, path.run))

@@ -7,13 +7,19 @@ import json
 import math
 from typing import Any
 
+import numpy as np
+
+from continuation.arguments.plugins import SCENES
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.figures import check_picture, save
+from continuation.cli.making import homotopy_of
 from continuation.cli.parser import above_zero, add_command, argument, paint, parsed
-from problems.commands import scene
 from problems.commands.arguments import PROBLEM_FORMATS, file_of
 from problems.lcp.homotopies.registry import HOMOTOPIES
+
+SCENE = "scene"
+"""Replaces FILE."""
 
 MOST_ROWS = 60
 """Printed components; --json prints all."""
@@ -25,7 +31,7 @@ def register(subparsers: Subparsers) -> None:
     add_command(
         subparsers, run, "solve",
         argument("file", metavar="FILE", help=formats),
-        argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {scene.WORD}: which, its parameters"),
+        argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {SCENE}: which, its parameters"),
         argument("--q", metavar="FILE", help="q in a file of its own"),
         argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto"),
         argument("--x0", metavar="FILE", help="the start, x0 > 0; what A x0 + q lacks is relaxed away"),
@@ -54,8 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     from problems import lcp
     from problems.lcp.data.files import read_problem, read_program, read_vector
 
-    if arguments.file == scene.WORD:
-        return scene.run(arguments)
+    if arguments.file == SCENE:
+        return _run_scene(arguments)
     if arguments.scene:
         raise UsageError("unrecognized arguments", " ".join(arguments.scene))
     if arguments.plot is not None:
@@ -152,3 +158,45 @@ def _draw(solution: Any, n: int, file: str) -> None:
 
     path = solution.path
     save(file, path, "", lambda axes: plot_components(path, axes, names=names, components=components))
+
+
+def _run_scene(arguments: argparse.Namespace) -> int:
+    if not arguments.scene:
+        raise UsageError("NAME", "expected the name of a scene, found none; `continuation plugins` lists them")
+    for option in ("q", "x0", "archive", "restarts"):
+        if getattr(arguments, option) is not None:
+            raise UsageError(f"--{option}", "expected a problem in a file, found a scene")
+    name, *texts = arguments.scene
+    if arguments.plot is not None:
+        check_picture("--plot", arguments.plot)
+    scene, values = homotopy_of(name, texts, group=SCENES)
+    title = " ".join([name, *(f"{key}={value}" for key, value in values.items())])
+    from problems.scenes import order, solve
+
+    arguments.plugin, arguments.name = "name", name
+    problem = scene.problem()
+    solution = solve(scene)
+    # A scene's own path may end on a ray (collapse), which `answer` interprets.
+    well = getattr(scene, "solve", None) is not None or bool(solution.success)
+    answer = scene.answer(solution) if well else {}
+    if arguments.json:
+        found = {key: np.asarray(value, dtype=float).tolist() for key, value in answer.items()}
+        print(json.dumps({"scene": title, "unknowns": order(problem), "solved": well, "answer": found}))
+    else:
+        print("\n".join(_scene_as_text(title, scene, order(problem), well, answer)))
+    if arguments.plot is not None and well:
+        save(arguments.plot, None, title, lambda axes: scene.draw(solution, axes))
+    return SUCCESS if well else FAILURE
+
+
+def _scene_as_text(title: str, scene: Any, unknowns: int, well: bool, answer: Any) -> list[str]:
+    lines = [f"scene      {title}", f"outcome    {paint('solved' if well else 'not solved', well)}"]
+    lines.append(f"unknowns   {unknowns}")
+    lines += [f"           {kind.count} {kind.name}: {kind.why}" for kind in scene.unknowns]
+    lines.append("")
+    wide = max((len(name) for name in answer), default=0)
+    for name, value in answer.items():
+        values = np.atleast_1d(np.asarray(value, dtype=float)).ravel()
+        shown = ", ".join(f"{v:.10g}" for v in values[:10]) + (", ..." if values.size > 10 else "")
+        lines.append(f"{name:{wide}}  {shown or 'none'} {scene.units.get(name, '')}".rstrip())
+    return lines

@@ -66,8 +66,8 @@ def test_death_in_the_first_commits_of_a_resumed_path(tmp_path, dying, rows, rec
     path, file = trace(FreudensteinRoth()), tmp_path / "run.h5"
     trace(FreudensteinRoth(), archive=logged(file, rows), budget=Budget(steps=12))
     for _ in range(3):
-        # Four flushes make the copy; the fifth would end the first phase of the commit that ends the path.
-        dying(4, lambda: resume(file, budget=Budget()))
+        # Two flushes make the copy; the third would end the first phase of the commit that ends the path.
+        dying(2, lambda: resume(file, budget=Budget()))
         if recovered:
             recover(file)
     assert_same(resume(file, budget=Budget()), path)

@@ -11,8 +11,8 @@ import pytest
 
 from continuation import Budget, TargetValue, trace
 from continuation.archive import ArchiveError, export, open_archive, recover, resume
-from continuation.archive.checks import Committed, of_attributes, seal
 from continuation.archive.contents import _known
+from continuation.archive.hdf5 import Committed, of_attributes, seal
 from continuation.archive.schema import Layout
 from problems.bifurcation import ExponentialCosine
 

@@ -18,7 +18,7 @@ OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.05))}
 HOMOTOPY = ExponentialCosine(3)
 
 
-@pytest.mark.parametrize(("keep", "memory"), [("ends", 1), ("all", 0)])
+@pytest.mark.parametrize(("keep", "memory"), [("ends", 2), ("all", 0)])
 @pytest.mark.parametrize("problem", [FreudensteinRoth(), HOMOTOPY], ids=["events", "many steps"])
 def test_what_is_not_in_memory_is_read(tmp_path, keep, memory, problem):
     path = trace(problem, **OPTIONS)
@@ -27,7 +27,7 @@ def test_what_is_not_in_memory_is_read(tmp_path, keep, memory, problem):
     assert np.array_equal(found.steps[-3].u, path.steps[-3].u)
     assert [step.index for step in found.steps[9:2:-3]] == [9, 6, 3]
     if memory:
-        assert len(found.steps._last) == memory
+        assert len(found.steps._held) == memory
     for stored in (read(tmp_path / "run.h5"), read(tmp_path / "run.h5", keep="ends")):
         assert_same(stored, path)
 
@@ -59,7 +59,7 @@ def test_memory_does_not_grow_with_the_path(tmp_path):
     The block of rows that is being filled is held, so the first look comes when one has been full.
     """
     options = {"controller": Fixed(bounds=Bounds(initial=0.005))}
-    log = PathLog(tmp_path / "run.h5", keep="ends")
+    log = logged(tmp_path / "run.h5", 256, keep="ends")
     used = []
     tracer = Tracer(HOMOTOPY, observers=(log,), **options)
     tracemalloc.start()

@@ -14,8 +14,8 @@ import pytest
 
 from continuation import Budget, trace
 from continuation.archive import ArchiveError, open_archive, resume
-from continuation.archive.checks import Committed, digest
 from continuation.archive.codec import _registered
+from continuation.archive.hdf5 import Committed, digest
 from continuation.archive.provenance import HEAD, pack
 from problems.bifurcation import ExponentialCosine
 
