@@ -64,7 +64,10 @@ KNOWN = {
     **{f"exponential-cosine, {n}": cosines(n) for n in COSINES},
 }  # fmt: skip
 CASES = {
-    **{f"{preset.name}, {name}": (preset, row) for preset in (FAST, DEFAULT, CONSERVATIVE) for name, row in KNOWN.items()},
+    **{
+        f"{preset.name}, {name}": (preset, row)
+        for preset in (FAST, DEFAULT, CONSERVATIVE) for name, row in KNOWN.items()
+    },
     # Steps of a tenth are those of the ceiling, whatever the preset.
     **{
         f"{preset.name}, exponential-cosine, {n}, steps of {longest}": (

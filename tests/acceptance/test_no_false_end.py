@@ -103,13 +103,12 @@ def test_the_error_of_an_end_before_a_pole_is_a_bound(preset, size, unit, target
     assert abs(float(Fraction(float(path.endpoint.y[0])) - true)) <= 2.0 * path.end_error
 
 
-def test_a_parameter_that_hardly_enters():
-    root = 0.6823278038280193
-    homotopy = from_functions(lambda y, lam: np.stack([y[0] ** 3 + y[0] - 1.0 - 1e-9 * lam]), start=([root], 0.0))
-    for metric in (None, Euclidean()):
-        path = trace(homotopy, target=1.0, metric=metric)
-        assert path.status is Status.REACHED_TARGET
-        assert len(path) <= 5
+@pytest.mark.parametrize("metric", [None, Euclidean()])
+def test_a_parameter_that_hardly_enters(metric):
+    homotopy = from_functions(lambda y, lam: y**3 + y - 1.0 - 1e-9 * lam, start=([0.6823278038280193], 0.0))
+    path = trace(homotopy, target=1.0, metric=metric)
+    assert path.status is Status.REACHED_TARGET
+    assert len(path) <= 5
 
 
 def gas(y, lam):
@@ -170,6 +169,13 @@ ENDS = {
             Status.REACHED_TARGET, "", pytest.approx(1.0, abs=1e-7), [],
         ) for eps in (1e-8, 1e-10, 1e-12, 1e-14)
     },
+    # Differences with steps of the size of y would see another function.
+    **{
+        f"1e5 of its extents away from zero, lam of {1.0 / scale:g}": (
+            lambda y, lam, scale=scale: (y - 1e5) ** 3 * (1.0 - lam * scale) - 1.0, ([1e5 + 1.0], 0.0), 0.5 / scale,
+            Status.REACHED_TARGET, "", pytest.approx(1e5 + 2.0 ** (1.0 / 3.0), abs=1e-9), None,
+        ) for scale in (1.0, 1e-3)
+    },
     **{f"Powell's function from {start}": powell(start) for start in ((3.0, 6.0), (4.0, 5.0))},
 }  # fmt: skip
 
@@ -214,17 +220,13 @@ def test_samples_of_one_field_have_one_scale():
 
 @every_preset
 @pytest.mark.parametrize("y", [np.cos(np.pi / 2.0), -np.cos(np.pi / 2.0), 1e-12, 1e-9])
-def test_a_start_at_a_fold_to_round_off(preset, y):
+@pytest.mark.parametrize("unit", [1.0, 5e-6, 3e3])
+def test_a_start_at_a_fold_to_round_off(preset, y, unit):
     """The circle from its top: where y = cos(pi / 2) the parameter's tangent is what the path has next to its fold."""
-    for size, unit in ((1.0, 1.0), (5.0, 1e-6), (0.3, 1e4)):
-        homotopy = from_functions(
-            lambda x, lam, size=size, unit=unit: (x / (size * unit)) ** 2 + lam**2 - 1.0,
-            start=(np.array([size * unit * y]), 1.0),
-            target=None,
-        )
-        path = trace(homotopy, preset=preset)
-        assert path.status is Status.CLOSED
-        assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
+    start = (np.array([unit * y]), 1.0)
+    path = trace(from_functions(lambda x, lam: (x / unit) ** 2 + lam**2 - 1.0, start=start, target=None), preset=preset)
+    assert path.status is Status.CLOSED
+    assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
 
 
 @without_series
