@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from problems import lcp
+from problems.lcp import Outcome
 from problems.lcp.data.scaling import balanced
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
@@ -16,7 +17,6 @@ from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 from ...util import benchmark
 from .util import powers
 
-Outcome = lcp.Outcome
 campaign = benchmark("claims.py")
 
 
