@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from archive_kills import HOMOTOPY, child, left_by_a_kill
+from archive_kills import HOMOTOPY, child, left_by_a_kill, starts
 from campaign import WRONG, Campaign, Verdict
 
 from continuation import Budget, trace
@@ -44,32 +44,53 @@ def subjects(folder: Path) -> list[Path]:
     return [closed, killed, many, packed]
 
 
-KINDS = ("bit", "bit", "eight bits", "bit of something", "byte", "64 bytes", "page", "pages", "truncation")
+Change = tuple[int, int, bytes]
+"""From where and to where a file is replaced, and by what."""
+
+
+def put(at: int, new: bytes) -> Change:
+    """Bytes in the place of as many."""
+    return at, at + len(new), new
+
+
+def anywhere(raw: bytes, generator: random.Random) -> int:
+    return generator.randrange(len(raw) - 64)
+
+
+def something(raw: bytes, generator: random.Random) -> int:
+    """The place of a byte that is not zero."""
+    return generator.choice([at for at, byte in enumerate(raw) if byte])
+
+
+def flipped(raw: bytes, at: int, generator: random.Random) -> Change:
+    return put(at, bytes([raw[at] ^ 1 << generator.randrange(8)]))
+
+
+def page(raw: bytes, generator: random.Random) -> int:
+    return PAGE * generator.randrange(len(raw) // PAGE)
+
+
+def exchanged(raw: bytes, a: int, b: int) -> list[Change]:
+    return [put(a, raw[b : b + PAGE]), put(b, raw[a : a + PAGE])]
+
+
+KINDS: dict[str, Callable[[bytes, random.Random], list[Change]]] = {
+    "bit": lambda raw, r: [flipped(raw, anywhere(raw, r), r)],
+    "eight bits": lambda raw, r: [flipped(raw, anywhere(raw, r), r) for _ in range(8)],
+    "bit of something": lambda raw, r: [flipped(raw, something(raw, r), r)],
+    "byte": lambda raw, r: [put(something(raw, r), bytes([r.choice([0, 127, 128, 255])]))],
+    "64 bytes": lambda raw, r: [put(anywhere(raw, r), bytes(64))],
+    "page": lambda raw, r: [put(page(raw, r), bytes(PAGE))],
+    "pages": lambda raw, r: exchanged(raw, page(raw, r), page(raw, r)),
+    "truncation": lambda raw, r: [(anywhere(raw, r), len(raw), b"")],
+}
 
 
 def damaged(whole: bytes, kind: str, generator: random.Random) -> bytes:
     """The bytes of a file after a kind of damage."""
     raw = bytearray(whole)
-    at = generator.randrange(len(raw) - 64)
-    if kind in ("bit of something", "byte"):
-        while not raw[at]:
-            at = generator.randrange(len(raw))
-    if kind == "byte":
-        raw[at] = generator.choice([0, 127, 128, 255])
-    elif kind == "64 bytes":
-        raw[at : at + 64] = bytes(64)
-    elif kind == "page":
-        first = at // PAGE * PAGE
-        raw[first : first + PAGE] = bytes(len(raw[first : first + PAGE]))
-    elif kind == "pages":
-        a, b = (PAGE * generator.randrange(len(raw) // PAGE) for _ in range(2))
-        raw[a : a + PAGE], raw[b : b + PAGE] = raw[b : b + PAGE], raw[a : a + PAGE]
-    elif kind == "truncation":
-        del raw[at:]
-    else:
-        for _ in range(8 if kind == "eight bits" else 1):
-            raw[at] ^= 1 << generator.randrange(8)
-            at = generator.randrange(len(raw))
+    for begin, end, new in KINDS[kind](whole, generator):
+        raw[begin:end] = new
     return bytes(raw)
 
 
@@ -101,7 +122,7 @@ class Judge:
         return {
             "read": lambda: self._is(content(file)),
             "describe": lambda: bool(_described(file)),
-            "resume": lambda: self._follows(resume(file, archive=again, budget=self.budget)),
+            "resume": lambda: starts(resume(file, archive=again, budget=self.budget), self.path),
             "recover": lambda: self._recovered(recover(file)),
         }
 
@@ -115,13 +136,10 @@ class Judge:
         rows["controller_state"] = right["controller_state"]
         return {**found, "paths": rows} == self.content
 
-    def _follows(self, path: Any) -> bool:
-        return bool(path.u.tobytes() == self.path.u[: len(path)].tobytes())
-
     def _recovered(self, file: Path) -> bool:
         with open_archive(file) as archive:
             # Steps only: a path that is cut has no more events than points.
-            return all(self._follows(path) for path in archive)
+            return all(starts(path, self.path) for path in archive)
 
     def verdicts(self, file: Path) -> dict[str, str]:
         """The result of each operation, in a new process."""
@@ -169,7 +187,7 @@ def campaign(folder: Path) -> Campaign:
         judges = [(Judge(file), file.name) for file in files]
         work.mkdir()
         for k in range(number):
-            (right, name), kind = judges[k % len(files)], KINDS[k // len(files) % len(KINDS)]
+            (right, name), kind = judges[k % len(files)], [*KINDS][k // len(files) % len(KINDS)]
             for left in work.iterdir():
                 left.unlink()
             (work / name).write_bytes(damaged(right.raw, kind, generator))

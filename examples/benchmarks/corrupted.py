@@ -101,10 +101,9 @@ def elsewhere(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return changed(path, event, evolve(event, u=event.u + off))
 
 
-def listed(step: Any, kind: Kind) -> LocatedEvent:
+def listed(step: Any) -> LocatedEvent:
     """A point of the path as an event."""
-    name = "turning point" if kind is Kind.TURNING_POINT else "on the path"
-    return LocatedEvent(name, kind, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index)
+    return LocatedEvent("on the path", Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index)
 
 
 def left_out(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
@@ -228,7 +227,7 @@ def judge(case: tuple[Any, Path, Any, Path], way: Any) -> Verdict:
         return f"{fault.__name__} refused", np.nan
     if fault is left_out:
         kept = {s.u.tobytes() for s in corrupted.steps}
-        gone = [listed(s, Kind.EVENT) for s in path.steps if s.u.tobytes() not in kept]
+        gone = [listed(s) for s in path.steps if s.u.tobytes() not in kept]
         holding = numbered(path, [s for s in path.steps if s.u.tobytes() in kept], [*path.events, *gone])
         # Rational proofs are of the lines themselves, and take no event that is no kink.
         if isinstance(homotopy, Linear) or proved(homotopy, holding):

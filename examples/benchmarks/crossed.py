@@ -5,16 +5,18 @@ gets unknowns and equations that are mixed and in random units: y = D T x + c, l
 """
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from attrs import frozen
+from scipy.optimize import brentq
 
 from continuation.arrays import Array
 
-Scalar = Callable[[float, float], tuple[float, float, float]]
-"""(x_0, s) -> p and its two derivatives."""
+Scalar = Callable[[Any, Any], Any]
+"""(x_0, s) -> p."""
 
 
 @frozen(eq=False)
@@ -56,7 +58,7 @@ class Crossed:
 
     def point(self, x0: float, s: float) -> tuple[Array, float]:
         """The point of the path in the tracer's units."""
-        x = np.append(x0, self._follow(x0, s)[0])
+        x = np.append(x0, self._follow(x0, s))
         return self.scales[:-1] * (self.mix @ x) + self.origin[:-1], self.scales[-1] * s + self.origin[-1]
 
     def first(self, y: Array, lam: float) -> tuple[float, float]:
@@ -64,10 +66,9 @@ class Crossed:
         x, s = self._x(y, lam)
         return float(x[0]), float(s)
 
-    def _follow(self, x0: Any, s: Any) -> tuple[Any, Any, Any]:
+    def _follow(self, x0: Any, s: Any) -> Any:
         a, b, c, d = self.shape[1:].T
-        phase = b * s + c
-        return a * np.sin(phase) + d * x0 * s, d * s, a * b * np.cos(phase) + d * x0
+        return a * np.sin(b * s + c) + d * x0 * s
 
     @property
     def resolution(self) -> float:
@@ -79,7 +80,7 @@ class Crossed:
         for x0, s in self.crossings:
             size = np.abs(np.append(*self.point(x0, s))) / self.scales
             inner = np.eye(self.origin.size - 1)
-            inner[1:, 0] = null = -self._follow(x0, s)[1]
+            inner[1:, 0] = null = -self.shape[1:, 3] * s
             products = np.abs(self.unmix) @ np.abs(self.mix @ np.append(1.0, -null))
             products = np.abs(np.linalg.inv(self.equations)[0]) @ (np.abs(self.equations) @ (np.abs(inner) @ products))
             found = max(found, float(np.abs(self.unmix[0]) @ size[:-1] + size[-1] + products))
@@ -95,18 +96,7 @@ class Crossed:
 
     def residual(self, y: Any, lam: Any) -> Any:
         x, s = self._x(y, lam)
-        p = self.scalar(x[0], s)[0]
-        return self.equations @ np.concatenate([np.stack([p]), x[1:] - self._follow(x[0], s)[0]])
-
-    def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
-        x, s = self._x(y, lam)
-        _, px, ps = self.scalar(float(x[0]), s)
-        _, fx, fs = self._follow(float(x[0]), s)
-        inner = np.eye(x.size)
-        inner[0, 0] = px
-        inner[1:, 0] = -fx
-        H_y = self.equations @ inner @ self.unmix / self.scales[:-1]
-        return H_y, self.equations @ np.append(ps, -fs) / self.scales[-1]
+        return self.equations @ np.concatenate([np.stack([self.scalar(x[0], s)]), x[1:] - self._follow(x[0], s)])
 
 
 def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Crossed:
@@ -129,13 +119,10 @@ def _slope(k: Array, s: Any) -> Any:
 
 
 def _roots(k: Array, s: Array) -> list[float]:
-    """The zeros at which a graph changes its sign, by Newton's method from a table."""
-    value, roots = _graph(k, s), []
-    for t in s[np.flatnonzero(value[:-1] * value[1:] < 0.0)]:
-        for _ in range(50):
-            t -= _graph(k, t) / _slope(k, t)
-        roots.append(float(t))
-    return roots
+    """The zeros at which a graph changes its sign in a table."""
+    value = _graph(k, s)
+    after = np.flatnonzero(value[:-1] * value[1:] < 0.0)
+    return [float(brentq(partial(_graph, k), s[i], s[i + 1], xtol=1e-15)) for i in after]
 
 
 def transversal(rng: np.random.Generator, n: int, units: float, near: bool = True) -> Crossed:
@@ -184,10 +171,9 @@ def _two(
 ) -> Crossed:
     """A graph, and another one that differs from it by a function, given with its derivative."""
 
-    def p(x: float, s: float) -> tuple[float, float, float]:
-        (apart, opening), slope = difference(s), _slope(a, s)
-        u, v = x - _graph(a, s), x - _graph(a, s) - apart
-        return u * v, u + v, -slope * v - (slope + opening) * u
+    def p(x: Any, s: Any) -> Any:
+        above = x - _graph(a, s)
+        return above * (above - difference(s)[0])
 
     return _dressed(
         rng,
@@ -202,15 +188,11 @@ def _two(
     )
 
 
-def _forked(at: float, k: float) -> Scalar:
-    return lambda x, s: (x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x)
-
-
 def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """x_0 (s - s_0 - k x_0^2) = 0 along the trunk."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0)) * rng.choice([-1.0, 1.0])
     return _dressed(
-        rng, n, units, scalar=_forked(at, k), curve=lambda s: (0.0, s), crossings=[(0.0, at)],
+        rng, n, units, scalar=lambda x, s: x * (s - at - k * x * x), curve=lambda s: (0.0, s), crossings=[(0.0, at)],
         begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
     )  # fmt: skip
 
@@ -219,11 +201,8 @@ def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """x_0 (x_0 - k (s - s_0)) = 0, on either branch."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.normal())
     straight = bool(rng.integers(2))
-
-    def p(x: float, s: float) -> tuple[float, float, float]:
-        return x * (x - k * (s - at)), 2.0 * x - k * (s - at), -k * x
-
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
+        rng, n, units, scalar=lambda x, s: x * (x - k * (s - at)),
+        curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
         begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)), angle=min(abs(k), 1.0),
     )  # fmt: skip

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 from campaign import WRONG, Campaign, Cases, Verdict, drawn
+from scipy.optimize import brentq
 
 import continuation
 from continuation import Status
@@ -53,12 +54,12 @@ def scalar(f: Residual, y0: float, lam0: float, target: float, **known: Any) -> 
 def imperfect(generator: np.random.Generator) -> Case:
     """A pitchfork, a transcritical point, a cusp or a hysteresis, with an imperfection from 1e-2 to 1e-14."""
     eps = 10.0 ** generator.uniform(-14.0, -2.0)
-    kind = generator.integers(3)
-    if kind == 0:
-        return scalar(lambda y, lam: lam * y - y**3 + eps, eps, -1.0, 1.0)
-    if kind == 1:
-        return scalar(lambda y, lam: lam * y - y**2 + eps, eps, -1.0, 1.0)
-    return scalar(lambda y, lam: y**3 + eps * y - lam, -1.0, -1.0 - eps, 1.0)
+    kinds: tuple[tuple[Residual, float, float], ...] = (
+        (lambda y, lam: lam * y - y**3 + eps, eps, -1.0),
+        (lambda y, lam: lam * y - y**2 + eps, eps, -1.0),
+        (lambda y, lam: y**3 + eps * y - lam, -1.0, -1.0 - eps),
+    )
+    return scalar(*kinds[generator.integers(3)], 1.0)
 
 
 def ring(generator: np.random.Generator) -> Case:
@@ -128,9 +129,7 @@ def truss(generator: np.random.Generator) -> Case:
 def weak(generator: np.random.Generator) -> Case:
     """A parameter that enters by 1e-3 to 1e-12."""
     small, m = 10.0 ** generator.uniform(-12.0, -3.0), float(generator.uniform(1.0, 3.0))
-    root = 0.5
-    for _ in range(60):
-        root -= (root**3 + m * root - 1.0) / (3.0 * root**2 + m)
+    root = float(brentq(lambda y: y**3 + m * y - 1.0, 0.0, 1.0, xtol=1e-15))
     return scalar(lambda y, lam: y**3 + m * y - 1.0 - small * lam, root, 0.0, 1.0)
 
 

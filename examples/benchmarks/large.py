@@ -6,14 +6,15 @@ Memory is the most that the process held, with Python, numpy and the problem its
 """
 
 import resource
-from typing import Any
+import sys
 
 import numpy as np
 import scipy.sparse as sp
-from campaign import asked, timed
+from campaign import WRONG, Campaign, Verdict, asked, timed
 
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
+from problems.scenes.torsion import Torsion
 
 
 def obstacle_2d(m: int) -> LCP:
@@ -23,13 +24,6 @@ def obstacle_2d(m: int) -> LCP:
     t = np.arange(1, m + 1) / (m + 1)
     obstacle = 0.3 - 3.0 * np.add.outer((t - 0.5) ** 2, (t - 0.5) ** 2).ravel()
     return LCP(A, A @ obstacle + 5.0)
-
-
-def torsion(m: int) -> MixedLCP:
-    """A bar that yields, an eighth of its section, of about m x m unknowns: with upper bounds."""
-    from problems.scenes.torsion import Torsion
-
-    return Torsion(n=int(np.sqrt(2.0) * m)).problem()
 
 
 def put(m: int) -> LCP:
@@ -59,22 +53,26 @@ def put(m: int) -> LCP:
     return LCP(A[inner][:, inner], (A @ payoff - weight.ravel() / step * payoff)[inner])
 
 
-ROWS = {"obstacle": obstacle_2d, "torsion": torsion, "put": put}
+ROWS = {
+    "obstacle": obstacle_2d,
+    # A bar that yields, an eighth of its section, of about m x m unknowns: with upper bounds.
+    "torsion": lambda m: Torsion(n=int(np.sqrt(2.0) * m)).problem(),
+    "put": put,
+}
 
 
-def measured(row: str, m: int, way: str) -> dict[str, Any]:
-    """One solve in numbers."""
-    problem = ROWS[row](m)
+def judge(problem: MixedLCP, way: str) -> Verdict:
+    """One solve in numbers, and its seconds."""
     found, seconds = timed(lambda: lcp.solve(problem, sparse=way))
-    assert found.solved, found.message
-    end = lcp.certify(problem, found.x)
+    end, counts = lcp.certify(problem, found.x), found.counts.factorizations
     said = found.message.partition("Sparse factorisations: ")[2].partition(". In")[0]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    answer = {"n": problem.n, "seconds": seconds, "residual": end.relative_residual, "natural": end.residual}
-    return answer | {"memory": memory, "factorisations": found.counts.factorizations, "said": said}
+    fault = "" if found.solved else f"{WRONG}: {found.outcome.name}, "
+    return f"{fault}n {problem.n}, residual {end.relative_residual:.0e}, natural {end.residual:.0e}, {counts} " \
+           f"factorisations: {said}; {memory:.0f} MiB", seconds  # fmt: skip
 
 
 if __name__ == "__main__":
     rows, _, options = asked(size=316, way="auto")
-    for name, value in measured(rows[0], options.size, options.way).items():
-        print(f"{name}: {value}")
+    families = {name: lambda number, seed, make=make: [make(options.size)] for name, make in ROWS.items()}
+    sys.exit(Campaign(families, judge, {options.way: options.way}, "seconds").run(1, 0, rows))

@@ -11,21 +11,20 @@ from problems.paper import EXAMPLES
 each = pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: f"{example.number}-{example.label}")
 
 
-def homotopy(example):
-    return KKTHomotopy(example.problem, example.x0, example.z1, example.z2)
-
-
-@pytest.fixture(scope="module")
-def series():
-    """By number: the paths of the preset SERIES with Pade approximants of order 30."""
-    taylor = Taylor(order=30, rational=True)
-    return {example.number: trace(homotopy(example), preset=SERIES, predictor=taylor) for example in EXAMPLES}
+def traced(**options):
+    return {e.number: trace(KKTHomotopy(e.problem, e.x0, e.z1, e.z2), **options) for e in EXAMPLES}
 
 
 @pytest.fixture(scope="module")
 def default():
     """By number: the paths of the default parts."""
-    return {example.number: trace(homotopy(example)) for example in EXAMPLES}
+    return traced()
+
+
+@pytest.fixture(scope="module")
+def series():
+    """The same with the preset SERIES and Pade approximants of order 30."""
+    return traced(preset=SERIES, predictor=Taylor(order=30, rational=True))
 
 
 @each

@@ -22,8 +22,7 @@ MERGE = 3.9121535
 
 def folding(a):
     """A row sufficient matrix, a start from which lambda turns twice for a > MERGE, and not at all for a < MERGE."""
-    problem = LCP([[0, -a], [1, 0]], [5, 2])
-    return KKTHomotopy(problem, [2.0, 1.0])
+    return KKTHomotopy(LCP([[0, -a], [1, 0]], [5, 2]), [2.0, 1.0])
 
 
 @for_interior_paths

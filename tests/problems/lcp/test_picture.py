@@ -3,18 +3,12 @@
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from problems import lcp
 from problems.paper import COUNTEREXAMPLES
 
 mpl.use("Agg")
-from matplotlib import pyplot
-
-
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    pyplot.close("all")
 
 
 def bars(axes):
@@ -26,7 +20,7 @@ def bars(axes):
 def test_a_face_has_one_bar_for_each_pair_and_a_ring_where_both_are_zero():
     # x = (1, 0, 0), w = (0, 2, 0): the last pair is degenerate.
     solution = lcp.solve(lcp.LCP([[2, 0, 0], [0, 1, 0], [-1, 0, 1]], [-2, 2, 1]))
-    axes = solution.plot(mpl.figure.Figure().subplots())
+    axes = solution.plot(Figure().subplots())
     up, down = bars(axes)
     assert up == {0: 1.0}
     assert down == {1: -1.0}

@@ -81,20 +81,6 @@ def test_a_planted_solution_solves_and_is_of_its_kind(kind, data):
         assert (min(sums) > 0) == (kind[0] == "strict")
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: mine.planted_lcps("lots"), "kind: .*'lots'"),
-        (lambda: mine.planted_lcps("many", "P"), "cls: .*'P'"),
-        (lambda: mine.matrices("Q"), "cls: expected one of any, P, .*found 'Q'"),
-        (lambda: mine.matrices("P", 3, entries=st.floats(-1.0, 1.0)), "entries: expected none for the class P"),
-    ],
-)
-def test_what_is_unknown_is_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
 @given(mine.near_singular_lcps(st.integers(2, 4)))
 def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_feasible(pair):
     problem, x0 = pair

@@ -18,12 +18,6 @@ from problems.paper import EXAMPLES
 from ...util import share
 
 
-def kkt_path(pair, **options):
-    """The path of the paper's start z1 = z2 = e."""
-    problem, x0 = pair
-    return trace(KKTHomotopy(problem, x0), **options)
-
-
 @share(40)
 @given(feasible_lcps())
 def test_the_path_of_a_feasible_start_is_feasible_throughout_and_ends_at_lambda_zero(pair):
@@ -33,7 +27,7 @@ def test_the_path_of_a_feasible_start_is_feasible_throughout_and_ends_at_lambda_
     is not proved in the paper, nor here; no counterexample is known.
     """
     problem, _ = pair
-    path = kkt_path(pair)
+    path = trace(KKTHomotopy(*pair))
     assert path.status is Status.REACHED_TARGET
     assert path.endpoint.lam == 0.0
     assert (path.lam[1:] < 1.0).all()
@@ -62,7 +56,7 @@ def test_row_sufficient_matrices_are_solved(pair):
     Cottle, Pang and Venkateswaran 1989; Cottle, Pang and Stone, Theorem 3.5.4. PSD, P and P_* matrices are such.
     """
     problem, _ = pair
-    path = kkt_path(pair)
+    path = trace(KKTHomotopy(*pair))
     assert path.status is Status.REACHED_TARGET
     certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0), 1e-8)
     assert certificate.solves(1e-8), (certificate.relative_residual, path.message)

@@ -1,6 +1,8 @@
-"""What the tests of theorems have in common."""
+"""What several tests of LCPs have in common."""
 
 import numpy as np
+
+from problems.lcp import MixedLCP
 
 
 def powers(rng, n, largest):
@@ -10,3 +12,18 @@ def powers(rng, n, largest):
 
 def x_at_end(problem, path):
     return np.maximum(path.endpoint.y[: problem.n], 0.0)
+
+
+def drawn(rng, n):
+    """A monotone problem with lower, upper, both and no bounds mixed."""
+    M, kind = rng.standard_normal((n, n)), rng.integers(0, 4, n)
+    lower = np.where(kind % 2 == 0, rng.standard_normal(n), -np.inf)
+    upper = np.where(kind == 1, rng.standard_normal(n), np.where(kind == 2, lower + 0.1 + rng.random(n), np.inf))
+    return MixedLCP(M @ M.T / n + np.triu(M, 1) - np.triu(M, 1).T, rng.standard_normal(n), lower, upper)
+
+
+def on_face(problem, active):
+    """The point with w = 0 on the active set and x = 0 off it."""
+    x, inside = np.zeros(problem.n), np.flatnonzero(active)
+    x[inside] = np.linalg.solve(problem.A[np.ix_(inside, inside)], -problem.q[inside])
+    return x

@@ -34,14 +34,20 @@ def test_the_normal_form_from_its_hopf_point_over_the_fold(f, jacobian, accuracy
     )
 
 
+def spiral(S, w=1.0, L=1.0, off=(0.0, 0.0, 0.0)):
+    """A supercritical Hopf point at zero, in units S of the state, w of time and L of the parameter, moved by `off`."""
+
+    def f(x, p):
+        u, v, z = (x[i] / S[i] - off[i] for i in range(3))
+        q, mu = u * u + v * v, p / L
+        return w * np.stack([S[0] * ((mu - q) * u - v), S[1] * (u + (mu - q) * v), S[2] * (0.3 * u * v - z)])
+
+    return f
+
+
 @pytest.mark.parametrize("left", [[0.0, 0.0, 0.0], [8.2e-39, 4.2e-36, 4.3e-75], [1e-300, 1e-36, 1e-120]])
 def test_what_a_solver_left_of_zeros_sets_no_sizes(left):
-    def f(x, p):
-        u, v, w = x[0] / 1e-3, x[1], x[2] / 100.0
-        g, q = p + u * u + v * v - (u * u + v * v) ** 2, u * v
-        return np.stack([1e-3 * (g * u - v), u + g * v, 100.0 * (0.3 * q - w)])
-
-    orbit = PeriodicOrbit.from_hopf(f, (left, 0.0), intervals=12)
+    orbit = PeriodicOrbit.from_hopf(spiral([1e-3, 1.0, 100.0]), (left, 0.0), intervals=12)
     assert orbit.period == pytest.approx(2.0 * np.pi, rel=1e-6)
     path = continuation.trace(orbit, start=orbit.leaving, budget=continuation.Budget(steps=8))
     assert len(path) == 9
@@ -109,12 +115,7 @@ def test_the_first_orbit_does_not_depend_on_units_or_origin(seed):
     r = np.random.default_rng([5, seed])
     S, w, L = 10.0 ** r.uniform(-4, 4, 3), 10.0 ** r.uniform(-3, 3), 10.0 ** r.uniform(-3, 3)
     off = np.array([0.0, 1.0, 1e4])[seed % 3] * r.normal(size=3)
-
-    def f(x, p):
-        u, v, z = (x[i] / S[i] - off[i] for i in range(3))
-        q, mu = u * u + v * v, p / L
-        return w * np.stack([S[0] * ((mu - q) * u - v), S[1] * (u + (mu - q) * v), S[2] * (0.3 * u * v - z)])
-
+    f = spiral(S, w, L, off)
     rest = continuation.from_functions(f, start=(S * off, -L), target=L)
     (hopf,) = (event for event in continuation.trace(rest, observers=[continuation.Stability()]).events)
     orbit = PeriodicOrbit.from_hopf(f, hopf, intervals=10)

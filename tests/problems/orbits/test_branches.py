@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Curve, Family, Kind, TargetValue
+from continuation import Curve, Family, Kind
 from problems.orbits import PeriodicOrbit
 from problems.orbits.models import brusselator, normal_form
-
-from .util import two_circles
 
 
 def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
@@ -21,19 +19,6 @@ def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
     back = continuation.trace(orbit, start=(np.append(*orbit.start()), -orbit.leaving[1]))
     assert back.events[-1].name == "Hopf point"
     assert back.events[-1].lam == pytest.approx(2.0, abs=1e-6)
-
-
-def test_a_torus_where_a_pair_crosses_the_unit_circle():
-    t = 2.0 * np.pi * np.arange(80) / 80
-    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t], axis=1)
-    orbit = PeriodicOrbit(two_circles, states, 2.0 * np.pi, -0.1, 20, 4, scale=np.ones(4))
-    path = continuation.trace(orbit, direction=1, events=[TargetValue(0.1)])
-    torus, _ = path.events
-    assert torus.name == "torus"
-    assert torus.lam == pytest.approx(0.0, abs=1e-9)
-    values = orbit.multipliers(torus.y, torus.lam).values[1:3]
-    assert np.angle(values) == pytest.approx(2.0 * np.pi * 0.3 * np.array([1.0, -1.0]), abs=1e-6)
-    assert [path.steps[k].observed["unstable"] for k in (0, -1)] == [0.0, 2.0]
 
 
 def test_the_curve_of_folds_of_cycles():

@@ -7,7 +7,6 @@ import continuation
 from continuation import Budget, TargetValue
 from continuation.archive import open_archive
 from problems.orbits import PeriodicOrbit, from_model
-from problems.orbits.models import lorenz, normal_form
 
 
 def test_orbits_of_lorenz_up_to_period_50():
@@ -45,39 +44,3 @@ def test_a_path_on_which_the_phase_condition_fails_says_so():
     path = continuation.trace(orbit, start=orbit.leaving, budget=Budget(steps=60))
     assert path.events[-1].name == "phase condition fails"
     assert orbit.renewed_at == ("phase condition fails",)
-
-
-GOOD = {"states": np.ones((80, 2)), "period": 1.0, "parameter": 0.0}
-TIMES, NOISE = np.arange(50.0), np.random.default_rng(0).normal(size=(50, 3))
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"states": np.ones((79, 2))}, {"states": [1.0]}, {"states": np.full((80, 2), np.nan)}, {"period": 0.0},
-        {"parameter": np.nan}, {"mesh": 1}, {"mesh": [0.0, 0.5, 0.5, 1.0]}, {"degree": 1}, {"scale": [1.0]},
-        {"scale": [1.0, 0.0]}, {"jacobian": 3}, {"smallest": 0.0}, {"f": None}, {"f": lambda x, p: x[:1]},
-    ],
-    ids=lambda wrong: next(iter(wrong)),
-)  # fmt: skip
-def test_what_is_no_orbit_is_refused(wrong):
-    (name,) = wrong
-    with pytest.raises((ValueError, TypeError), match=name):
-        PeriodicOrbit(**{"f": normal_form, **GOOD, **wrong})
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: PeriodicOrbit.from_hopf(normal_form, ([0.3, 0.1], 0.4)), "point"),
-        (lambda: PeriodicOrbit.from_solution(lorenz, TIMES, NOISE, 28.0), "x: expected a simulation"),
-        (lambda: PeriodicOrbit.from_solution(lorenz, np.zeros(50), np.zeros((50, 3)), 28.0), "t:"),
-        (lambda: PeriodicOrbit.from_point(normal_form, (np.zeros(31), 0.0), 2), "point"),
-        (lambda: from_model("ross"), "model"),
-        *((lambda every=every: continuation.follow(from_model(), every=every), "every") for every in (0, True, 1.5)),
-        (lambda: continuation.follow(continuation.from_functions(lambda y, p: y - p, start=([0.0], 0.0))), "homotopy"),
-    ],
-)
-def test_what_cannot_be_meant_is_refused(make, message):
-    with pytest.raises((ValueError, TypeError), match=message):
-        make()

@@ -49,6 +49,10 @@ def test_an_orbit_loses_stability_where_no_parameter_moves_it(name, kind):
     lost, _ = path.events
     assert name in lost.name
     assert lost.lam == pytest.approx(0.0, abs=1e-9)
+    assert [path.steps[k].observed["unstable"] for k in (0, -1)] == [0.0, 2.0 if name == "torus" else 1.0]
+    # What is beside the circle: where it loses stability, before it anywhere.
+    crossing = orbit.multipliers(lost.y, lost.lam).values[1]
+    assert abs(np.angle(crossing)) == pytest.approx(2.0 * np.pi * TURN[name], abs=1e-6)
     if name == "torus":
         return
     if name == "period doubling":

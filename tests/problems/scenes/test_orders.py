@@ -54,22 +54,6 @@ def test_the_order_is_two(case):
         assert abs(limit - exact) <= 0.1 * abs(found[2] - exact)
 
 
-@pytest.mark.parametrize(
-    ("scene", "name", "expected", "accuracy"),
-    [
-        (String(n=1000), "contact from", sqrt(0.1), 4e-7),
-        (String(height=0.2), "floor force", 0.0, 1e-12),
-        (Membrane(n=1000), "contact radius", 0.697965148223, 1e-6),
-        (Torsion(twist=1.0, n=40), "torque", 0.1406, 1e-4),
-        (Torsion(twist=1e4, n=40), "torque", 1.0 / 3.0, 3.3e-4),
-        (BratuLid(n=10), "turning kink", 2.969647, 6e-7),
-        (BratuLid(n=50), "turning kink", 2.974110, 6e-7),
-    ],
-)
-def test_published_numbers(scene, name, expected, accuracy):
-    assert scene.answer(solve(scene))[name] == pytest.approx(expected, abs=accuracy)
-
-
 def test_an_arch_stands_from_milankovitchs_thickness_on():
     def spare(thickness):
         arch = Arch(thickness=thickness, stones=60)

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from continuation.testing import check_homotopy
 from problems.charts.scenes import COUNTS
 from problems.lcp import MixedLCP
-from problems.scenes import available, error, find, make, order, solve
+from problems.scenes import available, error, find, order, solve
 from problems.scenes.scene import conditions
 
 from .util import EXACT_TO, FREE, MINIMAL, small
@@ -77,19 +76,9 @@ def test_no_scene_has_an_unknown_that_its_answer_does_not_need(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_it_is_drawn_with_axes_that_say_what_they_are(name):
     scene, solution = solved(name)
-    figure = Figure()
-    axes = figure.subplots()
+    axes = Figure().subplots()
     scene.draw(solution, axes)
     assert axes.has_data()
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_bad_parameters_are_refused_by_name(name):
-    with pytest.raises(TypeError, match="colour: expected an option"):
-        make(name, {"colour": 1})
-    first = next(iter(signature(find(name)).parameters))
-    with pytest.raises((TypeError, ValueError), match=rf"^{first}: expected"):
-        find(name)(**{first: "text"})
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -101,8 +90,3 @@ def test_rivals_that_are_installed_agree(name):
     for rival in scene.rivals:
         if rival.installed:
             assert error(rival.run(scene), exact) <= max(1e-3, EXACT_TO.get(name, 0.0)), rival.name
-
-
-@pytest.mark.parametrize("name", [name for name in NAMES if not isinstance(conditions(make(name).problem()), MixedLCP)])
-def test_the_homotopies_of_scenes_conform(name):
-    check_homotopy(small(name).problem())

@@ -13,14 +13,22 @@ from problems.lcp.proof.verdict import to_precision
 INF = np.inf
 
 
-def test_what_is_no_program_is_not_read_as_one():
-    A = np.array([[2.0, -1.0], [1.0, 0.0]])
-    assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], -INF, INF, primal=1)) is not None
-    for wrong in ([[2.0, 1.0], [1.0, 0.0]], [[2.0, -1.0], [1.0, 0.5]]):
-        assert Saddle.of(lcp.MixedLCP(wrong, [0.0, 0.0], -INF, INF, primal=1)) is None
-    assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], -INF, INF)) is None
-    assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], [-INF, 0], [INF, 1], primal=1)) is None
-    assert Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], [-INF, 1], [INF, INF], primal=1)) is None
+SADDLE = [[2.0, -1.0], [1.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("A", "lower", "upper", "primal", "program"),
+    [
+        (SADDLE, -INF, INF, 1, True),
+        ([[2.0, 1.0], [1.0, 0.0]], -INF, INF, 1, False),
+        ([[2.0, -1.0], [1.0, 0.5]], -INF, INF, 1, False),
+        (SADDLE, -INF, INF, 0, False),
+        (SADDLE, [-INF, 0], [INF, 1], 1, False),
+        (SADDLE, [-INF, 1], [INF, INF], 1, False),
+    ],
+)
+def test_what_is_no_program_is_not_read_as_one(A, lower, upper, primal, program):
+    assert (Saddle.of(lcp.MixedLCP(A, [0.0, 0.0], lower, upper, primal=primal)) is not None) == program
 
 
 @pytest.mark.parametrize("sparse", [False, True])
@@ -52,11 +60,9 @@ def test_rounding_in_place_of_a_zero_is_solved_to_precision_and_said():
             assert "the data as given may have none" in solution.message
 
 
-def test_a_point_far_along_a_ray_does_not_solve_to_precision():
+@pytest.mark.parametrize(("slope", "x", "solved"), [(-1.0, [1e17, 1e17, 0.0], False), (1.0, [0.0, 0.0, 0.0], True)])
+def test_a_point_far_along_a_ray_does_not_solve_to_precision(slope, x, solved):
     """The objective falls for ever along (1, 1): relative to x its slope is rounding, relative to q it is not."""
-    problem = lcp.from_lp([-1.0, 0.0], A_eq=[[1.0, -1.0]], b_eq=[0.0], lower=0).problem
-    far = np.array([1e17, 1e17, 0.0])
-    assert problem.relative_residual(far) <= 1e-16
-    assert not to_precision(problem, lcp.certify(problem, far))
-    near = lcp.from_lp([1.0, 0.0], A_eq=[[1.0, -1.0]], b_eq=[0.0], lower=0).problem
-    assert to_precision(near, lcp.certify(near, np.zeros(3)))
+    problem = lcp.from_lp([slope, 0.0], A_eq=[[1.0, -1.0]], b_eq=[0.0], lower=0).problem
+    assert problem.relative_residual(np.array(x)) <= 1e-16
+    assert to_precision(problem, lcp.certify(problem, np.array(x))) == solved

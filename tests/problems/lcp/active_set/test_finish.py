@@ -18,6 +18,8 @@ from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.data.problem import BETWEEN, LOWER
 from problems.paper import EXAMPLES
 
+from ..util import on_face
+
 
 def faces(A, q):
     return Faces(Structure(LCP(A, q)))
@@ -36,8 +38,7 @@ def test_a_face_is_solved_alike_in_every_storage(make, band, monkeypatch):
     A = np.diag(4.0 + rng.random(n)) + np.diag(rng.standard_normal(n - 1), 1) + np.diag(rng.standard_normal(n - 1), -1)
     q, active = rng.standard_normal(n), rng.random(n) < 0.5
     x, w = faces(make(A), q).face(state_of(active)).point(np.zeros(n))
-    expected = np.zeros(n)
-    expected[active] = np.linalg.solve(A[np.ix_(active, active)], -q[active])
+    expected = on_face(LCP(A, q), active)
     np.testing.assert_allclose(x, expected, atol=1e-14)
     np.testing.assert_allclose(w, np.where(active, 0.0, A @ expected + q), atol=1e-13)
 
@@ -65,8 +66,7 @@ def test_a_singular_face_is_tried_again_from_elsewhere():
     # Solutions are x1 + x2 = 1 with x1 <= 1 / 4: the point nearest to zero is none, that nearest to (0, 1) is one.
     A, q = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-4.0, 0.0, 0.0]], [-1.0, -1.0, 1.0]
     finish, state = Finish(faces(A, q), 1e-10), state_of(np.array([True, True, False]))
-    assert finish.settle(state, Policy(0)) is None
-    assert finish.settle(state, Policy(0)) is None
+    assert [finish.settle(state, Policy(0)) for _ in range(2)] == [None, None]
     assert finish.counts.factorizations == 1
     assert finish.settle(state, Policy(0), np.array([0.0, 1.0, 0.0])) is not None
 
@@ -83,12 +83,17 @@ def test_a_face_whose_signs_depend_on_round_off_is_corrected():
     assert finish.counts.factorizations <= 6
 
 
-def test_the_cascade_refuses_matrices_of_another_kind():
-    n = 500
-    assert not suitable(Structure(LCP(np.eye(3), -np.ones(3))))
-    assert not suitable(Structure(LCP(sp.eye_array(n) * -1.0, -np.ones(n))))
-    positive = sp.diags_array([1.0, 2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float)
-    assert not suitable(Structure(LCP(positive, -np.ones(n))))
+@pytest.mark.parametrize(
+    "A",
+    [
+        np.eye(3),
+        sp.eye_array(500) * -1.0,
+        sp.diags_array([1.0, 2.0, 1.0], offsets=[-1, 0, 1], shape=(500, 500), dtype=float),
+    ],
+    ids=["small", "negative", "of positive entries"],
+)
+def test_the_cascade_refuses_matrices_of_another_kind(A):
+    assert not suitable(Structure(LCP(A, -np.ones(A.shape[0]))))
 
 
 @pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
@@ -112,16 +117,22 @@ def test_an_archive_holds_nothing_of_what_the_finish_tried(tmp_path):
     np.testing.assert_array_equal(again.u, continuation.trace(homotopy).u)
 
 
-def test_the_iteration_says_why_it_ended():
-    skew, zero = faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), np.array([False, False])
-    assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(np.array([True, False])), Policy(0)).ended is Ended.SETTLED
-    assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(zero), Policy(0)).ended is Ended.STEPS
-    assert iterate(faces([[0.0]], [-1.0]), state_of(np.array([True])), Policy(5)).ended is Ended.SINGULAR
-    known = {key_of(state_of(zero))}
-    assert iterate(skew, state_of(zero), Policy(5), tried=known).ended is Ended.TRIED
-    # x1 enters, leaves and enters again: one change each.
-    turning = iterate(faces([[-1.0]], [-1.0]), state_of(np.array([False])), Policy(50, patience=3))
-    assert turning.ended is Ended.CYCLING
-    judged = iterate(skew, state_of(zero), Policy(0), judge=lambda face, x, w: (x + 7.0, w, True))
-    assert judged.ended is Ended.SOLVED
-    assert (judged.x == 7.0).all()
+ONE, SKEW, NONE = np.eye(2), [[0.0, 1.0], [0.0, 0.0]], [False, False]
+
+
+@pytest.mark.parametrize(
+    ("A", "active", "policy", "options", "ended"),
+    [
+        (ONE, [True, False], Policy(0), {}, Ended.SETTLED),
+        (ONE, NONE, Policy(0), {}, Ended.STEPS),
+        ([[0.0]], [True], Policy(5), {}, Ended.SINGULAR),
+        (SKEW, NONE, Policy(5), {"tried": {key_of(state_of(NONE))}}, Ended.TRIED),
+        # x1 enters, leaves and enters again: one change each.
+        ([[-1.0]], [False], Policy(50, patience=3), {}, Ended.CYCLING),
+        (SKEW, NONE, Policy(0), {"judge": lambda face, x, w: (x + 7.0, w, True)}, Ended.SOLVED),
+    ],
+)
+def test_the_iteration_says_why_it_ended(A, active, policy, options, ended):
+    found = iterate(faces(A, [-1.0, 1.0][: len(active)]), state_of(active), policy, **options)
+    assert found.ended is ended
+    assert ended is not Ended.SOLVED or (found.x == 7.0).all()

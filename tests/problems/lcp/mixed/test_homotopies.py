@@ -1,32 +1,18 @@
 """The homotopies with bounds: the checks of every plug-in, their starts, and what row sufficiency is good for."""
 
-from itertools import cycle
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 import continuation
-from continuation.testing import check_homotopy
 from problems import lcp
-from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.proof.verdict import stationary
 from problems.nonlinear import InteriorHomotopy, MixedComplementarity, solve_complementarity
 
-from .util import stationarity
+from ...util import BOX, exponential, kojima_shindo
+from .util import EVERY_KIND, stationarity
 
-BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
 INF = np.inf
-MONOTONE = np.array([[2.0, 1.0, 0.0, 0.0], [-1.0, 1.0, 0.5, 0.0], [0.0, -0.5, 3.0, 1.0], [0.0, 0.0, -1.0, 0.0]])
-EVERY_KIND = lcp.MixedLCP(MONOTONE, [-1.0, 2.0, -6.0, 0.5], [0.0, -INF, -1.0, -INF], [INF, 1.0, 1.0, INF])
-
-
-@pytest.mark.parametrize(("name", "sparse"), list(zip(BOUNDED, cycle([False, True]))))
-def test_every_check_of_a_plug_in_passes(name, sparse):
-    problem = EVERY_KIND
-    if sparse:
-        problem = lcp.MixedLCP(sp.csr_array(problem.A), problem.q, problem.lower, problem.upper)
-    check_homotopy(HOMOTOPIES[name].from_x0(problem, None, lcp.Structure(problem)))
 
 
 def test_starts_are_inside_and_finite_for_any_bounds():
@@ -53,15 +39,6 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
     # Of four bounds, the lower ones of 0 and 2, the upper ones of 1 and 2, the last is that of the box above: t0.
     np.testing.assert_array_equal(y, [*given_["x0"], *given_["z1"], *given_["z2"], 4.0])
     np.testing.assert_array_equal(homotopy.residual(y, lam), 0.0)
-    for name, value, message in (
-        ("x0", [1.0, 1.0, 0.0, 2.0], r"x0: expected a number between -inf and 1\.0 at index 1, found 1\.0"),
-        ("z1", [1.0, 1.0], "z1: expected 4 positive numbers"),
-        ("z2", [1.0, 2.0, 0.5, 0.0], r"z2: expected a number between -inf and 0\.0 at index 1, found 2\.0"),
-        ("z2", [1.0, -2.0, 2.0, 0.0], r"z2: expected a number between 0\.0 and 2\.0 at index 2, found 2\.0"),
-        ("w0", [1.0, 1.0, -1.0, 1.0], "w0: expected positive finite numbers"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            lcp.KKTHomotopy(EVERY_KIND, **{name: value})
 
 
 def test_the_kkt_equations_of_a_box_by_hand():
@@ -87,14 +64,6 @@ def test_an_end_of_the_kkt_path_is_stationary(seed):
     assert stationarity(homotopy.problem).relative_residual(np.append(x, z)) <= 1e-8
 
 
-def kojima_shindo(x):
-    a, b, c, d = x
-    return np.stack([
-        3 * a * a + 2 * a * b + 2 * b * b + c + 3 * d - 6, 2 * a * a + a + b * b + 10 * c + 2 * d - 2,
-        3 * a * a + a * b + 2 * b * b + 2 * c + 9 * d - 9, a * a + 3 * b * b + 2 * c + 3 * d - 3,
-    ])  # fmt: skip
-
-
 def test_both_solutions_of_kojima_and_shindo():
     problem, rng = MixedComplementarity(kojima_shindo, lower=np.zeros(4)), np.random.default_rng(0)
     found = [solve_complementarity(problem, 3.0 * rng.random(4) + 0.01) for _ in range(12)]
@@ -103,20 +72,9 @@ def test_both_solutions_of_kojima_and_shindo():
     assert {tuple(np.round(solution.x, 12)) for solution in found} == solutions
 
 
-def exponential(x):
-    return np.exp(x) - np.array([2.0, 0.5, 3.0, 1.5, 9.0])
-
-
-def exponential_slope(x):
-    return np.diag(np.exp(x))
-
-
-BOUNDS = {"lower": [0, 0, -INF, -5, 0], "upper": [1, 9, INF, INF, 1]}
-
-
-@pytest.mark.parametrize("jacobian", [None, exponential_slope, lambda x: sp.csr_array(exponential_slope(x))])
+@pytest.mark.parametrize("jacobian", [None, lambda x: np.diag(np.exp(x)), lambda x: sp.diags_array(np.exp(x)).tocsr()])
 def test_a_nonlinear_problem_with_bounds(jacobian):
-    problem = MixedComplementarity(exponential, jacobian, **BOUNDS)
+    problem = MixedComplementarity(exponential, jacobian, **BOX)
     wanted = [np.log(2.0), 0.0, np.log(3.0), np.log(1.5), 1.0]
     solution = solve_complementarity(problem)
     np.testing.assert_allclose(solution.x, wanted, atol=1e-15)
@@ -124,31 +82,3 @@ def test_a_nonlinear_problem_with_bounds(jacobian):
     path = continuation.trace(InteriorHomotopy(problem))
     assert path.success
     np.testing.assert_allclose(path.endpoint.y[:5], wanted, atol=1e-8)
-
-
-def test_every_check_of_a_plug_in_passes_for_nonlinear_problems():
-    check_homotopy(InteriorHomotopy(MixedComplementarity(exponential, **BOUNDS)))
-    check_homotopy(InteriorHomotopy(MixedComplementarity(kojima_shindo, lower=np.zeros(4))))
-
-
-def linear(lower, upper):
-    return lcp.WangHomotopy(lcp.MixedLCP(np.eye(2), [1.0, 1.0], lower, upper))
-
-
-def nonlinear(lower=None, upper=None):
-    return MixedComplementarity(lambda x: x[:2], lower=lower, upper=upper)
-
-
-REFUSED = {
-    "linear, fixed": (linear, ([0, 1], [1, 1]), "problem: expected lower < upper, found a fixed unknown 1"),
-    "no vector": (nonlinear, (), "lower: expected a vector of bounds"),
-    "fixed": (nonlinear, ([0, 1], [2, 1]), "lower: expected less than upper, found both 1.0 at index 1"),
-    "crossed": (nonlinear, ([0, 1], [2, 0]), r"lower: expected at most upper, found lower\[1\]"),
-    "shape": (nonlinear, (np.zeros(3),), r"F\(a\): expected shape \(3,\), that of a, found \(2,\)"),
-}
-
-
-@pytest.mark.parametrize(("make", "bounds", "message"), REFUSED.values(), ids=REFUSED)
-def test_bounds_without_an_inside_are_refused(make, bounds, message):
-    with pytest.raises(ValueError, match=message):
-        make(*bounds)

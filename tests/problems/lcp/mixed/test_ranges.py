@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from attrs import evolve
+from hypothesis import assume, given
+from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from continuation.testing import check_homotopy
 from problems import lcp
 from problems.lcp.homotopies.registry import HOMOTOPIES
+from problems.lcp.mixed_strategies import programs
 
-BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
+from ...util import BOUNDED
+
 INF = np.inf
 NARROW = lcp.MixedLCP(
     [[2.0, 1.0, 0.0, 0.0], [-1.0, 1.0, 0.5, 0.0], [0.0, -0.5, 3.0, 1.0], [0.0, 0.0, -1.0, 0.0]], [-1.0, 2.0, -6.0, 0.5],
@@ -17,19 +21,6 @@ NARROW = lcp.MixedLCP(
 )  # fmt: skip
 """Boxes so narrow that forces and distances are larger."""
 KINDS = pytest.mark.parametrize("sparse", [False, True])
-
-
-def random_program(rng, n, m, sparse=False, rank=None, width=0.5):
-    """A convex program with m rows of two sides, every third of one side alone, half of the variables in boxes."""
-    M = rng.standard_normal((rank or n, n))
-    P, G = M.T @ M / n, rng.standard_normal((m, n))
-    P, middle = (P + P.T) / 2, G @ rng.standard_normal(n)
-    low, high = middle - width * rng.random(m), middle + width * rng.random(m)
-    high[::3] = np.inf
-    lower, upper = np.where(rng.random(n) < 0.5, -3.0, -np.inf), np.where(rng.random(n) < 0.5, 3.0, np.inf)
-    if sparse:
-        P, G = sp.csr_array(P), sp.csr_array(G)
-    return lcp.from_qp(P, rng.standard_normal(n), G, high, rows_lower=low, lower=lower, upper=upper)
 
 
 @KINDS
@@ -48,28 +39,20 @@ def test_linear_programs_with_rows_of_two_sides_beside_highs(sparse):
 
 @KINDS
 @pytest.mark.parametrize("name", BOUNDED)
-def test_solves_and_signs_agree_with_the_full_system(name, sparse):
+@given(st.one_of(st.just(NARROW), programs().map(lambda program: program.problem)), st.integers(0, 2**32 - 1))
+def test_solves_and_signs_agree_with_the_full_system(name, sparse, problem, seed):
     """Forces of an activity far larger and far smaller than its distances, and none at all."""
-    rng, worst = np.random.default_rng(6), 0.0
-    for k in range(30):
-        program = random_program(rng, int(rng.integers(1, 6)), int(rng.integers(2, 5)), sparse)
-        problem = program.problem if k % 3 else NARROW
-        homotopy = HOMOTOPIES[name].make(problem, None)
-        y, _ = homotopy.start()
-        y[problem.n :] *= np.exp(5.0 * rng.standard_normal(y.size - problem.n)) if k % 5 else 0.0
-        lam, border = (0.0, 1.0, 1e-3, rng.random())[k % 4], rng.standard_normal(y.size + 1)
-        H_y, H_lam = homotopy.jacobian(y, lam)
-        whole = np.vstack([np.column_stack([H_y.toarray() if sp.issparse(H_y) else H_y, H_lam]), border])
-        if np.linalg.cond(whole) > 1e14:
-            continue
-        system, r = homotopy.bordered(y, lam, border), rng.standard_normal(y.size)
-        wanted = np.linalg.solve(whole, np.append(r, 0.5))
-        off = np.abs(system.solve(r, 0.5) - wanted).max() / np.abs(wanted).max()
-        worst = max(worst, off / np.linalg.cond(whole))
-        assert system.sign == np.linalg.slogdet(whole)[0]
-    assert worst < 1e-14
-
-
-def test_every_check_of_a_plug_in_passes_with_a_row_of_two_sides():
-    problem = lcp.from_qp(np.diag([2.0, 1.0]), [-3.0, 1.0], [[1.0, 2.0]], [1.0], rows_lower=-1, lower=0).problem
-    check_homotopy(HOMOTOPIES["wang"].make(problem, None))
+    rng = np.random.default_rng(seed)
+    given_problem = evolve(problem, A=sp.csr_array(problem.A)) if sparse else problem
+    homotopy = HOMOTOPIES[name].make(given_problem, None)
+    y, _ = homotopy.start()
+    y[problem.n :] *= np.exp(5.0 * rng.standard_normal(y.size - problem.n)) if seed % 5 else 0.0
+    lam, border = (0.0, 1.0, 1e-3, rng.random())[seed % 4], rng.standard_normal(y.size + 1)
+    H_y, H_lam = homotopy.jacobian(y, lam)
+    whole = np.vstack([np.column_stack([H_y.toarray() if sp.issparse(H_y) else H_y, H_lam]), border])
+    condition = np.linalg.cond(whole)
+    assume(condition <= 1e14)
+    system, r = homotopy.bordered(y, lam, border), rng.standard_normal(y.size)
+    wanted = np.linalg.solve(whole, np.append(r, 0.5))
+    assert np.abs(system.solve(r, 0.5) - wanted).max() < 1e-14 * condition * np.abs(wanted).max()
+    assert system.sign == np.linalg.slogdet(whole)[0]

@@ -4,13 +4,10 @@ import numpy as np
 
 from problems.lcp import MixedLCP
 
-
-def drawn(rng, n):
-    """A monotone problem with lower, upper, both and no bounds mixed."""
-    M, kind = rng.standard_normal((n, n)), rng.integers(0, 4, n)
-    lower = np.where(kind % 2 == 0, rng.standard_normal(n), -np.inf)
-    upper = np.where(kind == 1, rng.standard_normal(n), np.where(kind == 2, lower + 0.1 + rng.random(n), np.inf))
-    return MixedLCP(M @ M.T / n + np.triu(M, 1) - np.triu(M, 1).T, rng.standard_normal(n), lower, upper)
+INF = np.inf
+MONOTONE = np.array([[2.0, 1.0, 0.0, 0.0], [-1.0, 1.0, 0.5, 0.0], [0.0, -0.5, 3.0, 1.0], [0.0, 0.0, -1.0, 0.0]])
+EVERY_KIND = MixedLCP(MONOTONE, [-1.0, 2.0, -6.0, 0.5], [0.0, -INF, -1.0, -INF], [INF, 1.0, 1.0, INF])
+"""One unknown of each kind: a lower bound, an upper one, both, none."""
 
 
 def stationarity(problem):

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from problems.lcp import LCP, MixedLCP, UnprovenError, along, prove_path
+from problems.lcp import LCP, UnprovenError, along, prove_path
 
+from ..util import drawn
 from . import util as known
 
 
@@ -37,10 +38,9 @@ def test_paths_with_ties_are_proved():
 @pytest.mark.parametrize("seed", range(10))
 def test_paths_between_bounds_are_proved(seed):
     random = np.random.default_rng(seed)
-    A, q = random.normal(size=(5, 5)), 3.0 * random.normal(size=5)
-    problem = MixedLCP(A @ A.T, q, [-1.0, -np.inf, 0.0, -np.inf, -0.5], [1, 1, np.inf, np.inf, 2])
-    path = along(problem, A[0], (0.0, 10.0))
-    exact = prove_path(problem, A[0], path)
+    problem, d = drawn(random, 5), random.normal(size=5)
+    path = along(problem, d, (0.0, 10.0))
+    exact = prove_path(problem, d, path)
     assert exact.single
     assert exact.u == pytest.approx(path.u, rel=1e-10)
 

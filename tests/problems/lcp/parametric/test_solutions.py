@@ -37,23 +37,19 @@ def test_faces_give_all_and_paths_the_same():
         assert {tuple(x) for x in followed.points.round(9)} <= {tuple(x) for x in tried.points.round(9)}
 
 
-def test_a_continuum_is_not_complete():
-    found = solutions(LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]))
-    assert not found.complete
-    assert "continuum" in found.message
-
-
-def test_with_bounds():
+CASES = {
+    "a continuum": (LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), {}, (1, 2), False, "continuum"),
     # min -x'x / 2 on a square: nine stationary points.
-    found = solutions(MixedLCP(-np.eye(2), [0.1, 0.2], -1.0, 1.0))
-    assert len(found) == 9
+    "bounds": (MixedLCP(-np.eye(2), [0.1, 0.2], -1.0, 1.0), {}, (9,), False, ""),
+    "a budget": (coordination(3), {"enumerate_faces": False, "budget": Budget(steps=1)}, range(7), False, ""),
+    "none": (LCP([[0.0]], [-1.0]), {}, (0,), True, ""),
+    "none, by paths": (LCP([[0.0]], [-1.0]), {"enumerate_faces": False}, (0,), False, ""),
+}
 
 
-def test_a_budget():
-    assert len(solutions(coordination(3), enumerate_faces=False, budget=Budget(steps=1))) < 7
-
-
-def test_no_solution():
-    assert len(solutions(LCP([[0.0]], [-1.0]))) == 0
-    assert solutions(LCP([[0.0]], [-1.0])).complete
-    assert not solutions(LCP([[0.0]], [-1.0]), enumerate_faces=False).complete
+@pytest.mark.parametrize(("problem", "options", "counts", "complete", "said"), CASES.values(), ids=CASES)
+def test_so_many_are_found_and_it_is_said_whether_these_are_all(problem, options, counts, complete, said):
+    found = solutions(problem, **options)
+    assert len(found) in counts
+    assert found.complete == complete
+    assert said in found.message

@@ -1,6 +1,8 @@
 """Pivoting: paths from basis to basis against an independent Lemke, against closed forms, and through ties."""
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from problems import lcp
 from problems.lcp import LCP
@@ -8,39 +10,22 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
 from problems.lcp.search.pivots import constraints
+from problems.lcp.strategies import lcps
+
+from ....util import share
+from ..util import on_face
 
 
-def on_face(problem, active):
-    """The point with w = 0 on the active set and x = 0 off it."""
-    x = np.zeros(problem.n)
-    inside = np.flatnonzero(active)
-    x[inside] = np.linalg.solve(problem.A[np.ix_(inside, inside)], -problem.q[inside])
-    return x
-
-
-def random_problem(k):
-    """Normal data, or small integers, which make ties; nonnegative or semidefinite, where no ray is."""
-    r = np.random.default_rng([26, k])
-    n = int(r.integers(1, 9))
-    A = r.standard_normal((n, n)) if k % 4 == 0 else r.integers(-3, 4, (n, n)).astype(float)
-    if k % 4 == 2:
-        A = A @ A.T + np.eye(n)
-    elif k % 4 == 3:
-        A = np.abs(A) + np.eye(n)
-    return LCP(A, r.standard_normal(n) if k % 4 == 0 else r.integers(-3, 3, n).astype(float))
-
-
-def test_pivots_end_at_a_solution_or_on_a_ray():
-    solved = 0
-    for k in range(400):
-        problem = random_problem(k)
-        path = covering(problem, np.ones(problem.n))
-        if path.run(1000) is Ended.REACHED:
-            solved += 1
-            assert problem.natural_residual(on_face(problem, path.active)) < 1e-9
-        else:
-            assert path.ended is Ended.RAY
-    assert solved > 200
+@share(400)
+@given(st.sampled_from(("any", "P")), st.data())
+def test_pivots_end_at_a_solution_or_on_a_ray(cls, data):
+    """Integers so small that they make ties; P-matrices have no ray."""
+    problem = data.draw(lcps(cls, st.integers(1, 8)))
+    path = covering(problem, np.ones(problem.n))
+    if path.run(1000) is Ended.REACHED:
+        assert problem.natural_residual(on_face(problem, path.active)) < 1e-9
+    else:
+        assert (path.ended, cls) == (Ended.RAY, "any")
 
 
 def test_a_singular_basis_is_noticed():

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from operator import itemgetter
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
-from problems.lcp.reference.enumeration import LARGEST_FACES, exhaust, solve_by_enumeration
+from problems.lcp.reference.enumeration import solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, lcps, near_singular_lcps
 from problems.paper import EXAMPLES
 
@@ -24,14 +24,25 @@ def assert_exact(problem, found):
     assert all(solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w for s in found.solutions)
 
 
-def test_the_edge_of_solvability_is_decided_exactly():
-    """x (A x + q) with A = -1: solutions 0 and q while q >= 0, none once q is below zero by the smallest float."""
-    smallest = 5e-324
-    assert [s.x for s in solve_by_enumeration(LCP([[-1]], [smallest])).solutions] == [(0,), (Fraction(smallest),)]
-    assert len(solve_by_enumeration(LCP([[-1]], [0])).solutions) == 1
-    assert not solve_by_enumeration(LCP([[-1]], [-smallest])).solvable
-    assert not solve_by_enumeration(LCP([[0, 1], [0, 0]], [-1, smallest])).solvable
-    assert solve_by_enumeration(LCP([[0, 1], [0, 0]], [-1, 0])).solvable
+SMALLEST = 5e-324
+SOLUTIONS = {
+    # x (q - x): solutions 0 and q while q >= 0, none once q is below zero by the smallest float.
+    "the smallest q": (LCP([[-1]], [SMALLEST]), {(0,): ((),), (Fraction(SMALLEST),): ((0,),)}),
+    "no q": (LCP([[-1]], [0]), {(0,): ((), (0,))}),
+    "less": (LCP([[-1]], [-SMALLEST]), {}),
+    "less, of two": (LCP([[0, 1], [0, 0]], [-1, SMALLEST]), {}),
+    # The paper's example 7: the solution is degenerate, and one of its faces has a singular submatrix.
+    "example 7": (EXAMPLES[6].problem, {(1, 0, 2, 0): ((0, 2), (0, 2, 3))}),
+    "singular faces with one point": (LCP([[0, 0], [-1, -1]], [0, 0]), {(0, 0): ((), (0,), (1,), (0, 1))}),
+    "singular, none": (LCP([[0]], [1]), {(0,): ((),)}),
+}
+
+
+@pytest.mark.parametrize(("problem", "solutions"), SOLUTIONS.values(), ids=SOLUTIONS)
+def test_all_solutions_with_their_faces(problem, solutions):
+    found = solve_by_enumeration(problem)
+    assert {solution.x: solution.faces for solution in found.solutions} == solutions
+    assert found.complete
 
 
 @pytest.mark.parametrize(
@@ -52,24 +63,10 @@ def test_a_continuum_is_reported_as_incomplete(A, q):
     assert_exact(problem, found)
 
 
-@pytest.mark.parametrize(
-    ("problem", "x", "faces"),
-    [
-        # The paper's example 7: the solution is degenerate, and one of its faces has a singular submatrix.
-        (EXAMPLES[6].problem, (1, 0, 2, 0), ((0, 2), (0, 2, 3))),
-        (LCP([[0, 0], [-1, -1]], [0, 0]), (0, 0), None),
-        (LCP([[0]], [1]), (0,), None),
-    ],
-)
-def test_a_singular_face_with_one_point_is_complete(problem, x, faces):
-    found = solve_by_enumeration(problem)
-    (solution,) = found.solutions
-    assert solution.x == x
-    assert found.complete
-    assert faces is None or solution.faces == faces
+HARD = [drawn().map(itemgetter(0)) for drawn in (near_singular_lcps, badly_scaled_lcps)]
 
 
-@given(lcps("any", ORDERS))
+@given(st.one_of(lcps("any", ORDERS), *HARD))
 def test_every_solution_solves_exactly_and_they_are_distinct(problem):
     found = solve_by_enumeration(problem)
     assert_exact(problem, found)
@@ -91,15 +88,3 @@ def test_for_q0_matrices_solvable_means_feasible(problem):
     rows = zip(problem.A.astype(int).tolist(), problem.q.astype(int).tolist(), strict=True)
     feasible = feasible_point([at_least(row, -right) for row, right in rows], problem.n) is not None
     assert solve_by_enumeration(problem).solvable == feasible
-
-
-@given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
-def test_hard_numbers_are_exact_too(pair):
-    problem, _ = pair
-    assert_exact(problem, solve_by_enumeration(problem))
-
-
-@pytest.mark.parametrize("method", [solve_by_enumeration, exhaust])
-def test_a_large_problem_is_refused(method):
-    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST_FACES}"):
-        method(LCP(np.eye(15), -np.ones(15)))
