@@ -22,7 +22,7 @@ from continuation.step.stepper import Attempt, Stepper
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
-LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
+LANDING = BorderedNewton(max_contraction=RELIABLE)
 """Correctors at a fixed parameter must contract well: far solutions look as good."""
 
 
@@ -69,8 +69,7 @@ class Landing:
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
         solver = self.stepper.solver
-        unit = np.zeros_like(guess)
-        unit[-1] = 1.0
+        unit = np.append(np.zeros(guess.size - 1), 1.0)
         correction = LANDING.correct(solver.evaluator, point, guess, unit, solver.tolerance)
         rejected = correction.rejected(h)
         if rejected is not None:
