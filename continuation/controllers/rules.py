@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from attrs import field, frozen
 
@@ -16,6 +16,14 @@ LEAST_SHRINK = 1.2
 path."""
 
 
+def _of_fixed(bounds: Any) -> Bounds:
+    return checked_bounds(bounds).beginning_with(0.1)
+
+
+def _of_series(bounds: Any) -> Bounds:
+    return checked_bounds(bounds).beginning_with(math.inf)
+
+
 @frozen
 class Fixed:
     """A constant step, `bounds.initial` (0.1); a failure shortens it once, by `ratio`.
@@ -23,7 +31,7 @@ class Fixed:
     With ``max_angle=inf`` it is the backtracking of Dutta, Das and Jana (Steps 2 and 3), which may jump between paths.
     """
 
-    bounds: Bounds = field(factory=Bounds, converter=lambda bounds: checked_bounds(bounds).beginning_with(0.1))
+    bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
     max_angle: float = field(default=0.8, validator=POSITIVE)
     ratio: float = field(default=0.5, validator=FRACTION)
 
@@ -89,7 +97,7 @@ class SeriesRange:
 
     distance: float = field(default=1e-3, validator=POSITIVE)
     max_angle: float = field(default=1.4, validator=POSITIVE)
-    bounds: Bounds = field(factory=Bounds, converter=lambda bounds: checked_bounds(bounds).beginning_with(math.inf))
+    bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:
         """No state."""

@@ -27,13 +27,12 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot, Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.acceptance import Accepted, Examiner
-from continuation.step.capabilities import interior_fraction
 from continuation.step.crossing import between
 from continuation.step.record import StepRecorder
 from continuation.step.settings import Settings
 from continuation.step.start import CLEAR_OF_NOISE, COARSEST
 from continuation.step.state import State
-from continuation.step.stepper import Arrival, Attempt, Stepper
+from continuation.step.stepper import LOW_ORDER_FRACTION, Arrival, Attempt, Stepper
 from continuation.step.verdict import (
     Verdict,
     arc_ended,
@@ -95,7 +94,8 @@ class Advance:
 
     def __attrs_post_init__(self) -> None:
         solver, settings = self.solver, self.settings
-        self.stepper = Stepper(solver, settings.corrector, interior_fraction(settings.predictor))
+        fraction = getattr(settings.predictor, "interior_fraction", LOW_ORDER_FRACTION)
+        self.stepper = Stepper(solver, settings.corrector, fraction)
         self.target = Target(solver, settings.target)
         self.landing = None if settings.target is None else Landing(self.stepper, settings.target)
         self.examiner = Examiner(solver, settings, self.target, self.pieces)
