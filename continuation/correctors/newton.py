@@ -103,7 +103,6 @@ class NaturalParameter:
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
     ) -> Correction:
         """See `Corrector.correct`."""
-        unit = np.zeros_like(predicted)
-        unit[-1] = 1.0
+        unit = np.append(np.zeros(predicted.size - 1), 1.0)
         newton = BorderedNewton(self.reuse, self.max_iterations, self.max_contraction)
         return newton.correct(evaluator, point, predicted, unit, tolerance)

@@ -19,15 +19,12 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
-from continuation.point.linearization import Linearization, linearize, relinearize
+from continuation.point.linearization import SOLVED, Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
 """Ratio of distances to the target: few points, within Newton's reach."""
-
-RELATIVE_FLOOR = 1e-13
-"""Change by the last sample that stops the sampling, relative."""
 
 RESIDUAL_RATIO = 1e-3
 """Largest residual at the limit, relative to the first sample moved to the target."""
@@ -53,7 +50,7 @@ weights at t = 0."""
 EQUALLY_GOOD = 10.0
 """Factor of the best error within which the smallest winding number wins: multiples fit later."""
 
-AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
+AT_PARAMETER = BorderedNewton(max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
 
 
@@ -113,7 +110,7 @@ class Endgame:
                 best, worse = end, 0
             else:
                 worse += 1
-            if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
+            if best.length <= SOLVED or worse >= SAMPLES_WITHOUT_GAIN:
                 break
         if best is None or not self._within(best):
             return None
@@ -155,8 +152,7 @@ class Endgame:
         If `noisy`, an increment below the tolerance is accepted as noise.
         """
         evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
-        unit = np.zeros_like(guess)
-        unit[-1] = 1.0
+        unit = np.append(np.zeros(guess.size - 1), 1.0)
         fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
         u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
@@ -180,13 +176,8 @@ class Endgame:
             return None
 
 
-def _slope(point: Linearization) -> Array:
-    slope: Array = point.tangent / point.tangent[-1]
-    return slope
-
-
 def _sample(point: Linearization, noise: Array) -> Sample:
-    return Sample(point.u, _slope(point), noise)
+    return Sample(point.u, point.tangent / point.tangent[-1], noise)
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float], Array]:

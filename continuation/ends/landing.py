@@ -22,7 +22,7 @@ from continuation.step.stepper import Attempt, Stepper
 SINGULAR_SHARE = 1e-10
 """Parameter's share of the tangent at which an end is singular."""
 
-LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
+LANDING = BorderedNewton(max_contraction=RELIABLE)
 """Correctors at a fixed parameter must contract well: far solutions look as good."""
 
 
@@ -53,37 +53,31 @@ class Landing:
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
-        target = self.target
         high = min(prediction.reach, h)
         try:
             reached = zero_between(
-                lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
+                lambda s: float(prediction(s)[-1]) - self.target, 0.0, high, xtol=ROOT_OF_ROUND_OFF * high
             )
             if reached is None:
                 return None
-            guess = prediction(reached).copy()
+            return np.append(prediction(reached)[:-1], self.target), reached
         except EvaluationError:
             return None
-        guess[-1] = target
-        return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
         solver = self.stepper.solver
-        unit = np.zeros_like(guess)
-        unit[-1] = 1.0
+        unit = np.append(np.zeros(guess.size - 1), 1.0)
         correction = LANDING.correct(solver.evaluator, point, guess, unit, solver.tolerance)
         rejected = correction.rejected(h)
         if rejected is not None:
             return rejected
-        border = point.border
-        along = dot(border, correction.u - point.u)
-        if along <= 0.0:
+        if dot(point.border, correction.u - point.u) <= 0.0:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The end may lie on the boundary.
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
-        return self.stepper.arrive(point, border, h, landed)
+        return self.stepper.arrive(point, point.border, h, landed)
 
 
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:

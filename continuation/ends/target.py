@@ -145,8 +145,7 @@ class Target:
 
     def _at_value(self, end: Linearization, value: float) -> Array:
         evaluator = self.solver.evaluator
-        unit = np.zeros_like(end.u)
-        unit[-1] = 1.0
+        unit = np.append(np.zeros_like(end.y), 1.0)
         u = np.append(end.y, value)
         r = evaluator.residual(u)
         try:

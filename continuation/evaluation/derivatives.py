@@ -75,23 +75,18 @@ class Derivative:
         return full[:, :-1], full[:, -1]
 
     def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
-        scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
-        if scale is not None:
-            directions = directions.copy()
-            directions[-1] *= self.products.even
-            weights = directions[-1][pattern.columns]
+        scale, directions = self.products.scale(u), pattern.directions.copy()
+        directions[-1] *= self.products.even
         seen = self.products(self.residual, u, directions)
         entries, column, product = pattern.entries(seen), seen[:, -2], seen[:, -1]
-        terms, more = entries * weights, column * directions[-1, -1]
+        terms, more = entries * directions[-1][pattern.columns], column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
         # Outside the domain the pattern is not at fault.
         allowed = self.products.agreement * size
         if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
             return None
-        if scale is not None:
-            entries, column = entries / scale[pattern.columns], column / scale[-1]
-        return pattern.matrix(entries), np.ascontiguousarray(column)
+        return pattern.matrix(entries / scale[pattern.columns]), column / scale[-1]
 
 
 def _worth(pattern: Pattern | None) -> Pattern | None:

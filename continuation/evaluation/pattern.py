@@ -73,12 +73,6 @@ class Pattern:
         return unit
 
     @cached_property
-    def weights(self) -> Array:
-        """Check vector by entry."""
-        found: Array = self.directions[-1][self.columns]
-        return found
-
-    @cached_property
     def _places(self) -> Places:
         return np.asarray(self.rows * (self.count + 2) + self.groups[self.columns])
 

@@ -19,13 +19,13 @@ from continuation.events.singularity import ScaledDerivative, scales
 from continuation.linear.nullspace import BORDERS, Bordered, kernels
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
-from continuation.point.linearization import linearize
+from continuation.point.linearization import SOLVED, linearize
 
 LOST_RANKS = 3
 """Lost ranks that are resolved: a sphere in four dimensions."""
 
-STEPS, LAST_INCREMENT = 30, 1e-13
-"""Most steps of an iteration; last increment onto the graph of z, relative to the sphere."""
+STEPS = 30
+"""Most steps of an iteration."""
 
 STARTS = 600
 """Newton starts on the sphere: twenty for each of the 27 lines of three cubics."""
@@ -94,7 +94,7 @@ class Reduced:
             H = self.evaluator.residual(self.u + self.extent * w) / self.sizes
             step = self.bordered.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]))
             w, g = w + step[: n + 1], g + step[n + 1 :]
-            if np.abs(step).max() <= LAST_INCREMENT * size:
+            if np.abs(step).max() <= SOLVED * size:
                 break
         return w, g
 

@@ -13,16 +13,17 @@ from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix, ge
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.products import USUAL_STEP
 from continuation.linear import Banded
 from continuation.linear.entries import extended
 from continuation.linear.nullspace import RANK, Bordered, kernels
 from continuation.linear.refine import BACKWARD_ERROR
 from continuation.metric import inner, norm
 
-POLISHING = Contraction(iterations=15, ratio=np.inf)
+POLISHING = Contraction(ratio=np.inf)
 """First increments may grow; the result is checked."""
 
-SECOND = 1e-5
+SECOND = USUAL_STEP
 """Step, in extents, of central differences of H': ten digits."""
 
 

@@ -117,7 +117,8 @@ def _zero(
         first = int(np.flatnonzero(values[1:])[0]) + 1
         if first == 1 and values[1] < 0.0:
             raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")
-        begin = _on_path(solver, arc, (first if values[first] > 0.0 else first - 1) / (len(values) - 1))
+        t = (first if values[first] > 0.0 else first - 1) / (len(values) - 1)
+        begin = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
         if values[first] < 0.0:
             return begin
         ga = seen(begin)
@@ -126,7 +127,3 @@ def _zero(
     if begin is not arc.a or end is not arc.b:
         arc = cubic_between(begin, end, arc.border)
     return next(zeros(solver, switch, arc, ga, seen(end), noise), None)
-
-
-def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
-    return solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)

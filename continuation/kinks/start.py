@@ -36,16 +36,13 @@ def begin(
 ) -> tuple[Linearization, float, Signs]:
     """The first point, step length and signs; binds the evaluator.
 
-    `u`: the homotopy's start. `start`: one with direction. `StartError` without a branch in that direction.
+    `u`: the start. `start`: one with direction. `StartError` without a branch in that direction.
     """
     try:
-        if start is not None and start[0].size == u.size:
+        if start is not None:
             signs = _signs_beside(pieces, *start)
             solver.evaluator.bind(pieces.piece(signs))
-            point, h = point_from_tangent(solver, start, u.size, metric, target)
-            return point, h, signs
-        if start is not None:
-            point_from_tangent(solver, start, u.size, metric, target)
+            return *point_from_tangent(solver, start, metric, target), signs
         signs = pieces.signs(u)
         for _ in range(PIECES):
             solver.evaluator.bind(pieces.piece(signs))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import Factory, evolve, field, frozen
 from scipy.linalg.blas import dscal
 
 from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector, largest
@@ -59,13 +59,8 @@ class Linearization:
     anchor: Anchor
     tangent: Array
     orientation: int
-    border: Array = field(init=False)
+    border: Array = field(default=Factory(lambda point: point.weights * point.tangent, takes_self=True), init=False)
     """W tangent."""
-
-    @border.default
-    def _border(self) -> Array:
-        border: Array = self.weights * self.tangent
-        return border
 
     @property
     def exact(self) -> bool:

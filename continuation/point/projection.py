@@ -11,7 +11,7 @@ from attrs import Factory, define, evolve, field
 from continuation.arrays import EPS, SIX_DIGITS, Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration, updated
 from continuation.evaluation.errors import EvaluationError
-from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
+from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.metric import norm
 from continuation.point.arc import Arc
@@ -81,7 +81,7 @@ class PathSolver:
         u = guess
         for enough in (*3 * (SMALL_INCREMENT,), *3 * (1.0,)):
             system = evaluator.factor(u, border)
-            settled = self._chord_steps(u, partial(_approximate, system), near, enough)
+            settled = self._chord_steps(u, partial(system.approximate, rho=0.0), near, enough)
             if settled is not None:
                 return settled, Anchor(u, border, system)
             u = u + system.solve(-evaluator.residual(u), 0.0)
@@ -136,10 +136,6 @@ class PathSolver:
         """Project `guess` and linearise; an approximate direction `along` saves solves."""
         u, anchor = self.project(near, guess, border)
         return relinearize(self.evaluator, u, near.weights, anchor, border, guess=along)
-
-
-def _approximate(system: CountedSystem, r: Array) -> Array:
-    return system.approximate(r, 0.0)
 
 
 def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:

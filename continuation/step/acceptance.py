@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import Factory, evolve, field, frozen
 
 from continuation.arrays import dot
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
+from continuation.events import KinkPoint
+from continuation.events.branch_point import BranchPoint
 from continuation.events.scan import first_terminal, found_by_events, scan_events, up_to
 from continuation.kinks.first import first_zero
 from continuation.kinks.through import Crossing, cross
@@ -20,17 +22,13 @@ from continuation.point.projection import PathSolver, arc_on_path
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Kind
-from continuation.step.crossing import Crossed, on_arc
+from continuation.step.crossing import SMALLEST, Crossed, on_arc
 from continuation.step.guard import objection
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
-
-LEAST_STEP_SHARE = 2.0**-8
-"""Least part of the controller's step to which an arc shrinks while eigenvalue count and events disagree. Later
-crossings have other causes: poles of H_y or symmetry."""
 
 
 @frozen(eq=False)
@@ -54,11 +52,9 @@ class Examiner:
     settings: Settings
     target: Target
     pieces: Pieces | None = None
-    branch_index: int | None = field(init=False)
-
-    @branch_index.default
-    def _branch_index(self) -> int | None:
-        return self.settings.branch_index
+    branch_index: int | None = field(
+        default=Factory(lambda examiner: examiner.settings.index_of(BranchPoint), takes_self=True), init=False
+    )
 
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
@@ -106,14 +102,15 @@ class Examiner:
             at = branch.point if branch is not None and within(arc, branch.point, ending.arc.b) else None
             found, monitors, explained = self._events_on(arc, ending, state, at)
             several = ending.limit is not None or (branch is not None and branch.rays is None)
-            if not (explained or several) and attempt.h > LEAST_STEP_SHARE * state.h:
+            # In a shorter arc eigenvalue count and events differ for other causes: poles of H_y or symmetry.
+            if not (explained or several) and attempt.h > SMALLEST * state.h:
                 return _rejected(attempt, Rejection.UNACCOUNTED)
         except EvaluationError as error:
             return _rejected(attempt, Rejection.ARC, str(error))
         crossing = None
         if kink is not None and ending.at is EndsAt.KINK and self.pieces is not None:
             crossing = cross(self.solver, self.pieces, state.signs, arrival, orientation, kink[1])
-            found = [*found, (self.settings.kink_index or 0, arrival)]
+            found = [*found, (self.settings.index_of(KinkPoint) or 0, arrival)]
         last, occurred = first_terminal(events, state.occurrences, found)
         if last is not None:
             i, stopping = found[last]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import define, evolve, field, frozen
 
 from continuation.arrays import Array
 from continuation.controllers import StepMeasures
@@ -27,13 +27,12 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot, Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.acceptance import Accepted, Examiner
-from continuation.step.capabilities import interior_fraction
 from continuation.step.crossing import between
 from continuation.step.record import StepRecorder
 from continuation.step.settings import Settings
 from continuation.step.start import CLEAR_OF_NOISE, COARSEST
 from continuation.step.state import State
-from continuation.step.stepper import Arrival, Attempt, Stepper
+from continuation.step.stepper import LOW_ORDER_FRACTION, Arrival, Attempt, Stepper
 from continuation.step.verdict import (
     Verdict,
     arc_ended,
@@ -55,9 +54,6 @@ NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
 """Attempts at one step after which H's noise is measured again; factor by which it must grow, since two measurements
 differ by less."""
 
-TINY = 1e-300
-"""A monitor value of zero with a sign."""
-
 
 @frozen(eq=False)
 class Moved:
@@ -78,7 +74,7 @@ class Stopped:
     end: Array | None = None
 
 
-@frozen(eq=False)
+@define(eq=False)
 class Advance:
     """Makes the steps of one path.
 
@@ -96,26 +92,15 @@ class Advance:
     examiner: Examiner = field(init=False)
     extent: SupportsExtent | None = field(init=False)
 
-    @extent.default
-    def _extent(self) -> SupportsExtent | None:
+    def __attrs_post_init__(self) -> None:
+        solver, settings = self.solver, self.settings
+        fraction = getattr(settings.predictor, "interior_fraction", LOW_ORDER_FRACTION)
+        self.stepper = Stepper(solver, settings.corrector, fraction)
+        self.target = Target(solver, settings.target)
+        self.landing = None if settings.target is None else Landing(self.stepper, settings.target)
+        self.examiner = Examiner(solver, settings, self.target, self.pieces)
         # isinstance is slow: ask once.
-        return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
-
-    @stepper.default
-    def _stepper(self) -> Stepper:
-        return Stepper(self.solver, self.settings.corrector, interior_fraction(self.settings.predictor))
-
-    @target.default
-    def _target(self) -> Target:
-        return Target(self.solver, self.settings.target)
-
-    @landing.default
-    def _landing(self) -> Landing | None:
-        return None if self.settings.target is None else Landing(self.stepper, self.settings.target)
-
-    @examiner.default
-    def _examiner(self) -> Examiner:
-        return Examiner(self.solver, self.settings, self.target, self.pieces)
+        self.extent = settings.metric if isinstance(settings.metric, SupportsExtent) else None
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:
         """Make one step."""
@@ -304,4 +289,5 @@ class Advance:
     def _monitor_behind(self, event: Event, point: Linearization, before: float) -> float:
         g = event.monitor(point.u, point.tangent)
         moves = isinstance(event, TurningPoint) and abs(g) * math.sqrt(point.weights[event.component]) > STILL
-        return g if moves or not isinstance(event, TurningPoint) else math.copysign(min(abs(before), TINY), before)
+        # Zero, with the sign before.
+        return g if moves or not isinstance(event, TurningPoint) else float(np.sign(before) * np.finfo(float).tiny)

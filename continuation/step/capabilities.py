@@ -14,8 +14,6 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve, offers
 from continuation.point.projection import MaxStep
-from continuation.predictors import Predictor
-from continuation.step.stepper import LOW_ORDER_FRACTION
 
 
 def max_step_of(homotopy: Any) -> MaxStep | None:
@@ -115,9 +113,3 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
         size = f"{np.abs(residual[worse]).max():.1e} in equation {int(np.argmax(np.abs(residual) * worse))}"
         raise ValueError(f"finish: expected None or an end of the path, found a point where H is {size}")
     return end
-
-
-def interior_fraction(predictor: Predictor) -> float:
-    """Part of the distance to the boundary for a prediction: the predictor's, else 0.9."""
-    fraction = getattr(predictor, "interior_fraction", LOW_ORDER_FRACTION)
-    return float(fraction)

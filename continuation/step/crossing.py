@@ -12,9 +12,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from attrs import define, evolve, field, frozen
+from attrs import Factory, define, evolve, field, frozen
 
-from continuation.arrays import Array, dot, generic_vector, largest
+from continuation.arrays import SIX_DIGITS, Array, dot, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
 from continuation.events.eigenvalues import EIGENVALUE_ACCURACY, changes, multiplicity
@@ -26,7 +26,7 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
-from continuation.step.degenerate import SIMPLE_ORDER, Z_ROUND_OFF, BranchPointOnArc, degenerate_point
+from continuation.step.degenerate import FARTHEST, SIMPLE_ORDER, Z_ROUND_OFF, BranchPointOnArc, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
@@ -53,9 +53,6 @@ ON_PATH = 8 * float(np.finfo(float).eps)
 """Largest round-off residual relative to the rows of H'. True crossings had at most 3e-16; 1e-13 joined curves 2e-6
 apart."""
 
-AHEAD = 3.0
-"""Branch points farther ahead, in arc lengths, are left to the next arc."""
-
 NEAR_CROSSING = 0.1
 """Least distance of an arc's end from a crossing, in arc lengths: nearer, factors are nearly singular."""
 
@@ -69,9 +66,6 @@ BEST = 4.0 / 3.0
 SMALLEST = 2.0**-6
 """Least part of an arc searched for pairs of crossings, and least factor of a step: crossings near the beginning may be
 round-off."""
-
-AT_END = 1e-6
-"""Distance of a crossing at the arc's end, in arc lengths: half of its digits are known."""
 
 
 @frozen(eq=False)
@@ -136,11 +130,7 @@ class _Looks:
     ends: bool
     index: int
     told: dict[float, list[float]] = field(factory=dict, init=False)
-    along: Array = field(init=False)
-
-    @along.default
-    def _none(self) -> Array:
-        return np.zeros(self.arc.a.u.size)
+    along: Array = field(default=Factory(lambda looks: np.zeros_like(looks.arc.a.u), takes_self=True), init=False)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
         """Large changes 1 - z at u, near t."""
@@ -211,7 +201,8 @@ class _Looks:
         """The branch point, if crossed along its branch; None if the arc ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
-        if self.ends and 1.0 < s <= 1.0 + AT_END:
+        # Half of a crossing's digits are known.
+        if self.ends and 1.0 < s <= 1.0 + SIX_DIGITS:
             return None
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
@@ -295,7 +286,7 @@ class _Looks:
         off = norm(a.weights, found.u - arc.segment.at(at))
         return (
             BranchPointOnArc(found.u, found)
-            if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length
+            if 0.0 < at < FARTHEST and off <= NEAR_ARC * max(at**4, 1.0) * length
             else None
         )
 

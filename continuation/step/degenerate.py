@@ -13,33 +13,28 @@ from functools import partial
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array
 from continuation.contraction import MONOTONE
 from continuation.evaluation.noise import allowed_along
+from continuation.events.eigenvalues import EIGENVALUE_ACCURACY
 from continuation.events.singularity import SimpleBranchPoint
 from continuation.metric import norm
 from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
-HIGHEST_ORDER = 20.0
-"""Largest order of a zero of z: beyond, z is round-off."""
-
-SECANTS_OF_Z = 20
-"""Limit of secant steps; four or five suffice."""
-
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
 """Relative difference step for z'; first order (2 would hit a double zero); largest order of a simple zero."""
 
-BLURRED, Z_ROUND_OFF = 0.05, 1e-12
-"""Largest useful round-off of z; round-off of products."""
+Z_ROUND_OFF = SIX_DIGITS * SIX_DIGITS
+"""Round-off of z, by products."""
 
 PLACED = 1e-2
 """Distance of a zero of higher order, in arc lengths, that is near enough where secant steps stall: corrections end on
 either of the branches, which are closer than a prediction's error. Without it 2 of 8 curved tacnodes were located."""
 
 FARTHEST = 3.0
-"""Search limit, in arc lengths."""
+"""Branch points farther ahead, in arc lengths, are left to the next arc."""
 
 
 @frozen(eq=False)
@@ -94,12 +89,10 @@ def degenerate_point(
         if not 0.0 < ahead < FARTHEST:
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
-        order = min(max((ahead - t) / (beyond - left), 1.0), HIGHEST_ORDER)
+        order = max((ahead - t) / (beyond - left), 1.0)
         # Points on the path may cost factorisations.
         t, last = ahead - order * beyond, np.inf
-        for _ in range(SECANTS_OF_Z):
-            if not 0.0 < t < FARTHEST:
-                return None
+        while 0.0 < t < FARTHEST:
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
             u = on_path(t)
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
@@ -108,7 +101,7 @@ def degenerate_point(
                 # M_a is nearly singular: z is round-off.
                 if order > SIMPLE_ORDER and abs(z) ** (1.0 / order) <= PLACED:
                     return u, order
-                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= BLURRED else None
+                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else None
             last, t = left, t - order * left
     except ArithmeticError:
         # z is NaN, or secant points coincide.
@@ -134,4 +127,4 @@ def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Arra
     if not size > 0.0:
         return 0.0
     blur = abs(look(u + allowed_along(residual, u, way / size, 2.0 * allowed, size) * way / size) - z)
-    return blur if blur <= BLURRED else 0.0
+    return blur if blur <= EIGENVALUE_ACCURACY else 0.0

@@ -57,15 +57,14 @@ class Settings:
     direction: int
     examine: bool
 
-    @property
-    def branch_index(self) -> int | None:
-        """Index of the branch point event, or None."""
-        return self._index_of(BranchPoint)
+    def index_of(self, kind: type) -> int | None:
+        """Index of the first event of a kind, or None.
 
-    @property
-    def kink_index(self) -> int | None:
-        """Index of the kink event, or None."""
-        return self._index_of(KinkPoint)
+        Parameters
+        ----------
+        kind : type
+        """
+        return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
     @property
     def stops(self) -> list[tuple[int, float]]:
@@ -82,8 +81,7 @@ class Settings:
         """
         if self.target is not None:
             return math.inf
-        ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal == 1]
-        known = ((event.value - u[event.component], v[event.component]) for event in ends)
+        known = ((value - u[i], v[i]) for i, value in self.stops)
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
@@ -95,9 +93,6 @@ class Settings:
         """
         known = (event.bound(evaluator) if isinstance(event, SupportsBound) else event for event in self.events)
         return evolve(self, events=tuple(known))
-
-    def _index_of(self, kind: type) -> int | None:
-        return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
 
 def complete_settings(

@@ -10,7 +10,7 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arguments.checks import real_vector
-from continuation.arrays import Array, generic_vector, median
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, generic_vector, median
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.errors import EvaluationError
@@ -31,11 +31,7 @@ class SingularStartError(StartError):
     """The Jacobian has no full rank at the start: the path has no direction."""
 
 
-CORRECTING = BorderedNewton(max_iterations=20)
-"""Many iterations are cheap: one correction a path."""
-
-STEEP = 1e-8
-"""Least parameter component of a tangent with border e_{N+1}: half of the digits."""
+CORRECTING = BorderedNewton()
 
 CLEAR_OF_NOISE = 4.0
 """Tolerance in units of a correction's noise: two standard deviations of a difference. With half, CONSERVATIVE fails in
@@ -47,15 +43,6 @@ COARSEST = 0.1
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
 """From a guess increments may first grow."""
 
-NEARBY = 1.0
-"""Largest correction, in extents, of a start off its parameter."""
-
-SAME_KERNEL = 1e-6
-"""Relative difference of one kernel by two borders: six digits."""
-
-ALIGNED = 1.0 - 1e-6
-"""Least cosine of one kernel by two borders."""
-
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
@@ -66,8 +53,7 @@ def first_point(
     SingularStartError: wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
-    unit = np.zeros_like(u)
-    unit[-1] = 1.0
+    unit = np.append(np.zeros(u.size - 1), 1.0)
     try:
         residual = evaluator.residual(u)
     except EvaluationError as error:
@@ -101,8 +87,7 @@ def first_point(
 def at_parameter(solver: PathSolver, u: Array) -> Array:
     """The path's point at a guess's parameter value; `StartError` if Newton's method fails."""
     evaluator = solver.evaluator
-    unit = np.zeros_like(u)
-    unit[-1] = 1.0
+    unit = np.append(np.zeros(u.size - 1), 1.0)
     try:
         residual = evaluator.residual(u)
         point, _ = measured(solver, _regular(evaluator, u, unit), Automatic(), None, residual)
@@ -139,7 +124,8 @@ def measured(
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
     for border in (unit, point.border):
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
-        if correction.converged and (border is unit or correction.distance <= NEARBY):
+        # A start off its parameter is corrected by its extent at most.
+        if correction.converged and (border is unit or correction.distance <= 1.0):
             return correction.u
     patient = PATIENT.correct(solver.evaluator, point, u, unit, solver.tolerance)
     if patient.converged:
@@ -166,7 +152,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
         v = point.tangent
         border = np.divide(1.0, v, out=np.zeros_like(v), where=v != 0.0)
         again = linearize(evaluator, u, ones, border / norm(ones, border))
-        if (np.abs(again.tangent - v) <= SAME_KERNEL * np.abs(v)).all():
+        if (np.abs(again.tangent - v) <= SIX_DIGITS * np.abs(v)).all():
             return again
     except EvaluationError:
         pass
@@ -179,7 +165,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
         except EvaluationError as error:
             raise SingularStartError(f"({error}.)") from error
     alignment = abs(float(np.dot(found[0].tangent, found[1].tangent)))
-    if alignment < ALIGNED:
+    if alignment < 1.0 - SIX_DIGITS:
         raise SingularStartError("The kernel of [H_y, H_lam] has more than one dimension there.")
     return found[0]
 
@@ -188,7 +174,7 @@ def _well_conditioned(point: Linearization) -> bool:
     r = generic_vector(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)
-    return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > STEEP
+    return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > ROOT_OF_ROUND_OFF
 
 
 def is_guess(start: Any) -> bool:
@@ -230,12 +216,10 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
 
 
 def point_from_tangent(
-    solver: PathSolver, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
+    solver: PathSolver, start: tuple[Array, Array], metric: Metric, target: float | None
 ) -> tuple[Linearization, float]:
-    """Begin at a point in a direction, which orients the determinant; `ValueError` for a wrong or zero pair."""
-    evaluator, (u, v) = solver.evaluator, point_and_direction(start)
-    if u.size != size:
-        raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
+    """Begin at a point in a direction, which orients the determinant."""
+    evaluator, (u, v) = solver.evaluator, start
     weights = metric.weights(u, v, None)
     try:
         point = linearize(evaluator, u, weights, weights * (v / norm(weights, v)))

@@ -125,7 +125,7 @@ class Tracer:
         self.state: State | None = state
         given = asked["start"]
         self._guess = guessed(given) if is_guess(given) else None
-        self._start = given if self._guess is None else None
+        self._start = None if given is None or self._guess is not None else point_and_direction(given)
         self.settings = complete_settings(homotopy, asked, self._beginning, observers)
         self._bound = self.settings.bound(self._evaluator)
         self.observers = tuple(observers)
@@ -230,7 +230,7 @@ class Tracer:
 
     def _beginning(self) -> Array:
         if self._start is not None:
-            return point_and_direction(self._start)[0]
+            return self._start[0]
         if self.state is not None:
             return self.state.origin.u
         return self._guess if self._guess is not None else self._evaluator.start()
@@ -238,24 +238,22 @@ class Tracer:
     def _first(self) -> Linearization:
         settings = self.settings
         u0 = self._evaluator.start()
-        if self._guess is not None:
-            if self._guess.size != u0.size:
-                raise ValueError(f"start: expected {u0.size - 1} unknowns, found {self._guess.size - 1}")
-            u0 = self._guess
+        given = self._start[0] if self._start is not None else u0 if self._guess is None else self._guess
+        if given.size != u0.size:
+            raise ValueError(f"start: expected {u0.size - 1} unknowns, found {given.size - 1}")
         if self._check:
             report = check_jacobian(self._evaluator.homotopy)
             if not report.correct:
                 raise ValueError(f"jacobian: {report}")
         signs: Signs = ()
-        leaving = None if self._start is None else point_and_direction(self._start)
         if self._pieces is not None:
             point, h, signs = begin(
-                self._solver, self._pieces, u0, leaving, settings.metric, settings.direction, settings.target
+                self._solver, self._pieces, given, self._start, settings.metric, settings.direction, settings.target
             )
-        elif leaving is None:
-            point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
+        elif self._start is None:
+            point, h = first_point(self._solver, given, settings.metric, settings.direction, settings.target)
         else:
-            point, h = point_from_tangent(self._solver, leaving, u0.size, settings.metric, settings.target)
+            point, h = point_from_tangent(self._solver, self._start, settings.metric, settings.target)
         here, bounds = Knot(0.0, point.u, point.tangent), settings.controller.bounds
         state = State(
             history=(here,),
