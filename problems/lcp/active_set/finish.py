@@ -117,10 +117,7 @@ class Finish:
                 x, now = better, certified(self.problem, self.problem.clipped(better))
                 best = min(best, now, key=lambda one: one.relative_residual)
         if not best.solves(self.tolerance):
-            if not self.problem.standard:
-                best = with_zeros(self.problem, best, self.tolerance)
-            elif (best.x > (zeros := np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0))).any():
-                best = certified(self.problem, zeros)
+            best = with_zeros(self.problem, best, self.tolerance)
         if self._kept(best):
             self.solved_on = face
             return best.x, best.w, True
@@ -140,10 +137,8 @@ class Finish:
 
 
 def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:
-    """The best certificate of a point, also at the bounds that its signs ask for."""
-    settled = problem.settled(end.x, end.w)
-    exact = (certify(problem, settled, zero) for zero in (0.0, tolerance))
-    return min(end, *exact, key=lambda one: one.relative_residual)
+    """The better certificate of a point and of the one with its entries near bounds moved there."""
+    return min(end, certify(problem, end.x, tolerance), key=lambda one: one.relative_residual)
 
 
 def below_zero(A: Matrix) -> float:

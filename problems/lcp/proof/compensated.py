@@ -82,13 +82,13 @@ def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
     A, q = problem.A, problem.q
     if problem.sparse:
         total, lost, sizes = _sparse_sums(sp.csr_array(A), q, x)
-        return total + lost, sizes
-    support = x.nonzero()[0]
-    if 2 * support.size <= x.size:
-        A, x = A[:, support], x[support]
-    rows = max(_BLOCK // max(x.size, 1), 1)
-    parts = [summed(A[k : k + rows].T, x[:, None], q[k : k + rows]) for k in range(0, q.size, rows)]
-    total, lost, sizes = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+    else:
+        support = x.nonzero()[0]
+        if 2 * support.size <= x.size:
+            A, x = A[:, support], x[support]
+        rows = max(_BLOCK // max(x.size, 1), 1)
+        parts = [summed(A[k : k + rows].T, x[:, None], q[k : k + rows]) for k in range(0, q.size, rows)]
+        total, lost, sizes = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
     return total + lost, sizes
 
 
@@ -102,24 +102,17 @@ def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Arr
     return partial[-1], np.add.reduce(lost, axis=0), np.add.reduce(np.abs(terms), axis=0)
 
 
-def _sparse_sums(A: Matrix, q: Array, x: Array) -> tuple[Array, Array, Array]:
-    """`summed` for a sparse matrix."""
-    total, lost, size = q.copy(), np.zeros(q.size), np.abs(q)
-    lengths: NDArray[Any] = np.diff(A.indptr)
-    longest_first = np.argsort(-lengths, kind="stable")
-    ordered = lengths[longest_first]
-    for k in range(int(ordered[0])):
-        # Slices avoid gathering rows.
-        everywhere = k < ordered[-1]
-        rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
-        position = A.indptr[:-1][rows] + k
-        product = np.empty_like(position, dtype=float)
-        error = _two_product(A.data[position], x[A.indices[position]], product)
-        after = total[rows] + product
-        lost[rows] += error + _lost(total[rows], product, after)
-        total[rows] = after
-        size[rows] += np.abs(product)
-    return total, lost, size
+def _sparse_sums(A: Matrix, q: Array, x: Array) -> Array:
+    """`summed` for a sparse matrix, whose rows are filled up with zeros to lengths of the same number of bits."""
+    found, lengths = np.empty((3, q.size)), np.diff(A.indptr)
+    bits = np.frexp(lengths)[1]
+    for number in np.unique(bits):
+        rows = np.flatnonzero(bits == number)
+        k = np.arange(lengths[rows].max(initial=0))[:, None]
+        place, there = A.indptr[rows] + k, k < lengths[rows]
+        place = np.where(there, place, 0)
+        found[:, rows] = summed(np.where(there, A.data[place], 0.0), x[A.indices[place]], q[rows])
+    return found
 
 
 def _lost(a: Array, b: Array, total: Array) -> Array:

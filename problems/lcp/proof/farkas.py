@@ -32,8 +32,6 @@ GAP_IN_DOUBT = 1e-6
 """Smaller gaps -q'y, relative to |q|'y, need an exact proof."""
 _NEARLY_TIGHT = 1e-7
 """Smaller relative values are equations in the refinement."""
-_REFINEMENTS = 4
-"""Refinement steps: each squares the error of 1e-10."""
 LARGEST_REFINED = 1500
 """Largest refinement: least squares of this order take seconds."""
 LARGEST_VERTEX = 100
@@ -242,7 +240,8 @@ class _Scaled:
         """The guess with tight conditions solved to round-off, if it is a proof."""
         y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
         conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
-        for _ in range(_REFINEMENTS):
+        # One refinement squares the error of 1e-10.
+        for _ in range(2):
             terms = row_terms(conditions, y)
             relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
             error = max(float(relative.max()), 0.0)

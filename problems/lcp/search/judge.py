@@ -123,7 +123,8 @@ def _moved(
     farkas: Farkas | None, float_farkas: FloatFarkas | None, exhaustion: Exhaustion | None,
 ) -> Solution:  # fmt: skip
     """The answer to another form of the problem, with its proofs; its outcome is judged again."""
-    rounded = _rounded(found, tolerance)
+    end = found.certificate
+    rounded = found.solved and end is not None and not confirmed(found.problem, end, tolerance)
     proved = (farkas is not None and farkas.gap < 0) or (exhaustion is not None and not exhaustion.solvable)
     found = evolve(
         found, problem=problem, message=f"{found.message} {said}".rstrip(),
@@ -162,11 +163,6 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
         problem, outcome, f"{outcome} {message}", None, (), -1, Counts(), time.perf_counter() - began, None, decided
     )
     return found if decided.point is None else _at(found, decided.point, tolerance)
-
-
-def _rounded(found: Solution, tolerance: float) -> bool:
-    end = found.certificate
-    return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
 
 
 def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:

@@ -145,10 +145,7 @@ class Paths:
         end = certify(problem, x)
         if not arrived or search.confirmed(end):
             return end
-        # Only zeros move: a stationary point stays one.
-        zeros = certify(problem, x, search.tolerance)
-        zeros = zeros if problem.standard else with_zeros(problem, end, search.tolerance)
-        return min(end, zeros, key=lambda one: one.relative_residual)
+        return with_zeros(problem, end, search.tolerance)
 
     def _restarted(self, name: str, count: int) -> int:
         """Trace paths until one solves; return their number. The k-th depends on the seed and k alone."""

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, largest
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 from problems.lcp.search.search import Search
+from problems.lcp.search.work import default_budget
 
 Single = NDArray[np.float32]
 
@@ -130,7 +131,8 @@ class Reflections:
         if self._runs is None:
             sets = Sets.of(search.problem)
             self._runs = iter(()) if sets is None else sets.rounds(np.random.default_rng(search.asked.seed))
-        rounds = min(work, work * ROUND_WORK / (run_length(n) * n * n)) * search.share
+        share = min(1.0, search.budget.factorizations / default_budget(search.problem).factorizations)
+        rounds = min(work, work * ROUND_WORK / (run_length(n) * n * n)) * share
         for over, faces in self._runs:
             if any(search.settle(face) for face in faces):
                 seed = search.asked.seed

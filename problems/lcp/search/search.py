@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import time
-from functools import cached_property
 from typing import Any
 
 from attrs import define, field, frozen
@@ -23,7 +21,6 @@ from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.proof.verdict import NEARLY, confirmed, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
-from problems.lcp.search.work import default_budget
 
 
 @frozen(eq=False)
@@ -75,11 +72,7 @@ class Search:
     exhaustion: Exhaustion | None = None
     tried: int = 0
     began: float = field(factory=time.perf_counter)
-    _processor: float = field(init=False)
-
-    @_processor.default
-    def _at_first(self) -> float:
-        return time.process_time() if self.budget.seconds < math.inf else 0.0
+    _processor: float = field(factory=time.process_time, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -99,21 +92,11 @@ class Search:
         return time.perf_counter() - self.began
 
     @property
-    def processor(self) -> float:
-        """CPU seconds, which a busy machine does not change."""
-        # Reading the clock takes longer than a small problem.
-        return time.process_time() - self._processor if self.budget.seconds < math.inf else 0.0
-
-    @property
     def exhausted(self) -> str:
-        """The budget's limit that is reached, or ""."""
+        """The budget's limit that is reached, or ""; its seconds are CPU seconds."""
         spent = self.traced.factorizations + (0 if self.finish is None else self.finish.counts.factorizations)
-        return self.budget.spent(Counts(accepted=self.traced.accepted, factorizations=spent), self.processor)
-
-    @cached_property
-    def share(self) -> float:
-        """The budget over the default one, at most 1."""
-        return min(1.0, self.budget.factorizations / default_budget(self.problem).factorizations)
+        counts = Counts(accepted=self.traced.accepted, factorizations=spent)
+        return self.budget.spent(counts, time.process_time() - self._processor)
 
     @property
     def solved(self) -> bool:

@@ -92,3 +92,14 @@ def test_a_start_moves_with_its_bounds_and_is_mirrored_with_them(w0):
     np.testing.assert_allclose(moved, y + np.append(low, np.zeros(4)), rtol=1e-14)
     mirrored, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, -q, -np.inf, -low), -low - x0, w0=w0).start()
     np.testing.assert_allclose(mirrored[[0, 1, 4, 5]], -moved[[0, 1, 4, 5]], rtol=1e-14)
+
+
+def test_a_random_start_between_bounds_has_a_w_for_each_and_equal_products():
+    """Lower bounds first: of x_1 and x_2, then the upper ones of x_0 and x_2."""
+    problem = lcp.MixedLCP(np.eye(3), [5.0, -1.0, 2.0], [-np.inf, 0.0, -1.0], [0.0, np.inf, 1.0])
+    start = lcp.random_start(problem, np.random.default_rng(3))
+    w = problem.w(start.x0)
+    assert (start.w0 > np.maximum([w[1], w[2], -w[0], -w[2]], 0.0)).all()
+    x0, x1, x2 = start.x0
+    products = start.z1 * [x1, x2 + 1.0, -x0, 1.0 - x2]
+    np.testing.assert_allclose(products, products[0], rtol=1e-12)
