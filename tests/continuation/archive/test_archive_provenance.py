@@ -108,8 +108,8 @@ def test_merging_refuses_a_path_that_is_there_already(tmp_path):
     short, whole = tmp_path / "short.h5", tmp_path / "whole.h5"
     trace(Plain(), archive=short, budget=Budget(steps=1))
     resume(short, Plain(), archive=whole, budget=Budget())
-    with pytest.raises(ArchiveError, match=r"whole\.h5: its path 0 is path 0 of .*short\.h5 as well"):
-        merge([short, whole], tmp_path / "all.h5")
+    with pytest.raises(ArchiveError, match=r"whole\.h5: its path 0 is path 0 of .*copy\.h5 as well"):
+        merge([merge([short], tmp_path / "copy.h5"), whole], tmp_path / "all.h5")
     assert not (tmp_path / "all.h5").exists()
 
 

@@ -24,6 +24,7 @@ CASES = {
     "closed": (Circle(), {}),
     "observed": (Bratu1D(12), {"budget": Budget(steps=9)}),
     "branch point": (Pitchfork(), {}),
+    "no point": (from_functions(lambda y, lam: y * y + 1.0 + lam, start=(np.array([0.5]), 0.0), target=1.0), {}),
 }
 
 
@@ -90,21 +91,14 @@ def test_xarray_opens_the_file_without_us(tmp_path, engine):
     assert int(data.committed_points) == data.sizes["point"]
 
 
-def test_to_xarray_is_what_xarray_opens(tmp_path):
+def test_to_xarray_is_what_xarray_opens_and_a_dataframe_has_its_rows(tmp_path):
     trace(Bratu1D(5), archive=tmp_path / "run.h5", budget=Budget(steps=7))
     with open_archive(tmp_path / "run.h5") as archive:
-        ours = archive.to_xarray()
+        ours, frame = archive.to_xarray(), archive.to_dataframe()
+    assert np.array_equal(frame[["y_0", "y_1"]], ours.y[:, :2])
     with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
         theirs = data.load().drop_vars(["committed_points", "committed_paths"])
     xarray.testing.assert_allclose(ours, theirs, rtol=0.0, atol=0.0)
-
-
-def test_dataframe(tmp_path):
-    path = trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
-    with open_archive(tmp_path / "run.h5") as archive:
-        frame = archive.to_dataframe()
-    accepted = frame[frame.role == 0]
-    assert np.array_equal(accepted[["y_0", "y_1"]], path.y)
 
 
 def test_many_paths_in_one_file(tmp_path):
@@ -118,14 +112,6 @@ def test_many_paths_in_one_file(tmp_path):
         for found, path in zip(archive[:2], paths, strict=True):
             assert np.array_equal(found.u, path.u)
         assert archive[-1].status is Status.RAISED
-
-
-def test_a_start_that_fails_is_a_path_without_points(tmp_path):
-    homotopy = from_functions(lambda y, lam: y * y + 1.0 + lam, start=(np.array([0.5]), 0.0), target=1.0)
-    path = trace(homotopy, archive=tmp_path / "run.h5")
-    assert path.status is Status.START_NOT_ON_PATH
-    found = read(tmp_path / "run.h5")
-    assert (found.status, found.message, found.steps) == (path.status, path.message, [])
 
 
 def test_a_trace_that_is_refused_leaves_no_file(tmp_path):

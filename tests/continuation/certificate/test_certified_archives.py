@@ -66,12 +66,7 @@ def test_a_damaged_or_foreign_certificate_is_an_error(tmp_path):
         copy.write_bytes(file.read_bytes())
         with h5py.File(copy, "r+") as opened:
             group = opened["certificate/0"]
-            values = damage(group[name][()])
-            if np.shape(values) == group[name].shape:
-                group[name][...] = values
-            else:
-                del group[name]
-                group[name] = values
+            group[name] = damage(group.pop(name)[()])
         with pytest.raises(ArchiveError, match="certificate of path 0 is damaged"):
             recheck(copy)
 

@@ -10,14 +10,13 @@ import pytest
 from attrs import evolve
 
 import continuation
-from continuation import Curve, Family, Kind, Monitor, TurningPoint, certify
+from continuation import Curve, Family, Kind, Monitor, TargetValue, TurningPoint, certify
 from continuation.archive import recheck
 
 from ..certificate import second
 from .util import (
     Lorenz,
     brusselator,
-    coupled,
     cusp_form,
     first_fold,
     gelfand,
@@ -35,6 +34,7 @@ def folds(family, mu, **options):
     return Curve(family, first_fold(family(mu), **options), mu=mu)
 
 
+PART = {"lam": (-1.0, 1.0)}
 small = partial(gelfand, n=4)
 CASES = {
     "a cusp": (folds(cusp_form, 1.0), {"lam": (-4.0, 4.0), "y": (-16.0, 16.0)}, 1),
@@ -48,6 +48,7 @@ CASES = {
     "an unknown turns": (
         Curve(ring, TurningPoint(1), (np.array([0.7, 0.5]), 0.6), mu=1.0), {"lam": (0.2, 5.0)}, 0,
     ),
+    "a value": (Curve(imperfect, TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07), {**PART, "y": (-5.0, 5.0)}, 2),
     "a slope": (Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1), {"lam": (0.05, 1.0)}, 0),
 }  # fmt: skip
 
@@ -113,13 +114,6 @@ def test_an_archive_holds_the_proof(tmp_path):
         (foreign,) = recheck(file, continuation.from_functions(lambda y, lam: y, start=curve.start()))
         assert "components" in str(foreign)
         path.proof.plot(0)
-
-
-def test_branch_points_are_not_proved_and_that_is_said():
-    curve = Curve(coupled, Kind.BRANCH_POINT, (np.array([1.0, -1.0]), 3.0), mu=1.0)
-    path = continuation.trace(curve, box={"lam": (0.5, 2.0)})
-    with pytest.raises(TypeError, match="residual of a branch point curve is not plain arithmetic: it takes a factor"):
-        certify(path, curve)
 
 
 def test_what_is_proved_is_what_is_recorded_with_threads_too(tmp_path):
