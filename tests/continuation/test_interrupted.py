@@ -7,7 +7,6 @@ import pytest
 from continuation import Interrupted, Status, Tracer
 from continuation.archive import trace_many
 from continuation.cli import main
-from problems import lcp
 from problems.bifurcation import Cusp
 
 from ..util import interrupt
@@ -27,19 +26,6 @@ def test_a_sweep_hands_over_what_it_has():
         trace_many([Cusp(), Pressed(), Cusp()])
     assert [path.status for path in interrupt.value.paths] == [Status.REACHED_TARGET, Status.INTERRUPTED]
     assert str(pickle.loads(pickle.dumps(interrupt.value))) == str(interrupt.value)
-
-
-def test_a_solve_ends_at_the_first(monkeypatch):
-    calls = []
-
-    def pressed(self, y, lam):
-        calls.append(lam)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(lcp.KKTHomotopy, "residual", pressed)
-    with pytest.raises(KeyboardInterrupt):
-        lcp.solve(lcp.LCP([[1.0, -1.0], [-1.0, 1.0]], [-0.5, 2.0]), "kkt", restarts=50)
-    assert len(calls) == 1
 
 
 def test_the_shell_says_what_is_kept(tmp_path, monkeypatch, capsys):

@@ -12,15 +12,17 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 import continuation as c
 from continuation import controllers, correctors, metric, predictors
-from continuation.archive import ArchiveError, Limits, describe, trace_many
+from continuation.archive import Limits, describe, trace_many
 from continuation.controllers import Bounds
 from continuation.linear import Banded
 from continuation.testing import check_homotopy
 from problems import bifurcation, lcp, nonlinear, orbits
 
+from ..util import refused
 from .kinds import KINDS, NAN
 
 
@@ -290,23 +292,15 @@ def cycles() -> Iterator[Call]:
     )  # fmt: skip
 
 
-REFUSALS = (TypeError, ValueError, LookupError, ArchiveError)
-
-
 def verdict(call: Call, argument: str, value: Any) -> str:
     """What comes of a case: "refused", by the name of the argument and what was expected, or what is wrong."""
     with warnings.catch_warnings(record=True) as leaked:
         warnings.simplefilter("always")
         try:
-            call.function(**{**call.right, argument: value})
-            found = "ACCEPTED"
-        except REFUSALS as error:
-            text = str(error.args[0] if isinstance(error, KeyError) and error.args else error)
-            clear = text.startswith(f"{argument}: ") and "\n" not in text and len(text) < 400
-            clear &= "expected" in text or "not finite" in text
-            found = "refused" if clear else f"OBSCURE: {type(error).__name__}: {text[:100]!r}"
-        except Exception as error:
-            found = f"OBSCURE: {type(error).__name__}: {str(error)[:100]!r}"
+            refused(argument, lambda: call.function(**{**call.right, argument: value}), "expected|not finite")
+            found = "refused"
+        except (Exception, pytest.fail.Exception) as error:
+            found = f"ACCEPTED, OR OBSCURE: {type(error).__name__}: {str(error)[:100]!r}"
     return f"WARNING: {leaked[0].message}" if leaked else found
 
 
