@@ -9,8 +9,6 @@ from continuation.archive import trace_many
 from continuation.cli import main
 from problems.bifurcation import Cusp
 
-from ..util import interrupt
-
 
 class Pressed(Cusp):
     """Ctrl-C is pressed where the parameter exceeds 0.2."""
@@ -28,10 +26,8 @@ def test_a_sweep_hands_over_what_it_has():
     assert str(pickle.loads(pickle.dumps(interrupt.value))) == str(interrupt.value)
 
 
-def test_the_shell_says_what_is_kept(tmp_path, monkeypatch, capsys):
-    whole = Cusp.residual
-    monkeypatch.setattr(Cusp, "residual", lambda self, y, lam: whole(self, y, lam) if lam <= 0.2 else interrupt())
-    assert main(["trace", "cusp", "--archive", str(tmp_path / "run.h5")]) == 130
+def test_the_shell_says_what_is_kept(tmp_path, capsys):
+    assert main(["trace", f"{__name__}:Pressed", "--archive", str(tmp_path / "run.h5")]) == 130
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith("continuation: interrupted after ")

@@ -95,16 +95,6 @@ def _resident() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
-def bad_input(folder: Path, size: int) -> Found:
-    """Every argument of everything public; the table has one size."""
-    from .hostile import bad_input as all_of_it
-
-    seen = all_of_it()
-    wrong = sum(seen.values()) - seen["refused"]
-    others = "; ".join(what for what in seen if what != "refused")
-    return Found(sum(seen.values()), wrong, f"{seen['refused']} refused by name in one line; {others or 'no other'}")
-
-
 def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
     """Whether an archive holds the first rows of a path, at least so many, and no others."""
     with open_archive(file) as archive:
@@ -121,6 +111,17 @@ def counted(attempts: Callable[[Path, int], Iterator[str]]) -> Callable[[Path, i
         return Found(size, wrong, ", ".join(f"{number} {what}" for what, number in seen.most_common()))
 
     return campaign
+
+
+@counted
+def bad_input(folder: Path, size: int) -> Iterator[str]:
+    """Every argument of everything public; the table has one size."""
+    from . import hostile
+
+    for call, argument, value in hostile.cases():
+        found = hostile.verdict(call, argument, value)
+        place = f"{hostile.name_of(call)}({argument}={value!r:.60})"
+        yield "refused by name in one line" if found == "refused" else f"WRONG: {place}: {found}"
 
 
 @counted

@@ -7,8 +7,8 @@ that are to be refused. A case is the call with one argument replaced.
 from __future__ import annotations
 
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,25 +34,15 @@ class Call(NamedTuple):
     kinds: Mapping[str, str | tuple[Any, ...]]
 
 
-class World(NamedTuple):
-    """What calls need: made once."""
-
-    homotopy: Any
-    path: Any
-    event: Any
-    pitchfork: Any
-    branch: Any
-    problem: Any
-    program: Any
-
-
-def world() -> World:
-    """A path, a branch point, an LCP."""
+def world() -> SimpleNamespace:
+    """What calls need, made once: a path, a branch point, an LCP."""
     cusp, pitchfork = bifurcation.Cusp(), bifurcation.Pitchfork()
     path = c.trace(cusp)
     branch = next(event for event in c.trace(pitchfork).events if event.kind == c.Kind.BRANCH_POINT)
     problem = lcp.LCP([[2.0, 1.0], [1.0, 2.0]], [-5.0, -6.0])
-    return World(cusp, path, path.events[0], pitchfork, branch, problem, lcp.from_qp(np.eye(2), -np.ones(2)))
+    return SimpleNamespace(
+        homotopy=cusp, path=path, event=path.events[0], pitchfork=pitchfork, branch=branch, problem=problem,
+    )  # fmt: skip
 
 
 OPTIONS = {
@@ -109,7 +99,7 @@ def traced(**options: Any) -> Any:
     return c.Tracer(**options).run()
 
 
-def engine(w: World) -> Iterator[Call]:
+def engine(w: SimpleNamespace) -> Iterator[Call]:
     """Functions of the engine, and of archives."""
     options = {"homotopy": "homotopy", **OPTIONS, **COURSE}
     right = {"homotopy": w.homotopy}
@@ -171,7 +161,7 @@ def engine(w: World) -> Iterator[Call]:
     )  # fmt: skip
 
 
-def solver(w: World) -> Iterator[Call]:
+def solver(w: SimpleNamespace) -> Iterator[Call]:
     """The LCP."""
     data = {"A": np.eye(2), "q": -np.ones(2)}
     right, kinds = {"problem": w.problem}, {"problem": "problem"}
@@ -321,12 +311,3 @@ def cases() -> Iterator[tuple[Call, str, Any]]:
 def name_of(call: Call) -> str:
     """Of the function, for a report."""
     return getattr(call.function, "__qualname__", type(call.function).__name__)
-
-
-def bad_input() -> Counter[str]:
-    """All cases, by what came of them."""
-    seen: Counter[str] = Counter()
-    for call, argument, value in cases():
-        found = verdict(call, argument, value)
-        seen["refused" if found == "refused" else f"{name_of(call)}({argument}={value!r:.60}): {found}"] += 1
-    return seen
