@@ -66,7 +66,12 @@ def test_a_damaged_or_foreign_certificate_is_an_error(tmp_path):
         copy.write_bytes(file.read_bytes())
         with h5py.File(copy, "r+") as opened:
             group = opened["certificate/0"]
-            group[name] = damage(group.pop(name)[()])
+            values = damage(group[name][()])
+            if np.shape(values) == group[name].shape:
+                group[name][...] = values
+            else:
+                del group[name]
+                group[name] = values
         with pytest.raises(ArchiveError, match="certificate of path 0 is damaged"):
             recheck(copy)
 

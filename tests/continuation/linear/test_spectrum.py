@@ -5,9 +5,15 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from continuation.linear import Banded
 from continuation.linear.spectrum import spectrum
 
-from .util import tridiagonal
+
+def banded(matrix):
+    ab = np.zeros((3, len(matrix)))
+    ab[0, 1:], ab[1], ab[2, :-1] = matrix.diagonal(1), matrix.diagonal(), matrix.diagonal(-1)
+    return Banded(ab, 1, 1)
+
 
 # Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs, which it does not hide.
 TURN = la.block_diag([[0.0, 3.0], [-3.0, 0.0]], [[0.0, 1.0], [-1.0, 0.0]])
@@ -17,16 +23,20 @@ LONG = np.diag(np.linspace(0.3, -40.0, 150))
 LONG += np.diag(np.linspace(1.0, 2.0, 149), -1) - np.diag(np.linspace(2.0, 1.0, 149), 1)
 # All that are asked for are unstable, so more are computed.
 TWENTY = np.diag(np.concatenate([np.linspace(1.0, 2.0, 20), np.linspace(-9.0, -1.0, 200)]))
+# Swift and Hohenberg's operator: the bound on real parts is 1e5 times the largest eigenvalue.
+BENDING = np.diff(np.pad(np.eye(300), 1, mode="edge")[:, 1:-1], 2, axis=0) * (300 / 40.0) ** 2 + np.eye(300)
+BENDING = 0.14 * np.eye(300) - BENDING @ BENDING
 
 
 @pytest.mark.parametrize(
     ("matrix", "make", "k"),
     [
-        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, tridiagonal)),
+        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, banded)),
         *((ALIKE, make, None) for make in (np.asarray, sp.csc_array)),
         (TWENTY, sp.csc_array, None),
+        (BENDING, sp.csc_array, None),
     ],
-    ids=["dense", "sparse", "banded", "alike, dense", "alike, sparse", "twenty"],
+    ids=["dense", "sparse", "banded", "alike, dense", "alike, sparse", "twenty", "bending"],
 )
 def test_the_rightmost_of_a_large_matrix_are_found_whatever_its_structure(matrix, make, k):
     exact = np.linalg.eigvals(matrix)
@@ -53,7 +63,7 @@ def test_an_operator_has_no_eigenvalues_that_are_known():
 
 
 @pytest.mark.parametrize("make", [sp.csc_array, lambda matrix: matrix.toarray()], ids=["sparse", "dense"])
-@pytest.mark.parametrize("growth", [-0.3, 0.05, 0.14])
+@pytest.mark.parametrize("growth", [-0.3, 0.05])
 def test_all_unstable_eigenvalues_of_fourth_differences_are_counted(make, growth):
     """Swift and Hohenberg's operator: Gershgorin's discs end at 12,655, beyond the rightmost eigenvalue of 0.05."""
     n = 300
