@@ -3,6 +3,7 @@
 import importlib.util
 import io
 import os
+import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -58,13 +59,14 @@ every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE)
 for_interior_paths = by_preset(DEFAULT, CONSERVATIVE, SERIES)
 
 
-def refused(argument, call):
-    """The call is refused with a line about the argument, or the file of that name; warnings are errors here."""
+def refused(argument, call, words=""):
+    """The call is refused with a line about the argument, or the file of that name, which has these words."""
     with pytest.raises((TypeError, ValueError, LookupError, ArchiveError)) as caught:
         call()
     text = str(caught.value.args[0] if isinstance(caught.value, KeyError) else caught.value)
     assert "\n" not in text
     assert text.startswith(f"{argument}: "), text
+    assert re.search(words, text), text
     assert len(text) < 400
 
 

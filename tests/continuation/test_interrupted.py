@@ -7,10 +7,7 @@ import pytest
 from continuation import Interrupted, Status, Tracer
 from continuation.archive import trace_many
 from continuation.cli import main
-from problems import lcp
 from problems.bifurcation import Cusp
-
-from ..util import interrupt
 
 
 class Pressed(Cusp):
@@ -29,23 +26,8 @@ def test_a_sweep_hands_over_what_it_has():
     assert str(pickle.loads(pickle.dumps(interrupt.value))) == str(interrupt.value)
 
 
-def test_a_solve_ends_at_the_first(monkeypatch):
-    calls = []
-
-    def pressed(self, y, lam):
-        calls.append(lam)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(lcp.KKTHomotopy, "residual", pressed)
-    with pytest.raises(KeyboardInterrupt):
-        lcp.solve(lcp.LCP([[1.0, -1.0], [-1.0, 1.0]], [-0.5, 2.0]), "kkt", restarts=50)
-    assert len(calls) == 1
-
-
-def test_the_shell_says_what_is_kept(tmp_path, monkeypatch, capsys):
-    whole = Cusp.residual
-    monkeypatch.setattr(Cusp, "residual", lambda self, y, lam: whole(self, y, lam) if lam <= 0.2 else interrupt())
-    assert main(["trace", "cusp", "--archive", str(tmp_path / "run.h5")]) == 130
+def test_the_shell_says_what_is_kept(tmp_path, capsys):
+    assert main(["trace", f"{__name__}:Pressed", "--archive", str(tmp_path / "run.h5")]) == 130
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith("continuation: interrupted after ")

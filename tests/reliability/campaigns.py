@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -95,16 +95,6 @@ def _resident() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
-def bad_input(folder: Path, size: int) -> Found:
-    """Every argument of everything public; the table has one size."""
-    from .hostile import bad_input as all_of_it
-
-    seen = all_of_it()
-    wrong = sum(seen.values()) - seen["refused"]
-    others = "; ".join(what for what in seen if what != "refused")
-    return Found(sum(seen.values()), wrong, f"{seen['refused']} refused by name in one line; {others or 'no other'}")
-
-
 def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
     """Whether an archive holds the first rows of a path, at least so many, and no others."""
     with open_archive(file) as archive:
@@ -112,9 +102,32 @@ def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
     return len(rows) >= least and rows.tobytes() == whole.u[: len(rows)].tobytes()
 
 
-def full(folder: Path, size: int) -> Found:
+def counted(attempts: Callable[[Path, int], Iterator[str]]) -> Callable[[Path, int], Found]:
+    """A campaign of attempts, each of which says in words what came of it: of what is wrong the first is WRONG."""
+
+    def campaign(folder: Path, size: int) -> Found:
+        seen = Counter(attempts(folder, size))
+        wrong = sum(number for what, number in seen.items() if what.startswith("WRONG"))
+        return Found(size, wrong, ", ".join(f"{number} {what}" for what, number in seen.most_common()))
+
+    return campaign
+
+
+@counted
+def bad_input(folder: Path, size: int) -> Iterator[str]:
+    """Every argument of everything public; the table has one size."""
+    from . import hostile
+
+    for call, argument, value in hostile.cases():
+        found = hostile.verdict(call, argument, value)
+        place = f"{hostile.name_of(call)}({argument}={value!r:.60})"
+        yield "refused by name in one line" if found == "refused" else f"WRONG: {place}: {found}"
+
+
+@counted
+def full(folder: Path, size: int) -> Iterator[str]:
     """A quota that is reached while a path is traced: one line, and what was committed can be read."""
-    seen, whole_file = Counter[str](), folder / "whole.h5"
+    whole_file = folder / "whole.h5"
     whole = trace(HOMOTOPY, archive=PathLog(whole_file, limits=Limits(rows=5)), **OPTIONS)
     needed = whole_file.stat().st_size
     for k in range(size):
@@ -127,51 +140,49 @@ def full(folder: Path, size: int) -> Found:
 
         status = in_child(work)
         if status == 0:
-            seen["there was room"] += 1
+            yield "there was room"
         elif status >> 8 != 7:
-            seen["WRONG: no ArchiveError"] += 1
+            yield "WRONG: no ArchiveError"
         elif not file.exists():
-            seen["an ArchiveError, no file"] += 1
+            yield "an ArchiveError, no file"
         else:
             recover(file)
-            seen["an ArchiveError, and a right file" if _prefix(file, whole) else "WRONG ROWS"] += 1
-    return _counted(size, seen)
+            yield "an ArchiveError, and a right file" if _prefix(file, whole) else "WRONG ROWS"
 
 
-def truncation(folder: Path, size: int) -> Found:
+@counted
+def truncation(folder: Path, size: int) -> Iterator[str]:
     """Files cut off at every place: an error, or what was written."""
     file, whole = folder / "whole.h5", trace(HOMOTOPY, **OPTIONS)
     trace(HOMOTOPY, archive=file, **OPTIONS)
-    raw, seen = file.read_bytes(), Counter[str]()
+    raw = file.read_bytes()
     for k in range(size):
         cut = folder / "cut.h5"
         cut.write_bytes(raw[: len(raw) * k // size])
         try:
-            seen["right" if _prefix(cut, whole) else "WRONG ROWS"] += 1
+            yield "right" if _prefix(cut, whole) else "WRONG ROWS"
         except ArchiveError as error:
-            seen["a clear error" if "\n" not in str(error) else "WRONG: an error of many lines"] += 1
-    return _counted(size, seen)
+            yield "a clear error" if "\n" not in str(error) else "WRONG: an error of many lines"
 
 
-def growing(folder: Path, size: int) -> Found:
+@counted
+def growing(folder: Path, size: int) -> Iterator[str]:
     """Opened while it is written: each time the first rows of the path, and never fewer than before."""
-    whole, seen, most, file = trace(HOMOTOPY, **OPTIONS), Counter[str](), 0, folder / "growing.h5"
-    steps = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS))
-    for _ in range(size):
-        if next(steps, None) is None:
-            file.unlink()
-            steps, most = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS)), 0
-            next(steps)
-        # By another process, as a reader is.
-        status = in_child(lambda least=most: None if _prefix(file, whole, least) else sys.exit("wrong"))
-        seen["right" if status == 0 else "WRONG"] += 1
-    return _counted(size, seen)
+    whole, looks = trace(HOMOTOPY, **OPTIONS), count(1)
+    for number in count():
+        file = folder / f"growing{number}.h5"
+        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS):
+            # By another process, as a reader is; what is behind the step may not be committed yet.
+            status = in_child(lambda: None if _prefix(file, whole, step.index) else sys.exit("wrong"))  # noqa: B023
+            yield "right" if status == 0 else "WRONG"
+            if next(looks) == size:
+                return
 
 
-def resumes(folder: Path, size: int) -> Found:
+@counted
+def resumes(folder: Path, size: int) -> Iterator[str]:
     """Two resumes of one file at once: one goes on, the other is refused, and the file is whole."""
-    whole, seen = trace(HOMOTOPY, **OPTIONS), Counter[str]()
-    killed = folder / "killed.h5"
+    whole, killed = trace(HOMOTOPY, **OPTIONS), folder / "killed.h5"
 
     def dies() -> None:
         for step in Tracer(HOMOTOPY, observers=(PathLog(killed, limits=Limits(rows=5)),), **OPTIONS):
@@ -185,15 +196,14 @@ def resumes(folder: Path, size: int) -> Found:
         both = [child(lambda file=file: resume(file)) for _ in range(2)]
         statuses = sorted(os.waitpid(one, 0)[1] >> 8 for one in both)
         # Whoever comes when the other is done finds a path that has ended.
-        seen["one resumed, one was refused" if statuses == [0, 7] else f"WRONG: {statuses}"] += 1
-        if not _prefix(file, whole, len(whole)):
-            seen["WRONG ROWS"] += 1
-    return _counted(size, seen)
+        right = "one resumed, one was refused" if _prefix(file, whole, len(whole)) else "WRONG ROWS"
+        yield right if statuses == [0, 7] else f"WRONG: {statuses}"
 
 
-def interrupts(folder: Path, size: int) -> Found:
+@counted
+def interrupts(folder: Path, size: int) -> Iterator[str]:
     """Ctrl-C in `lcp.solve`: one is enough, wherever it comes, and no path begins after it."""
-    residual, seen = lcp.KKTHomotopy.residual, Counter[str]()
+    residual = lcp.KKTHomotopy.residual
     problem = lcp.LCP([[1.0, -1.0], [-1.0, 1.0]], [-0.5, 2.0])
     calls = lcp.solve(problem, "kkt", restarts=2, finish=False).counts.residuals
     for k in range(size):
@@ -207,12 +217,11 @@ def interrupts(folder: Path, size: int) -> Found:
         lcp.KKTHomotopy.residual = pressed
         try:
             lcp.solve(problem, "kkt", restarts=2, finish=False, archive=folder / f"{k}.h5")
-            seen["WRONG: it returned" if next(numbers) > last else "it was done before"] += 1
+            yield "WRONG: it returned" if next(numbers) > last else "it was done before"
         except KeyboardInterrupt:
-            seen["the caller had it" if next(numbers) == last + 1 else "WRONG: it went on"] += 1
+            yield "the caller had it" if next(numbers) == last + 1 else "WRONG: it went on"
         finally:
             lcp.KKTHomotopy.residual = residual
-    return _counted(size, seen)
 
 
 def solves(folder: Path, size: int) -> Found:
@@ -265,7 +274,8 @@ def determinism(folder: Path, size: int) -> Found:
     return Found(size, wrong, f"8 paths and 20 LCPs, serial and in threads, the same in {size - wrong} runs ({seal})")
 
 
-def dask_sweep(folder: Path, size: int) -> Found:
+@counted
+def dask_sweep(folder: Path, size: int) -> Iterator[str]:
     """A sweep over dask: a scheduler, two worker processes, and one of them killed in the middle of a path."""
     from distributed import Client, LocalCluster
 
@@ -280,7 +290,7 @@ def dask_sweep(folder: Path, size: int) -> Found:
             return super().residual(y, lam)
 
     tasks = [DiesOnce(splitting) for splitting in np.linspace(0.5, 2.0, 16)[:15]] + [DiesOnce(1.0)]
-    whole, seen = [trace(Cusp(task.splitting)) for task in tasks], Counter[str]()
+    whole = [trace(Cusp(task.splitting)) for task in tasks]
     for k in range(size):
         place, marker = folder / f"sweep{k}", folder / f"died{k}"
         place.mkdir()
@@ -290,14 +300,8 @@ def dask_sweep(folder: Path, size: int) -> Found:
         with cluster, Client(cluster) as client, trace_many(tasks, client.get_executor(), place / "run.h5") as paths:
             same = len(paths) == len(whole) and all(a.u.tobytes() == b.u.tobytes() for a, b in zip(paths, whole))
         if not marker.exists():
-            seen["WRONG: no worker died"] += 1
+            yield "WRONG: no worker died"
         elif not same or os.listdir(place) != ["run.h5"]:
-            seen["WRONG ROWS, or files left"] += 1
+            yield "WRONG ROWS, or files left"
         else:
-            seen["sweeps of 16 paths, a worker killed, every row right"] += 1
-    return _counted(size, seen)
-
-
-def _counted(size: int, seen: Counter[str]) -> Found:
-    wrong = sum(number for what, number in seen.items() if what.startswith("WRONG"))
-    return Found(size, wrong, ", ".join(f"{number} {what}" for what, number in seen.most_common()))
+            yield "sweeps of 16 paths, a worker killed, every row right"

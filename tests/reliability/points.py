@@ -49,8 +49,8 @@ class Point:
     campaigns: tuple[Campaign, ...] = ()
 
 
-KILLS = Campaign(campaigns.kills, 0, 1332)
-DAMAGE = Campaign(campaigns.damage, 0, 1723)
+KILLS = Campaign(campaigns.kills, 3, 1332)
+DAMAGE = Campaign(campaigns.damage, 36, 1723)
 TRUTH = Campaign(campaigns.tally("truth"), 60, 54_000)
 FULL = Campaign(campaigns.full, 4, 90)
 

@@ -1,6 +1,6 @@
 """Writers that die within a commit: what was committed is there, and is exactly the path.
 
-Kills at random moments are in `test_archive_campaigns.py`.
+Kills at random moments are a campaign of `tests/reliability`.
 """
 
 import h5py

@@ -1,21 +1,15 @@
 """Files that are not what they should be: one clear line each, that names the file."""
 
-import re
-
 import h5py
 import numpy as np
 import pytest
 
 from continuation import trace
-from continuation.archive import ArchiveError, open_archive, resume, trace_many
+from continuation.archive import open_archive, resume, trace_many
 from problems.bifurcation import Circle, FreudensteinRoth
 
+from ...util import refused
 from .util import interrupted, logged, read
-
-
-def refused(file, complaint, function=open_archive):
-    with pytest.raises(ArchiveError, match=rf"^{re.escape(str(file))}: {complaint}[^\n]*$"):
-        function(file)
 
 
 def foreign(file, **attributes):
@@ -73,7 +67,8 @@ FILES = {
 def test_one_line(tmp_path, kind):
     make, complaint = FILES[kind]
     make(tmp_path / "run.h5")
-    refused(tmp_path / "run.h5", complaint, resume if kind == "no state" else open_archive)
+    function = resume if kind == "no state" else open_archive
+    refused(tmp_path / "run.h5", lambda: function(tmp_path / "run.h5"), complaint)
 
 
 def test_columns_of_a_later_minor_version_are_no_obstacle(tmp_path):
@@ -88,12 +83,12 @@ def test_read_only(tmp_path):
     interrupted(file, FreudensteinRoth(), 0)
     file.chmod(0o444)
     assert len(read(file)) == 1
-    refused(file, "is read-only", resume)
+    refused(file, lambda: resume(file), "is read-only")
     resume(file, archive=tmp_path / "more.h5")
 
 
 def test_a_file_made_by_another_in_between_is_not_overwritten(tmp_path):
     log = logged(tmp_path / "run.h5")
     (tmp_path / "run.h5").write_bytes(b"somebody else's")
-    refused(tmp_path / "run.h5", "exists already", lambda _: trace(Circle(), archive=log))
+    refused(tmp_path / "run.h5", lambda: trace(Circle(), archive=log), "exists already")
     assert (tmp_path / "run.h5").read_bytes() == b"somebody else's"

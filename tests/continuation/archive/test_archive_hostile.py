@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 import pytest
 
-from continuation import Budget, TargetValue, trace
-from continuation.archive import ArchiveError, export, open_archive, recover, resume
+from continuation import Budget, trace
+from continuation.archive import ArchiveError, open_archive, recover
 from continuation.archive.contents import _known
 from continuation.archive.hdf5 import Committed, of_attributes, seal
 from continuation.archive.schema import Layout
@@ -164,14 +164,6 @@ def test_a_closed_archive_says_that_it_is_closed(base):
     assert repr(archive) == f"<Archive {base}, closed>"
 
 
-def test_what_is_compressed_has_a_limit(tmp_path, base):
-    export(base, tmp_path / "run.nc")
-    with pytest.raises(ArchiveError, match="more than the limit of 100; say limit="):
-        open_archive(tmp_path / "run.nc", limit=100)
-    with open_archive(tmp_path / "run.nc", limit=10**6) as archive:
-        assert len(archive.path(0)) == 13
-
-
 def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
     file = tmp_path / "run.h5"
     shutil.copy(base, file)
@@ -202,9 +194,3 @@ def test_what_is_not_asked_for_may_be_damaged(tmp_path, base):
         for asked in (lambda: archive.attributes, lambda: len(archive), lambda: archive.paths["status"]):
             with pytest.raises(ArchiveError, match=r"not what was written"):
                 asked()
-
-
-def test_events_that_do_not_fit_the_archive(base, tmp_path):
-    events = [TargetValue(0.3), TargetValue(0.4)]
-    with pytest.raises(ValueError, match="events: expected 2, as in the archive, found 4"):
-        resume(base, archive=tmp_path / "more.h5", budget=Budget(), events=events)

@@ -87,8 +87,10 @@ def test_a_small_file_takes_no_more_than_it_may(changed, bomb):
     assert int(done.stdout) << 10 < MOST_BYTES
 
 
-def test_the_caller_may_allow_more(changed):
+def test_the_caller_may_allow_more_or_less(changed):
     file = changed(BOMBS["a wide state"])
+    with pytest.raises(ArchiveError, match=r"more than the limit of 100; say limit=$"):
+        open_archive(file, limit=100)
     with pytest.raises(ArchiveError, match=f"of paths claims .* more than the limit of {LEAST_BYTES}; say limit=$"):
         open_archive(file)
     assert len(open_archive(file, limit=1 << 29)) == 1

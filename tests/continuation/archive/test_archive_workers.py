@@ -85,17 +85,25 @@ def expected():
     return [trace(homotopy) for homotopy in GOOD]
 
 
-@pytest.mark.parametrize("archived", [False, True])
+def no_link(*_):
+    raise PermissionError(1, "no links here")
+
+
+@pytest.mark.parametrize(("archived", "link"), [(False, os.link), (True, os.link), (True, no_link)])
 @pytest.mark.parametrize("pool", POOLS)
-def test_order_is_that_of_the_homotopies(tmp_path, expected, pool, archived):
+def test_order_is_that_of_the_homotopies(tmp_path, monkeypatch, expected, pool, archived, link):
+    monkeypatch.setattr(os, "link", link)
     calls, file = [], tmp_path / "run.h5" if archived else None
     with POOLS[pool]() as executor:
         paths = trace_many(GOOD, executor, file, progress=lambda done, total: calls.append((done, total)))
     assert [same(*pair) for pair in zip(paths, expected, strict=True)] == [True] * 5
+    assert calls[-1] == (5, 5)
     assert calls == [(done, 5) for done in range(6)][-len(calls) :]
     if archived:
         assert paths.paths["member"].tolist() == list(range(5))
         assert paths.paths["homotopy_splitting"].tolist() == [homotopy.splitting for homotopy in GOOD]
+        sources = [source.split() for source in paths.paths["source"]]
+        assert sorted((int(number), name) for _, number, name in sources) == [(k, b"run.h5") for k in range(5)]
         paths.close()
         assert os.listdir(tmp_path) == ["run.h5"]
 
@@ -217,19 +225,3 @@ def test_ctrl_c_within_a_path(tmp_path):
         trace_many(2 * [Bad(1.0, act=partial(raises, KeyboardInterrupt))], archive=tmp_path / "run.h5")
     with open_archive(tmp_path / "run.h5") as archive:
         assert [path.status for path in archive] == [Status.INTERRUPTED]
-
-
-@pytest.mark.parametrize("links", [True, False])
-def test_paths_of_a_sweep_are_of_its_file(tmp_path, monkeypatch, links):
-    def refuses(*_):
-        raise PermissionError(1, "no links here")
-
-    if not links:
-        monkeypatch.setattr(os, "link", refuses)
-    trace_many(GOOD, archive=tmp_path / "run.h5").close()
-    assert [file.name for file in tmp_path.iterdir()] == ["run.h5"]
-    with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.closed_by_writer
-        sources = [source.split() for source in archive.paths["source"]]
-    assert sorted(int(number) for _, number, _ in sources) == list(range(5))
-    assert {name for *_, name in sources} == {b"run.h5"}

@@ -82,15 +82,6 @@ for _name, _function in (
     setattr(Series, f"__r{_name}__", _operator(_function, swapped=True))
 
 
-def available() -> bool:
-    """Whether python-flint is installed."""
-    try:
-        import_module("flint")
-    except ImportError:
-        return False
-    return True
-
-
 def confirmed(residual: Callable[[Any, Any], Any], cells: Cells) -> list[bool]:
     """Whether the tubes hold, cell by cell, by python-flint.
 
@@ -170,18 +161,14 @@ def _slab(flint: Any, residual: Callable[[Any, Any], Any], cell: Cells, middle: 
         return False
     rows = [[arb(float(v)) for v in row] for row in Y]
     for i, row in enumerate(rows):
-        at, along, bend = (_sum(flint, [y * h for y, h in zip(row, power)]) for power in powers)
+        at, along, bend = (sum((y * h for y, h in zip(row, power)), arb(0)) for power in powers)
         total = (at + x * along + x * x * bend).abs_upper()
         for j in range(m):
-            entry = _sum(flint, [row[k] * G[k][j] for k in range(m)]) - (1 if i == j else 0)
+            entry = sum((row[k] * G[k][j] for k in range(m)), arb(0)) - (1 if i == j else 0)
             total = total + entry.abs_upper() * r[j]
         if not total < r[i]:
             return False
     return True
-
-
-def _sum(flint: Any, terms: list[Any]) -> Any:
-    return sum(terms, flint.arb(0))
 
 
 class Balls(np.ndarray[Any, Any]):

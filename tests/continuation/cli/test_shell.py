@@ -6,11 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from continuation import Budget
-from continuation.archive import open_archive, trace_many
+from continuation.archive import open_archive
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from continuation.cli.parser import paint
-from problems.bifurcation import Cusp
 
 from ...util import Terminal
 
@@ -83,11 +81,3 @@ def test_colours_are_for_terminals(monkeypatch, text, good, stream, plain, paint
     monkeypatch.setenv("NO_COLOR", plain)
     monkeypatch.setenv("TERM", "xterm")
     assert paint(text, good, stream) == painted
-
-
-def test_the_progress_of_a_sweep_is_told_to_a_function():
-    seen = []
-    trace_many([Cusp(), Cusp()], progress=lambda *done: seen.append(done), budget=Budget(steps=3))
-    assert seen[-1] == (2, 2)
-    with pytest.raises(TypeError, match="progress: expected"):
-        trace_many([Cusp()], progress=3)

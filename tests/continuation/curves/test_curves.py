@@ -16,7 +16,9 @@ from problems import lcp
 
 from .util import (
     Bent,
+    GelfandBanded,
     Lorenz,
+    brusselator,
     coupled,
     cusp_form,
     first_fold,
@@ -24,7 +26,9 @@ from .util import (
     named,
     ring,
     steep,
+    takens_bogdanov,
     wing,
+    zero_hopf,
 )
 
 
@@ -32,53 +36,67 @@ def folds():
     return Curve(imperfect, first_fold(imperfect(), direction=-1), mu=0.1)
 
 
-def unit_circle(u, v):
-    return u[0] ** 2 + u[1] ** 2 - 1.0
-
-
 def uneven(u, v):
     """It has no power of the tangent's length as a factor."""
     return v[0] ** 4 - 0.09 * u[0] ** 4 * v[1] ** 2
 
 
-def test_branch_points_that_part_are_refused():
-    curve = Curve(imperfect, Kind.BRANCH_POINT, (np.zeros(1), 0.0), mu=0.0)
-    with pytest.raises(ValueError, match="family: expected branch points for every mu, as in symmetric problems"):
-        continuation.trace(curve)
+def last_kink():
+    """Of the bent line, where it leaves the circle of radius 5^(1/2)."""
+    return continuation.trace(Bent(), start=(np.array([-1.6]), -0.8), box={"lam": (None, 2.0)}).kinks[-1]
+
+
+SIDE = {"box": {"lam": (-1.0, 1.0), "y": (-5.0, 5.0)}}
+CLOSED = {
+    "a value": (
+        Curve(imperfect, TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07), SIDE,
+        lambda y, lam, mu: (lam - 1.5, lam * y - y**3 + mu), {},
+    ),
+    "a monitor": (
+        Curve(imperfect, Monitor(lambda u, v: u[0] ** 2 + u[1] ** 2 - 1.0), (np.array([0.2]), 1.0), mu=0.1), SIDE,
+        lambda y, lam, mu: (y**2 + lam**2 - 1.0, lam * y - y**3 + mu), {},
+    ),
+    # dy/dlam = y / (3 y^2 - lam) = -0.4 there.
+    "a slope": (
+        Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1), SIDE,
+        lambda y, lam, mu: 1.2 * y**2 - 0.4 * lam + y, {},
+    ),
+    "kinks until another switch vanishes": (
+        Curve(Family(Bent(), "mu"), last_kink()), {"direction": -1},
+        lambda y, lam, mu: (5.0 * lam**2 - mu, y - 2.0 * lam), {"switch 1 vanishes": (-1.0, -0.5, 1.25)},
+    ),
+    "Hopf points until the frequency is zero": (
+        Curve(takens_bogdanov, Kind.HOPF, (np.array([-1.0, 0.0]), -1.0), mu=1.0), {"direction": -1},
+        lambda y, z, lam, frequency, mu: (y + mu, z, lam + mu**2, frequency**2 - 2.0 * mu),
+        {"Bogdanov-Takens": np.zeros(5)},
+    ),
+    "Hopf points past where the equilibrium turns": (
+        Curve(zero_hopf, Kind.HOPF, (np.array([-1.0, 0.0, 0.0]), 1.0), mu=1.0),
+        {"direction": -1, "box": {"lam": (-1.5, None)}},
+        lambda x, y, z, lam, frequency, mu: (lam - mu**2, frequency - 2.0),
+        {"zero-Hopf": (0.0, 0.0, 0.0, 0.0, 2.0, 0.0)},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_points_of_a_curve_are_those_of_its_closed_form(name):
+    curve, options, off, special = CLOSED[name]
+    path = continuation.trace(curve, tolerance=1e-12, **options)
+    assert path.status is continuation.Status.STOPPED_AT_EVENT
+    assert np.abs(off(*path.u.T)).max() <= 1e-10
+    for event, u in special.items():
+        np.testing.assert_allclose([at.u for at in named(path, event)], [u], rtol=0, atol=1e-10)
+
+
+def test_a_kink_by_its_event():
+    by_event = Curve(Family(Bent(), "mu"), KinkPoint(), (np.array([1.9]), 1.1))
+    np.testing.assert_allclose(by_event.start()[0], [2.0, 1.0])
 
 
 def test_a_condition_that_nothing_near_meets_has_no_curve():
     curve = Curve(imperfect, Monitor(lambda u, v: 1.0 + u[0] ** 2), (np.array([-1.2]), 1.4), mu=0.1)
     assert continuation.trace(curve).status is continuation.Status.START_NOT_ON_PATH
-
-
-def test_kinks_until_another_switch_vanishes():
-    homotopy = Bent()
-    (_, kink) = continuation.trace(homotopy, start=(np.array([-1.6]), -0.8), box={"lam": (None, 2.0)}).kinks
-    assert abs(kink.lam - 1.0) <= 1e-12
-    path = continuation.trace(Curve(Family(homotopy, "mu"), kink), direction=-1, tolerance=1e-12)
-    y, lam, mu = path.u.T
-    assert np.abs(5.0 * lam**2 - mu).max() <= 1e-10
-    assert np.abs(y - 2.0 * lam).max() <= 1e-10
-    assert path.status is continuation.Status.STOPPED_AT_EVENT
-    assert abs(lam[-1] + 0.5) <= 1e-12
-    by_event = Curve(Family(homotopy, "mu"), KinkPoint(), (np.array([1.9]), 1.1))
-    np.testing.assert_allclose(by_event.start()[0], [2.0, 1.0])
-
-
-def test_values_and_monitors():
-    tolerance = 1e-12
-    value = Curve(imperfect, TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07)
-    path = continuation.trace_both(value, box={"lam": (-1.0, 1.0), "y": (-5.0, 5.0)}, tolerance=tolerance)
-    assert continuation.certify(path, value).complete
-    assert np.abs(path.y[:, 1] - 1.5).max() <= 1e-12
-    assert np.abs(1.5 * path.y[:, 0] - path.y[:, 0] ** 3 + path.lam).max() <= 1e-10
-    assert len(path.turning_points) == 2
-    circle = Curve(imperfect, Monitor(unit_circle), (np.array([0.2]), 1.0), mu=0.1)
-    path = continuation.trace_both(circle, box={"lam": (-1.0, 1.0)}, tolerance=tolerance)
-    y, lam, eps = path.u.T
-    assert np.abs(y**2 + lam**2 - 1.0).max() <= 1e-10
-    assert np.abs(lam * y - y**3 + eps).max() <= 1e-10
 
 
 def test_a_family_with_a_factorisation_of_its_own():
@@ -102,17 +120,12 @@ def topmost(a):
     return named(path, "turning point of component 1")
 
 
-def test_what_looks_at_the_tangent():
+def test_where_an_unknown_turns():
     curve = Curve(ring, TurningPoint(1), topmost(1.0)[0], mu=1.0)
     path = continuation.trace(curve, box={"lam": (None, 3.0)}, tolerance=1e-12)
     # The members themselves say where it turns.
     for u in path.u[1:]:
         assert min(np.abs(event.u - u[:-1]).max() for event in topmost(u[-1])) <= 1e-10
-    own = Curve(imperfect, Monitor(steep), (np.array([-1.2]), 1.4), mu=0.1)
-    path = continuation.trace(own, box={"lam": (None, 1.0)}, tolerance=1e-12)
-    # dy/dlam = y / (3 y^2 - lam) = -0.4 there.
-    y, lam, _ = path.u.T
-    assert np.abs(1.2 * y**2 - 0.4 * lam + y).max() <= 1e-10
 
 
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
@@ -171,6 +184,10 @@ def test_attributes_of_plain_objects():
     np.testing.assert_allclose(path.y[:, 1], path.lam, atol=1e-12)
 
 
+NEAR = "at: expected a pair of eigenvalues of H_y near the imaginary axis, found "
+AWAY = brusselator, Kind.HOPF, (np.array([1.0, 1.2]), 1.2)
+OPERATOR = GelfandBanded(kind="operator")
+BRANCH_POINTS = Curve(coupled, Kind.BRANCH_POINT, (np.array([1.0, -1.0]), 3.0), mu=1.0)
 WRONG = {
     "no family": (lambda: Curve(3.0, Kind.HOPF, (np.zeros(1), 0.0)), TypeError, "family: expected a function"),
     "no mu": (lambda: Curve(cusp_form, Kind.HOPF, (np.zeros(1), 0.0)), ValueError, "mu: expected a number"),
@@ -201,6 +218,24 @@ WRONG = {
         lambda: Curve(cusp_form, Kind.KINK, (np.zeros(1), 0.0), mu=1.0),
         TypeError, "family: expected piecewise smooth homotopies",
     ),
+    "branch points that part": (
+        lambda: continuation.trace(Curve(imperfect, Kind.BRANCH_POINT, (np.zeros(1), 0.0), mu=0.0)),
+        ValueError, "family: expected branch points for every mu, as in symmetric problems",
+    ),
+    "no pair of eigenvalues": (
+        lambda: continuation.trace(Curve(cusp_form, Kind.HOPF, (np.zeros(1), 0.0), mu=1.0)), ValueError, NEAR + "none",
+    ),
+    "no pair near the axis": (
+        lambda: continuation.trace(Curve(*AWAY, mu=1.0)), ValueError, NEAR + "-0.4+0.917j",
+    ),
+    "folds of an operator": (
+        lambda: continuation.trace(Curve(Family(OPERATOR, "eps"), first_fold(OPERATOR))),
+        ArithmeticError, "a matrix is needed here, and the Jacobian is an operator",
+    ),
+    "a proof of branch points": (
+        lambda: continuation.certify(continuation.trace(BRANCH_POINTS, box={"lam": (0.5, 2.0)}), BRANCH_POINTS),
+        TypeError, "residual of a branch point curve is not plain arithmetic: it takes a factor",
+    ),
     "no such attribute": (lambda: Family(Plain(1.0), "nu"), ValueError, "name: expected an attribute of Plain"),
     "an attribute that is no number": (lambda: Family(Plain(1.0), "start"), TypeError, "start: expected a number to"),
     "no name": (lambda: Family(Plain(1.0), 3), TypeError, "name: expected the name of an attribute"),
@@ -212,6 +247,11 @@ def test_what_is_wrong_is_said(case):
     make, error, sentence = WRONG[case]
     with pytest.raises(error, match=re.escape(sentence)):
         make()
+
+
+def test_a_frequency_that_is_told_is_believed():
+    told = Curve(*AWAY, mu=1.0, frequency=1.0)
+    np.testing.assert_allclose(told.start()[0][2:], [2.0, 1.0], atol=1e-12)
 
 
 def raising(y, lam):

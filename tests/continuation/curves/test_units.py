@@ -7,8 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 import continuation
-from continuation import Curve, Kind
-from continuation.linear import Banded
+from continuation import Curve, Kind, from_functions
 
 from .util import (
     coupled,
@@ -38,7 +37,18 @@ class Units:
         self.value = value / self.m
 
     def __call__(self, mu):
-        return Member(self, self.family(mu * self.m))
+        own = self.family(mu * self.m)
+
+        def derivative(y, lam):
+            H_y, H_lam = own.jacobian((y - self.c) / self.d, lam * self.a)
+            return sp.csc_array(sp.diags_array(self.d) @ H_y @ sp.diags_array(1.0 / self.d)), self.d * H_lam * self.a
+
+        return from_functions(
+            lambda y, lam: self.d * own.residual((y - self.c) / self.d, lam * self.a),
+            derivative if getattr(own, "jacobian", None) else None,
+            start=self.told(*own.start()),
+            target=None,
+        )
 
     def told(self, y, lam):
         """A point in these units."""
@@ -52,31 +62,6 @@ class Units:
     def box(self, low, high):
         """Of mu."""
         return {"lam": (None if low is None else low / self.m, None if high is None else high / self.m)}
-
-
-class Member:
-    """One of them."""
-
-    target = None
-
-    def __init__(self, units, own):
-        self.by, self.own = units, own
-        if getattr(own, "jacobian", None) is not None:
-            self.jacobian = self.derivative
-
-    def start(self):
-        return self.by.told(*self.own.start())
-
-    def residual(self, y, lam):
-        return self.by.d * self.own.residual((y - self.by.c) / self.by.d, lam * self.by.a)
-
-    def derivative(self, y, lam):
-        d = self.by.d
-        H_y, H_lam = self.own.jacobian((y - self.by.c) / d, lam * self.by.a)
-        H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
-        left, right = (sp.diags_array(x) if sp.issparse(H_y) else np.diag(x) for x in (d, 1.0 / d))
-        H_y = left @ H_y @ right
-        return sp.csc_array(H_y) if sp.issparse(H_y) else H_y, d * H_lam * self.by.a
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -1,5 +1,7 @@
 """Deflation: known solutions divided out, whatever the structure of H_y."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -82,15 +84,6 @@ def test_where_every_root_is_known_no_guess_finds_another(function, known):
             solve_at(deflated, 0.5, guess)
 
 
-class Lazy:
-    """Factors that solve nothing."""
-
-    sign = 1
-
-    def solve(self, r, rho):
-        return np.array([0.0, rho])
-
-
 class Wrong:
     """y = 1, by factors that solve nothing."""
 
@@ -101,7 +94,7 @@ class Wrong:
         return y - 1.0
 
     def bordered(self, y, lam, border):
-        return Lazy()
+        return SimpleNamespace(sign=1, solve=lambda r, rho: np.array([0.0, rho]))
 
 
 @pytest.mark.parametrize(

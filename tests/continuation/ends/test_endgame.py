@@ -1,5 +1,6 @@
 """Ends at which the path is not a function of the parameter that Newton's method could find."""
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -115,18 +116,10 @@ def test_a_path_that_turns_off_next_to_the_end_is_followed(c, ratio, preset):
     np.testing.assert_allclose(path.endpoint.y, homotopy.upper(0.0), rtol=1e-6)
 
 
-class WithoutSign:
-    """A factorisation that does not tell the sign of its determinant, as that of an operator."""
-
-    sign = 0
-
-    def __init__(self, system):
-        self.solve = system.solve
-
-
 class Unoriented(KKTHomotopy):
     def bordered(self, y, lam, border):
-        return WithoutSign(super().bordered(y, lam, border))
+        """The factors do not tell the sign of the determinant, as those of an operator."""
+        return SimpleNamespace(sign=0, solve=super().bordered(y, lam, border).solve)
 
 
 ENDS = {

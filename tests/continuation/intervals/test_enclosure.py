@@ -12,9 +12,8 @@ from continuation.numbers.boxes import along_curve, with_gradient
 from continuation.numbers.ends import Ends, thin
 from continuation.numbers.series import ELEMENTARY
 
-from . import against_mpmath
+from .against_mpmath import ONE, inside
 
-EXACT = against_mpmath.ONE
 DOMAIN = {
     **dict.fromkeys(("arcsin", "arccos", "arctanh"), (-0.95, 0.95)),
     **dict.fromkeys(("sqrt", "log", "log2", "log10", "cbrt", "reciprocal", "absolute"), (0.05, 4.0)),
@@ -24,13 +23,6 @@ DOMAIN = {
 }
 WIDTHS = st.sampled_from([0.0, 1e-14, 1e-8, 1e-3, 0.03])
 PARTS = st.floats(0.0, 1.0)
-
-
-def inside(interval, exact, room=0):
-    """Whether ends that are numbers hold exact values, or values known to `room`, entry by entry."""
-    ends = zip(interval.lo.ravel().tolist(), interval.hi.ravel().tolist(), exact, strict=True)
-    told = [(mp.mpf(lo), value, mp.mpf(hi)) for lo, hi, value in ends if lo == lo and hi == hi]
-    return all(lo - room <= value <= hi + room for lo, value, hi in told)
 
 
 def box_around(x, width, part):
@@ -44,12 +36,11 @@ def box_around(x, width, part):
 def test_the_series_of_a_function_along_a_curve_is_enclosed(name, place, width, part, v, w):
     low, high = DOMAIN.get(name, (-3.0, 3.0))
     x = low + (high - low) * place
-    function = getattr(mp, EXACT[name]) if isinstance(EXACT[name], str) else EXACT[name]
     box, first, second = (Ends(*np.array(box_around(np.array([[y]]), width, part))) for y in (x, v, w))
     image = getattr(np, name)(along_curve(box, first, second)).c
     again, slope = jets.derivative_along(getattr(np, name), with_gradient(box.lo, box.hi), Interval([v]))
     with mp.workdps(120):
-        f = mp.taylor(function, mp.mpf(x), 3)
+        f = mp.taylor(ONE[name], mp.mpf(x), 3)
         curve = [f[0], f[1] * v, f[1] * w + f[2] * mp.mpf(v) ** 2]
         assert inside(image, curve)
         assert inside(again.c, f[:2])

@@ -60,13 +60,6 @@ FUNCTIONS = {
 }
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_elementary_functions(name):
-    reference, points = FUNCTIONS[name]
-    for x0 in points:
-        assert_series(taylor(getattr(np, name), x0, ORDER), by_mpmath(reference, x0))
-
-
 COMPOSITIONS = [
     (lambda x: np.exp(np.sin(x)) / (2 + np.cos(x)), lambda x: mp.exp(mp.sin(x)) / (2 + mp.cos(x)), 0.3),
     (lambda x: np.tanh(x**2 - 1) * np.log(3 + x), lambda x: mp.tanh(x**2 - 1) * mp.log(3 + x), 0.8),
@@ -79,8 +72,11 @@ COMPOSITIONS = [
 ]
 
 
-@pytest.mark.parametrize(("f", "reference", "x0"), COMPOSITIONS)
-def test_compositions(f, reference, x0):
+ELEMENTARY = [(getattr(np, name), reference, x0) for name, (reference, places) in FUNCTIONS.items() for x0 in places]
+
+
+@pytest.mark.parametrize(("f", "reference", "x0"), ELEMENTARY + COMPOSITIONS)
+def test_series_of_functions_and_compositions(f, reference, x0):
     assert_series(taylor(f, x0, ORDER), by_mpmath(reference, x0))
 
 

@@ -1,12 +1,12 @@
-"""Curves of folds in families of every structure; those in closed form are in `test_units.py`."""
+"""Curves in families of every structure; those in closed form are in `test_curves.py` and `test_units.py`."""
 
 import numpy as np
 import pytest
 
 import continuation
-from continuation import Curve, Family, TargetValue
+from continuation import Curve, Family, Kind, TargetValue
 
-from .util import GelfandBanded, first_fold, named
+from .util import Diffusing, GelfandBanded, first_fold, named
 
 
 @pytest.mark.parametrize("kind", ["banded", "sparse"])
@@ -27,5 +27,13 @@ def test_operators_have_curves_of_values_alone():
     path = continuation.trace(curve, box={"lam": (None, 0.4)}, tolerance=1e-10)
     assert np.abs(path.y[:, 7] - 0.5).max() <= 1e-12
     assert max(np.abs(GelfandBanded(u[-1]).residual(u[:-2], u[-2])).max() for u in path.u) <= 1e-10
-    with pytest.raises(ArithmeticError, match="a matrix is needed here, and the Jacobian is an operator"):
-        continuation.trace(Curve(Family(member, "eps"), first_fold(member)))
+
+
+@pytest.mark.parametrize(("n", "accuracy"), [(10, 1e-10), (300, 1e-9)])
+def test_hopf_points_of_a_sparse_family(n, accuracy):
+    homotopy = Diffusing(n)
+    curve = Curve(Family(homotopy, "turn"), Kind.HOPF, (np.zeros(2 * n), homotopy.rate(1) + 0.01))
+    path = continuation.trace(curve, box={"lam": (None, 4.0)})
+    assert path.success
+    np.testing.assert_allclose(path.y[:, -2], homotopy.rate(1), rtol=accuracy)
+    np.testing.assert_allclose(path.y[:, -1], path.lam, rtol=accuracy)
