@@ -17,13 +17,13 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import EPS, Array
+from continuation.arrays import EPS, Array, Mask
 from continuation.certificate.cells import SLAB_PARTS, Slabs, cell_sizes
 from continuation.certificate.engine import Engine, SupportsProofEngine, inverses, times, up_by
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient
-from continuation.numbers.ends import Ends, Mask, accumulated, bilinear, moved, thin
+from continuation.numbers.ends import Ends, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
 DIRECTIONS_THAT_PAY = 16

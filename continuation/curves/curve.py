@@ -16,7 +16,7 @@ from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import Eigenvalue
-from continuation.curves.here import Here
+from continuation.curves.here import CurvePoint
 from continuation.curves.monitors import Vanishing, plainly, without_tangent
 from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
@@ -238,12 +238,12 @@ class Curve:
         """The bordered derivative, factored by elimination."""
         return self._at(y, lam).bordered(border)
 
-    def _at(self, y: Array, lam: float) -> Here:
+    def _at(self, y: Array, lam: float) -> CurvePoint:
         return self._points(np.append(y, lam).tobytes())
 
     @cached_property
-    def _points(self) -> Callable[[bytes], Here]:
-        def at(coordinates: bytes) -> Here:
+    def _points(self) -> Callable[[bytes], CurvePoint]:
+        def at(coordinates: bytes) -> CurvePoint:
             u, beside, mu = np.split(np.frombuffer(coordinates).copy(), [self.size.size, -1])
             with np.errstate(all="ignore"):
                 return self._condition.at(u, float(beside.sum()), float(mu[0]))

@@ -8,7 +8,7 @@ from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import ALLGOWER_GEORG
-from problems.bibliography import KELLER
+from problems.bibliography import KELLER_1978
 from problems.nonlinear.start_checks import EQUATIONS, Function, Jacobian, check_jacobian_shape, start_vector, value_at
 from problems.options import quiet
 
@@ -47,7 +47,7 @@ class NewtonHomotopy:
     """F(a), shape (n,)."""
     problem_class: ClassVar[str] = EQUATIONS
     target: ClassVar[float | None] = 0.0
-    references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
+    references: ClassVar[tuple[str, ...]] = (KELLER_1978, ALLGOWER_GEORG)
 
     def __attrs_post_init__(self) -> None:
         object.__setattr__(self, "value", value_at(self.F, self.a))
