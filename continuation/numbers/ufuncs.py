@@ -108,10 +108,10 @@ def _arctan2(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients
     boxes = isinstance(a, Ends)
     if not boxes:
         series.demand((a[0] != 0) | (b[0] != 0), "numpy.arctan2", "both leading coefficients are 0")
-    ahead = b.lo[:1] > 0.0 if boxes else ~(np.abs(b[:1]) < np.abs(a[:1]))
+    ahead: Mask = b.lo[:1] > 0.0 if boxes else ~(np.abs(b[:1]) < np.abs(a[:1]))
 
     def chosen(x: Coefficients, y: Coefficients) -> Coefficients:
-        return moved(lambda x, y: np.where(ahead, x, y), x, y)
+        return moved(lambda *both: np.asarray(np.where(ahead, *both)), x, y)
 
     out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, chosen(a, -b), chosen(b, a)))
     if not boxes:
