@@ -14,6 +14,8 @@ from scipy.linalg.blas import dasum, ddot, dscal, idamax
 
 Array: TypeAlias = NDArray[np.float64]
 
+Mask: TypeAlias = NDArray[np.bool_]
+
 Matrix: TypeAlias = Any
 """Dense (N, N) array, scipy sparse array, `continuation.linear.Banded`, or LinearOperator."""
 

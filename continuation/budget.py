@@ -33,12 +33,12 @@ class Budget:
         -------
         str
         """
-        if counts.accepted >= self.steps:
-            return f"{self.steps:g} steps"
-        if counts.factorizations >= self.factorizations:
-            return f"{self.factorizations:g} factorisations"
-        if seconds >= self.seconds:
-            return f"{self.seconds:g} seconds"
-        if arclength >= self.arclength:
-            return f"{self.arclength:g} of arclength"
+        for spent, limit, unit in (
+            (counts.accepted, self.steps, "steps"),
+            (counts.factorizations, self.factorizations, "factorisations"),
+            (seconds, self.seconds, "seconds"),
+            (arclength, self.arclength, "of arclength"),
+        ):
+            if spent >= limit:
+                return f"{limit:g} {unit}"
         return ""

@@ -153,8 +153,8 @@ class Automatic:
         return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), INVERTIBLE)))
 
 
-@frozen(eq=False)
-class Inherited:
+@frozen(eq=False, kw_only=True)
+class Inherited(Automatic):
     """`Automatic` for a branch, with scales bounded below by its trunk's.
 
     Otherwise scales of components that stand still shrink from branch to branch.
@@ -169,16 +169,6 @@ class Inherited:
 
     before: Array
     part: float = field(default=0.1, validator=FRACTION)
-    automatic: Automatic = field(factory=Automatic, init=False)
-
-    @property
-    def longest(self) -> float:
-        """As of `Automatic`."""
-        return self.automatic.longest
-
-    def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """As of `Automatic`, bounded."""
-        return self._bounded(self.automatic.weights(u, v, current))
 
     def of_extent(self, extent: Array) -> Array:
         """As of `Automatic`, bounded.
@@ -187,19 +177,7 @@ class Inherited:
         ----------
         extent : ndarray, shape (N + 1,)
         """
-        return self._bounded(self.automatic.of_extent(extent))
-
-    def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """As of `Automatic`.
-
-        Parameters
-        ----------
-        current, origin, u : ndarray, shape (N + 1,)
-        """
-        return self.automatic.grown(current, origin, u)
-
-    def _bounded(self, weights: Array) -> Array:
-        return np.minimum(weights, self.before / self.part**2)
+        return np.minimum(Automatic.of_extent(self, extent), self.before / self.part**2)
 
 
 INVERTIBLE = 1e-150

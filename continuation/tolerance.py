@@ -7,7 +7,7 @@ import sys
 
 from attrs import field, frozen
 
-from continuation.arguments.checks import FRACTION, POSITIVE, complain, is_number
+from continuation.arguments.checks import FRACTION, POSITIVE, expect, is_number
 from continuation.arrays import Array
 from continuation.metric import norm
 
@@ -47,14 +47,10 @@ class Tolerance:
 def as_tolerance(value: float | Tolerance) -> Tolerance:
     """A Tolerance; a number is its relative part. `TypeError` or `ValueError` for others."""
     expected = "a positive finite number or a Tolerance"
-    if not isinstance(value, Tolerance):
-        if not is_number(value):
-            raise complain(TypeError, "tolerance", expected, value)
-        if not 0.0 < value < math.inf:
-            raise complain(ValueError, "tolerance", expected, value)
-        if value >= 1.0:
-            raise complain(ValueError, "tolerance", "less than 1, since it is a fraction of the path", value)
-    tolerance = value if isinstance(value, Tolerance) else Tolerance(relative=float(value))
-    if tolerance.relative < LEAST_TOLERANCE:
-        raise complain(ValueError, "tolerance", f"at least {LEAST_TOLERANCE:.1e}, the square of round-off", value)
-    return tolerance
+    relative = value.relative if isinstance(value, Tolerance) else value
+    expect(is_number(relative), "tolerance", expected, value, TypeError)
+    expect(0.0 < relative < math.inf, "tolerance", expected, value)
+    expect(relative < 1.0, "tolerance", "less than 1, since it is a fraction of the path", value)
+    least = f"at least {LEAST_TOLERANCE:.1e}, the square of round-off"
+    expect(relative >= LEAST_TOLERANCE, "tolerance", least, value)
+    return value if isinstance(value, Tolerance) else Tolerance(relative=float(value))

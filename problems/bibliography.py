@@ -58,7 +58,7 @@ GOLUBITSKY_SCHAEFFER = """@book{GolubitskySchaeffer1985,
   year = {1985},
 }"""
 
-KELLER = """@incollection{Keller1978,
+KELLER_1978 = """@incollection{Keller1978,
   author = {Keller, Herbert B.},
   title = {Global Homotopies and {N}ewton Methods},
   booktitle = {Recent Advances in Numerical Analysis},

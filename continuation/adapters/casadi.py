@@ -54,4 +54,4 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
         return matrix_of(pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
 
     again = partial(from_casadi, target=target), (function, start)
-    return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)
+    return Adapted(residual, y0, lam0, target, more={"jacobian": jacobian}, again=again)

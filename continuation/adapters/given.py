@@ -2,32 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from importlib import import_module
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.arguments.checks import expect, real_vector
 from continuation.arrays import Array, Matrix
 from continuation.evaluation.derivatives import SPARSE_FROM
+from continuation.evaluation.functions import FunctionHomotopy
 from continuation.evaluation.pattern import Pattern
 
 
 @frozen(eq=False, slots=False)
-class Adapted:
+class Adapted(FunctionHomotopy):
     """A homotopy by another library; see `from_jax`, `from_casadi` and `from_sympy`.
 
     `more`: further methods by name. `again`: a function and arguments that rebuild it, for pickling.
     """
 
-    residual: Callable[[Any, Any], Any]
-    more: Mapping[str, Any]
-    y0: Array
-    lam0: float
-    target: float | None
-    again: tuple[Any, ...]
+    more: Mapping[str, Any] = field(kw_only=True)
+    again: tuple[Any, ...] = field(kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         for name, capability in self.more.items():
@@ -35,10 +32,6 @@ class Adapted:
 
     def __reduce__(self) -> Any:
         return self.again
-
-    def start(self) -> tuple[Array, float]:
-        """The given start."""
-        return self.y0.copy(), self.lam0
 
 
 def library(name: str) -> Any:

@@ -14,7 +14,7 @@ from continuation.arguments.checks import complain, expect
 from continuation.arrays import Array
 from continuation.homotopy import TangentPoint
 
-KINDS = ("dense", "sparse")
+JACOBIANS = ("dense", "sparse")
 
 
 def from_jax(
@@ -48,7 +48,7 @@ def from_jax(
         wanted = 'jax.config.update("jax_enable_x64", True) before any array of JAX is made'
         raise ValueError(f"jax: expected double precision, by {wanted}, found single")
     expect(callable(residual), "residual", "a function of (y, lam)", residual, TypeError)
-    expect(jacobian in KINDS, "jacobian", f"one of {', '.join(KINDS)}", jacobian)
+    expect(jacobian in JACOBIANS, "jacobian", f"one of {', '.join(JACOBIANS)}", jacobian)
     y0, lam0 = started(start)
 
     def at(u: Any) -> Any:
@@ -80,9 +80,11 @@ def from_jax(
         # JAX's `jet` lacks a rule: no series, as nested derivatives of order 4, 6, 8 take 0.5, 2.4, 18 s to compile.
         pass
     again = partial(from_jax, target=target, jacobian=jacobian), (residual, (y0, lam0))
-    return Adapted(
-        lambda y, lam: np.asarray(value(np.append(np.asarray(y, dtype=float), lam))), more, y0, lam0, target, again
-    )
+
+    def computed(y: Array, lam: float) -> Array:
+        return np.asarray(value(np.append(np.asarray(y, dtype=float), lam)))
+
+    return Adapted(computed, y0, lam0, target, more=more, again=again)
 
 
 def _series(jax: Any, at: Callable[[Any], Any]) -> Any:

@@ -69,7 +69,7 @@ def from_sympy(
         found = np.array(slope(*y, lam), dtype=float)
         return matrix_of(pattern, found[: pattern.rows.size]), found[pattern.rows.size :]
 
-    return Adapted(residual, {"jacobian": jacobian}, y0, lam0, target, again)
+    return Adapted(residual, y0, lam0, target, more={"jacobian": jacobian}, again=again)
 
 
 def _slope(sp: Any, one: Any, x: Any) -> Any:

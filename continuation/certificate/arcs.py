@@ -17,7 +17,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, SLAB_PARTS, Cells, Index, Slabs, at_node, joined
 from continuation.certificate.engine import Engine, Judged, up_by
-from continuation.certificate.folds import Observe, Piece, signs, turning, turns
+from continuation.certificate.folds import Piece, SignsAlong, signs, turning, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
@@ -32,7 +32,7 @@ NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
 NO_KINK = "a kink is listed where there is none"
 NOT_LISTED = "a kink that the path does not list"
 
-Prove = Callable[[Any, Path, Cells | None, Observe], tuple[Proof, Engine, list[list[Piece]]]]
+Prove = Callable[[Any, Path, Cells | None, SignsAlong], tuple[Proof, Engine, list[list[Piece]]]]
 
 
 @frozen(eq=False)
@@ -145,7 +145,7 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
 # The switches along an arc
 
 
-def _look_at(switches: ByIntervals) -> Observe:
+def _look_at(switches: ByIntervals) -> SignsAlong:
     """Return a function that observes the parameter's rate, switches, and their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:

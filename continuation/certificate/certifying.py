@@ -14,7 +14,7 @@ from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, cell_between, joined
 from continuation.certificate.closing import NEXT_TO_END, made
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Observe, Piece, turning
+from continuation.certificate.folds import Piece, SignsAlong, turning
 from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.tubes import Tubes, check, search
@@ -39,13 +39,13 @@ CELL_HALVINGS = 8
 TAIL_NODES = 60
 """Most points added next to a singular end; ten suffice if parameter and distance fall alike."""
 
-NEARER = 0.25
+END_RATIO = 0.25
 """Ratio of successive points' distances from the end. On 50 degenerate LCPs (n = 2 to 20, 618 points) 0.25 gives 768
 boxes, 0.4 gives 792, 0.1 gives 784 in half more time."""
 
 
 @frozen(eq=False)
-class Node:
+class PathNode:
     """A point with tangent and metric."""
 
     u: Array
@@ -89,23 +89,29 @@ def certify(path: Path, homotopy: Any) -> Proof:
     width = path.u.shape[1]
     if width != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {width - 1} unknowns")
-    whole = lifted(homotopy, path)
-    if isinstance(whole, Proof):
-        return whole
-    return _proved(*whole, None).of_width(width)
+    return recheck(None, path, homotopy)
 
 
-def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
-    if isinstance(homotopy, SupportsPieces):
-        return by_pieces(homotopy, path, cells, _smooth)
-    return _smooth(homotopy, path, cells, turning)[0]
+def recheck(cells: Cells | None, path: Path, homotopy: Any) -> Proof:
+    """Prove a path, or check every condition of a proof with `cells` again."""
+    found = lifted(homotopy, path, cells)
+    if isinstance(found, Proof):
+        return found
+    whole, longer = found
+    if isinstance(whole, SupportsPieces):
+        proof = by_pieces(whole, longer, cells, _smooth)
+    else:
+        proof = _smooth(whole, longer, cells, turning)[0]
+    return proof.of_width(path.u.shape[1])
 
 
-def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tuple[Proof, Engine, list[list[Piece]]]:
+def _smooth(
+    homotopy: Any, path: Path, cells: Cells | None, look: SignsAlong
+) -> tuple[Proof, Engine, list[list[Piece]]]:
     """A proof, its engine, and pieces of each observed number, beginning with the parameter's rate."""
     engine = engine_of(homotopy)
     if cells is None:
-        tubes, gaps = TubeSearch(engine, homotopy, path, look).run()
+        tubes, gaps = _searched(engine, homotopy, path, look)
     elif not len(cells):
         tubes, gaps = Tubes(cells, np.zeros(0, bool), []), []
     else:
@@ -116,75 +122,59 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None, look: Observe) -> tu
     return verified(engine, tubes.cells, path, homotopy, gaps, numbers[0] if numbers else []), engine, numbers
 
 
-def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
-    """Check every condition of a proof again."""
-    whole = lifted(homotopy, path, cells)
-    if isinstance(whole, Proof):
-        return whole
-    return _proved(*whole, cells).of_width(path.u.shape[1])
+def _searched(engine: Engine, homotopy: Any, path: Path, look: SignsAlong) -> tuple[Tubes, list[Gap]]:
+    """Search for cells and tubes: proved cells in order, and gaps."""
+    solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
+    nodes = _nodes(solver.evaluator, homotopy, path)
+    end, own = nodes[-1], getattr(homotopy, "metric", None) is not None
+    # A path is proved up to this distance from a singular end; farther cells are cut without limit.
+    near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(path.steps[-1]) else np.inf
+    pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
+    done: list[Tubes] = []
+    gaps: list[Gap] = []
+    for _ in range(TAIL_NODES):
+        if not pending:
+            break
+        trial = joined([_cell(a, b) for a, b, _ in pending])
+        still = np.array([a.weights for a, *_ in pending]) ** -0.5 if own else trial.radius
+        found = search(engine, trial.with_tubes(still, trial.slabs), look)
+        settled = np.zeros(len(pending), bool)
+        tried, pending = pending, []
+        for k, (a, b, left) in enumerate(tried):
+            clear = all(piece.sign or piece.bend for part in found.pieces[k] for piece in part)
+            settled[k] = found.proved[k] and (clear or not left)
+            if settled[k]:
+                continue
+            singular = b is end and near < np.inf and abs(a.u[-1] - end.u[-1]) > 0.0
+            if singular and abs(a.u[-1] - end.u[-1]) <= near:
+                continue  # the proof of the end covers the rest
+            why: PathNode | str = "no tube holds it, however short"
+            if singular or left:
+                why = _between(solver, a, b, END_RATIO if singular else 0.5)
+            if isinstance(why, PathNode):
+                pending += [(a, why, left - 1 + singular), (why, b, left - 1 + singular)]
+            else:
+                gaps.append(Gap(a.place, b.place, why))
+        done.append(found.take(np.flatnonzero(settled)))
+    whole = Tubes.joined(done)
+    return whole.take(np.argsort(whole.cells.place[:, 0], kind="stable")), gaps
 
 
-@frozen(eq=False)
-class TubeSearch:
-    """The search for cells and tubes."""
-
-    engine: Engine
-    homotopy: Any
-    path: Path
-    look: Observe
-
-    def run(self) -> tuple[Tubes, list[Gap]]:
-        """Proved cells in order, and gaps."""
-        solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
-        nodes = self._nodes(solver.evaluator)
-        end, own = nodes[-1], getattr(self.homotopy, "metric", None) is not None
-        # A path is proved up to this distance from a singular end; farther cells are cut without limit.
-        near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(self.path.steps[-1]) else np.inf
-        pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
-        done: list[Tubes] = []
-        gaps: list[Gap] = []
-        for _ in range(TAIL_NODES):
-            if not pending:
-                break
-            trial = joined([_cell(a, b) for a, b, _ in pending])
-            still = np.array([a.weights for a, *_ in pending]) ** -0.5 if own else trial.radius
-            found = search(self.engine, trial.with_tubes(still, trial.slabs), self.look)
-            settled = np.zeros(len(pending), bool)
-            tried, pending = pending, []
-            for k, (a, b, left) in enumerate(tried):
-                clear = all(piece.sign or piece.bend for part in found.pieces[k] for piece in part)
-                settled[k] = found.proved[k] and (clear or not left)
-                if settled[k]:
-                    continue
-                singular = b is end and near < np.inf and abs(a.u[-1] - end.u[-1]) > 0.0
-                if singular and abs(a.u[-1] - end.u[-1]) <= near:
-                    continue  # the proof of the end covers the rest
-                why: Node | str = "no tube holds it, however short"
-                if singular or left:
-                    why = _between(solver, a, b, NEARER if singular else 0.5)
-                if isinstance(why, Node):
-                    pending += [(a, why, left - 1 + singular), (why, b, left - 1 + singular)]
-                else:
-                    gaps.append(Gap(a.place, b.place, why))
-            done.append(found.take(np.flatnonzero(settled)))
-        whole = Tubes.joined(done)
-        return whole.take(np.argsort(whole.cells.place[:, 0], kind="stable")), gaps
-
-    def _nodes(self, evaluator: Evaluator) -> list[Node]:
-        u, out = self.path.u, list[Node]()
-        for k, (step, weights) in enumerate(zip(self.path.steps, _weights(self.homotopy, self.path))):
-            tangent = step.tangent
-            if not np.isfinite(tangent).all() or made(step):
-                border = weights * (u[k] - u[k - 1] if k else u[1] - u[0])
-                try:
-                    tangent = linearize(evaluator, step.u, weights, border).tangent
-                except EvaluationError:
-                    tangent = np.full_like(step.u, np.nan)
-            out.append(Node(step.u, tangent, weights, step.arclength))
-        return out
+def _nodes(evaluator: Evaluator, homotopy: Any, path: Path) -> list[PathNode]:
+    u, out = path.u, list[PathNode]()
+    for k, (step, weights) in enumerate(zip(path.steps, _weights(homotopy, path))):
+        tangent = step.tangent
+        if not np.isfinite(tangent).all() or made(step):
+            border = weights * (u[k] - u[k - 1] if k else u[1] - u[0])
+            try:
+                tangent = linearize(evaluator, step.u, weights, border).tangent
+            except EvaluationError:
+                tangent = np.full_like(step.u, np.nan)
+        out.append(PathNode(step.u, tangent, weights, step.arclength))
+    return out
 
 
-def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
+def _between(solver: PathSolver, a: PathNode, b: PathNode, share: float) -> PathNode | str:
     """A point of the path between two nodes, or why there is none; `share`: of their distance, from b.
 
     The midpoint guess uses slopes as long as the chord, as those in the chart may be huge. Next to a singular end a
@@ -200,10 +190,10 @@ def _between(solver: PathSolver, a: Node, b: Node, share: float) -> Node | str:
         found: Linearization = solver.project_and_linearize(near, guess, cell.chart[0])
     except EvaluationError as error:
         return f"no point of the path was found between its ends ({error})"
-    return Node(found.u, found.tangent, a.weights, a.place + x * (b.place - a.place))
+    return PathNode(found.u, found.tangent, a.weights, a.place + x * (b.place - a.place))
 
 
-def _cell(a: Node, b: Node) -> Cells:
+def _cell(a: PathNode, b: PathNode) -> Cells:
     return cell_between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
 
 

@@ -18,7 +18,7 @@ RANGE = 0.25
 SIGN_PLACES = 32
 """Places in a range at which the sign is tried, twice: a thousandth of it is left."""
 
-Observe = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
+SignsAlong = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
 """Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
 slabs, shape (slabs, parts)."""
 
@@ -59,7 +59,7 @@ def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, In
     return [(signs(slope), signs(bend))]
 
 
-def pieces(look: Observe, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
+def pieces(look: SignsAlong, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
     """Pieces of `count` cells for each number: a slab with one sign, else its parts."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]

@@ -11,19 +11,19 @@ then p(s) + [-r, r] holds exactly one zero of G(s, .) for each s, and it moves s
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from operator import itemgetter
 from typing import Any, ClassVar
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import EPS, Array
+from continuation.arrays import EPS, Array, Mask
 from continuation.certificate.cells import SLAB_PARTS, Slabs, cell_sizes
 from continuation.certificate.engine import Engine, SupportsProofEngine, inverses, times, up_by
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
 from continuation.numbers.boxes import along_curve, derivatives, with_gradient
-from continuation.numbers.ends import Ends, Mask, accumulated, bilinear, moved, thin
+from continuation.numbers.ends import Ends, accumulated, bilinear, moved, thin
 from continuation.numbers.truncated import wrap
 
 DIRECTIONS_THAT_PAY = 16
@@ -59,7 +59,7 @@ class ByIntervals:
             if count == 1:
                 return wrap(thin(np.full((len(u.c), 1, u.size - 1), np.nan)), u.algebra)
             halves = (slice(None, count // 2), slice(count // 2, None))
-            parts = [self.image(u.moved(partial(_boxes, half))).c for half in halves]
+            parts = [self.image(u.moved(itemgetter((slice(None), half)))).c for half in halves]
             stores = [lengthened(part, max(map(len, parts))) for part in parts]
             return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), u.algebra)
 
@@ -247,7 +247,3 @@ class Bounded:
         bound = up_by(times(self.off, x), x.shape[1])
         known = (radius <= self.largest).all(axis=1, keepdims=True)
         return np.where(known, bound, np.nan)
-
-
-def _boxes(some: slice, x: Array) -> Array:
-    return x[:, some]

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import EPS, Array
+from continuation.arrays import EPS, Array, Mask
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, at_node
 from continuation.certificate.engine import Engine, Judged, together, up_by
-from continuation.numbers.ends import Ends, Mask
+from continuation.numbers.ends import Ends
 
 RADII = 12
 """Radii tried with one test's bounds."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import EPS, Array
+from continuation.arrays import EPS, Array, Mask
 from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
-from continuation.certificate.folds import Observe, Piece, pieces
+from continuation.certificate.folds import Piece, SignsAlong, pieces
 from continuation.certificate.links import INFLATION, NODE_ULPS, settled
-from continuation.numbers.ends import Mask
 
 LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
@@ -63,12 +62,12 @@ class Tubes:
         return [[piece for part in parts for piece in part] for parts in zip(*placed)]
 
 
-def search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
+def search(engine: Engine, cells: Cells, look: SignsAlong) -> Tubes:
     """Find radii and slabs; `cells.radius` holds unit lengths."""
     return Tubes.joined([_search(engine, cells.take(place), look) for place in together(cells)])
 
 
-def _search(engine: Engine, cells: Cells, look: Observe) -> Tubes:
+def _search(engine: Engine, cells: Cells, look: SignsAlong) -> Tubes:
     count, scale = len(cells), cell_sizes(cells, cells.radius)
     least = LEAST_RADIUS * scale + NODE_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     slabs, radius = cells.slabs.copy(), np.maximum(FIRST_RADII * scale, least)
@@ -110,7 +109,7 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells, look: Observe) -> Tubes:
+def check(engine: Engine, cells: Cells, look: SignsAlong) -> Tubes:
     """Test cells with their own tubes."""
     found = []
     for place in together(cells):

@@ -9,14 +9,14 @@ import numpy as np
 from attrs import evolve
 from scipy.optimize import brentq
 
-from continuation.arrays import EPS, Array
+from continuation.arrays import EPS, Array, Mask
 from continuation.certificate.cells import OVERHANG, Cells, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, located, signs, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.numbers.ends import Mask, thin
+from continuation.numbers.ends import thin
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind, Status
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from continuation.chart.results import Results
-from continuation.plot.drawing import COLOURS, STYLES, require_matplotlib
+from continuation.plot.drawing import COLOURS, STYLES, Axes, require_matplotlib
 
 MARKERS = "os^DvPX<>p"
 
@@ -15,10 +15,9 @@ GREYS = ("0.25", "0.45", "0.6")
 LINE = 0.165
 """Line height of small print, inches."""
 
-Axes = Any
 Figure = Any
 
-Mark = tuple[float, dict[str, Any]]
+Dot = tuple[float, dict[str, Any]]
 """Place and style."""
 
 
@@ -56,7 +55,7 @@ def panels(count: int, across: int, title: str, height: float = 3.0, width: floa
     return figure, list(grid[:count])
 
 
-def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Mark], str]]) -> tuple[Figure, Axes]:
+def rows_of_marks(title: str, lines: Sequence[tuple[str, Sequence[Dot], str]]) -> tuple[Figure, Axes]:
     """A row of joined marks for each line (name, marks, remark), with a logarithmic axis."""
     figure, (axes,) = panels(1, 1, title, height=1.2 + 1.35 * LINE * len(lines), width=9.0)
     for k, (_, marks, said) in enumerate(lines):

@@ -10,18 +10,17 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.chart.panels import (
-    Axes,
+    Dot,
     Figure,
-    Mark,
     gridded,
     looks_of,
     panels,
     rows_of_marks,
 )
 from continuation.chart.results import WORK, Results, Row, excess, some
-from continuation.plot.drawing import COLOURS
+from continuation.plot.drawing import COLOURS, Axes
 
-Line = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
+Labelled = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
 """Name, style, points."""
 
 
@@ -77,7 +76,7 @@ class Lines:
             ax.set_xlabel("size n" if sizes else results.errors[self.across])
         return figure
 
-    def _line(self, rows: Sequence[Row], method: str, work: str, look: dict[str, Any]) -> Line:
+    def _line(self, rows: Sequence[Row], method: str, work: str, look: dict[str, Any]) -> Labelled:
         if self.across == "n":
             solved = [row for row in rows if not row.failed]
             sizes = {n: [row.work(work) for row in solved if row.n == n] for n in sorted({row.n for row in solved})}
@@ -86,7 +85,7 @@ class Lines:
         failed = sum(row.failed for row in rows)
         return method + (f" ({failed} of {len(rows)} failed)" if failed else ""), look, points
 
-    def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
+    def _panel(self, axes: Axes, lines: Sequence[Labelled]) -> None:
         drawn = [
             (points[-1][1] if points else 0.0, axes.plot(*np.reshape(points, (-1, 2)).T, label=name, **look)[0])
             for name, look, points in lines
@@ -141,7 +140,7 @@ class Profile:
             judged = [value for row, value in mine if by == "method" or not row.outside]
             solved = [value for value in judged if np.isfinite(value)]
             share, median = len(solved) / max(len(judged), 1), float(np.median(solved)) if solved else math.inf
-            marks: list[Mark] = [
+            marks: list[Dot] = [
                 (value, {"marker": "o", "color": "0.45" if row.outside else COLOURS[0], "alpha": 0.35})
                 for row, value in mine
                 if np.isfinite(value)

@@ -56,7 +56,7 @@ GRIEWANK_WALTHER = """@book{GriewankWalther2008,
   year = {2008},
 }"""
 
-KELLER = """@incollection{Keller1977,
+KELLER_1977 = """@incollection{Keller1977,
   author = {Keller, Herbert B.},
   title = {Numerical Solution of Bifurcation and Nonlinear Eigenvalue Problems},
   booktitle = {Applications of Bifurcation Theory},

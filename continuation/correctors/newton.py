@@ -9,7 +9,7 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
-from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER, KELLEY
+from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER_1977, KELLEY
 from continuation.contraction import updated
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import Evaluator
@@ -36,7 +36,7 @@ class BorderedNewton:
     Equations, Section 7.3).
     """
 
-    references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)
+    references: ClassVar[tuple[str, ...]] = (KELLER_1977, DEUFLHARD, KELLEY)
     reuse: float = field(default=0.1, validator=SHARE)
     max_iterations: int = field(default=8, validator=integer(1))
     max_contraction: float = field(default=0.6, validator=POSITIVE)

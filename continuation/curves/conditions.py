@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
-from continuation.curves.here import Here
+from continuation.curves.here import CurvePoint
 from continuation.curves.local import Tangential, last_column
 from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import NearlySingular, null_vectors
@@ -69,7 +69,7 @@ class Eigenvalue:
         right = self.near(full, float(beside.sum())).right
         return right / float(np.linalg.norm(right))
 
-    def at(self, u: Array, beside: float, mu: float) -> Here:
+    def at(self, u: Array, beside: float, mu: float) -> CurvePoint:
         """The condition at a point."""
         calculus = self.calculus
         full = full_derivative(calculus.evaluator(mu), u)
@@ -87,7 +87,7 @@ class Eigenvalue:
                 return np.array([row.real, row.imag])
 
             values, signs = np.array([near.s.real, near.s.imag]), {"zero-Hopf": lambda _: float(kernel()[1][-1])}
-            return Here(calculus, u, mu, values, both, lambda: kernel()[0], np.zeros((w.size, 1)), signs=signs)
+            return CurvePoint(calculus, u, mu, values, both, lambda: kernel()[0], np.zeros((w.size, 1)), signs=signs)
         base = calculus.unscaled(near.factors)
         sign = base.sign
         values = np.array([sign * near.s.real])
@@ -98,7 +98,9 @@ class Eigenvalue:
                 "Bogdanov-Takens": lambda _: float(sign * (w @ v[:-1])),
             }
             one = np.empty((w.size, 0))
-            return Here(calculus, u, mu, values, lambda: sign * gradient(v)[None, :], lambda: base, one, signs=signs)
+            return CurvePoint(
+                calculus, u, mu, values, lambda: sign * gradient(v)[None, :], lambda: base, one, signs=signs
+            )
         # The extent of lam makes the term comparable to H in any unit.
         reach = calculus.extent[-1]
         z = base.solve(reach * last_column(full), 0.0)
@@ -108,4 +110,4 @@ class Eigenvalue:
             return np.array([np.insert(sign * gradient(v), u.size, 0.0), np.insert(other, u.size, 1.0)])
 
         column = (calculus.rows * near.border)[:, None]
-        return Here(calculus, u, mu, values, gradients, lambda: base, column, hidden=float(z[-1]))
+        return CurvePoint(calculus, u, mu, values, gradients, lambda: base, column, hidden=float(z[-1]))

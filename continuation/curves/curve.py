@@ -11,12 +11,12 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import FINITE, complain
 from continuation.arguments.labels import Labels
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.beginning import as_event, as_point, as_size, corrected, frequency_at
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import Eigenvalue
-from continuation.curves.here import Here
+from continuation.curves.here import CurvePoint
 from continuation.curves.monitors import Vanishing, plainly, without_tangent
 from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
@@ -27,9 +27,6 @@ from continuation.status import Kind
 
 POINTS_KEPT = 6
 """Cached points and members, which are needed repeatedly."""
-
-PERSISTS = 1e-6
-"""Largest relative effect of mu on H along the left null vector at persistent branch points: root of round-off."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -135,7 +132,8 @@ class Curve:
         if self.event == Kind.BRANCH_POINT:
             here = self._at(y, self.mu)
             found = abs(float(here.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.column).max()
-            if found > PERSISTS * np.abs(here.by_parameter).max():
+            # Where they persist, mu has no effect on H along the left null vector.
+            if found > SIX_DIGITS * np.abs(here.by_parameter).max():
                 raise ValueError("family: expected branch points for every mu, as in symmetric problems; these part")
         return y, self.mu
 
@@ -238,12 +236,12 @@ class Curve:
         """The bordered derivative, factored by elimination."""
         return self._at(y, lam).bordered(border)
 
-    def _at(self, y: Array, lam: float) -> Here:
+    def _at(self, y: Array, lam: float) -> CurvePoint:
         return self._points(np.append(y, lam).tobytes())
 
     @cached_property
-    def _points(self) -> Callable[[bytes], Here]:
-        def at(coordinates: bytes) -> Here:
+    def _points(self) -> Callable[[bytes], CurvePoint]:
+        def at(coordinates: bytes) -> CurvePoint:
             u, beside, mu = np.split(np.frombuffer(coordinates).copy(), [self.size.size, -1])
             with np.errstate(all="ignore"):
                 return self._condition.at(u, float(beside.sum()), float(mu[0]))

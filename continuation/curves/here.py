@@ -18,7 +18,7 @@ from continuation.linear.system import Solver
 
 
 @frozen(eq=False, slots=False)
-class Here:
+class CurvePoint:
     """Values and derivatives of a curve at a point `u` = (y, lam).
 
     `gradients` makes the `rows` of the k conditions in `values`; `factored` the `base`, factors of [[H_y, b], [c', d]].
@@ -34,7 +34,7 @@ class Here:
     factored: Callable[[], BorderedSystem]
     column: Array
     hidden: float | None = None
-    signs: Mapping[str, Callable[[Here], float]] = field(factory=dict)
+    signs: Mapping[str, Callable[[CurvePoint], float]] = field(factory=dict)
 
     @cached_property
     def rows(self) -> Array:

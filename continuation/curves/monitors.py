@@ -12,7 +12,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.curves.calculus import Calculus
-from continuation.curves.here import Here
+from continuation.curves.here import CurvePoint
 from continuation.curves.local import Tangential, last_column
 from continuation.evaluation.products import by_differences
 from continuation.events import Monitor, TargetValue, TurningPoint
@@ -47,7 +47,7 @@ class Vanishing:
         """The member's tangent, in extents."""
         return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.calculus.extent
 
-    def at(self, u: Array, beside: float, mu: float) -> Here:
+    def at(self, u: Array, beside: float, mu: float) -> CurvePoint:
         """The condition at a point."""
         calculus, extent = self.calculus, self.calculus.extent
         kernel = cache(lambda: self.tangential.factored(u, mu))
@@ -64,7 +64,7 @@ class Vanishing:
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 
         values = np.array([float(self.function(x))])
-        return Here(calculus, u, mu, values, gradients, lambda: kernel()[0], np.empty((u.size - 1, 0)))
+        return CurvePoint(calculus, u, mu, values, gradients, lambda: kernel()[0], np.empty((u.size - 1, 0)))
 
 
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:

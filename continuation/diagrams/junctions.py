@@ -68,13 +68,11 @@ class Junction:
         """Unused rays with a start."""
         return [k for k in range(2, 2 + len(self.starts)) if k not in self.used]
 
-    def opposite(self, ray: int) -> int | None:
-        """The ray that makes one smooth branch with `ray`, or None."""
-        if self.event.kind == Kind.KINK:
-            return None
+    def line(self, ray: int) -> list[int]:
+        """The rays of one smooth branch: `ray`, and the one straight on, if any."""
         along = self._cosines(self.rays[ray])
-        nearest = int(np.argmin(along))
-        return nearest if along[nearest] <= STRAIGHT_ON else None
+        ahead = int(np.argmin(along))
+        return [ray, ahead] if self.event.kind != Kind.KINK and along[ahead] <= STRAIGHT_ON else [ray]
 
 
 def meetings(path: Path) -> list[LocatedEvent]:

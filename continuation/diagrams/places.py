@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bisect import bisect, insort
-from typing import Any, Generic, TypeVar
+from operator import itemgetter
+from typing import Generic, TypeVar
 
 import numpy as np
 from attrs import define, field
@@ -31,7 +32,7 @@ class PointIndex(Generic[Item]):
         if not self._sorted:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
         self._reach = max(self._reach, SIX_DIGITS * float(np.linalg.norm(self._axis / np.sqrt(weights))))
-        insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=_number)
+        insort(self._sorted, (float(self._axis @ u), len(self._sorted), u, weights, item), key=itemgetter(0))
 
     def near(self, u: Array) -> list[Item]:
         """Items within `SIX_DIGITS` of a point, in order."""
@@ -39,11 +40,6 @@ class PointIndex(Generic[Item]):
             return []
         number = float(self._axis @ u)
         reach = self._reach + accumulated(u.size) * float(np.abs(self._axis) @ np.abs(u))
-        first, last = (bisect(self._sorted, end, key=_number) for end in (number - reach, number + reach))
-        close = sorted(self._sorted[first:last], key=lambda found: found[1])
+        first, last = (bisect(self._sorted, end, key=itemgetter(0)) for end in (number - reach, number + reach))
+        close = sorted(self._sorted[first:last], key=itemgetter(1))
         return [item for _, _, place, weights, item in close if norm(weights, u - place) <= SIX_DIGITS]
-
-
-def _number(entry: tuple[Any, ...]) -> float:
-    number: float = entry[0]
-    return number

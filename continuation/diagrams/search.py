@@ -35,7 +35,7 @@ LEAVES = 0.1
 
 
 @frozen(eq=False)
-class Task:
+class Tracing:
     """A path to trace.
 
     `weights`, `used`: its junction's metric and used rays.
@@ -54,7 +54,7 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
     if start is not None:
         asked["start"] = start
     if before is not None and options.get("metric") is None and getattr(homotopy, "metric", None) is None:
-        asked["metric"] = Inherited(before)
+        asked["metric"] = Inherited(before=before)
     return trace(homotopy, **asked)
 
 
@@ -121,7 +121,7 @@ class BranchSearch:
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
         if not (start is None and self.branches) and not self._known(u):
-            both = self._traced([Task(start, 1), Task(start, -1)])
+            both = self._traced([Tracing(start, 1), Tracing(start, -1)])
             whole = ahead = next(both) or Path()
             if ahead.status is not Status.CLOSED:
                 behind = next(both) or Path()
@@ -153,7 +153,7 @@ class BranchSearch:
                 found.append(guess)
         return found
 
-    def _traced(self, tasks: list[Task]) -> Iterator[Path | None]:
+    def _traced(self, tasks: list[Tracing]) -> Iterator[Path | None]:
         ready = [None if self.executor is None else self.executor.submit(_path, *self._asked(task)) for task in tasks]
         try:
             for task, future in zip(tasks, ready):
@@ -166,7 +166,7 @@ class BranchSearch:
             for future in filter(None, ready):
                 future.cancel()
 
-    def _asked(self, task: Task) -> tuple[Any, ...]:
+    def _asked(self, task: Tracing) -> tuple[Any, ...]:
         return self.homotopy, task.start, task.direction, self.options, task.weights
 
     def _meet(self, path: Path) -> None:
@@ -219,38 +219,32 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
-        waiting = {(j.number, ray) for j, ray in rays}
-        tasks = [Task(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, ray in rays]
-        try:
-            for (junction, ray), path in zip(rays, self._traced(tasks)):
-                waiting.remove((junction.number, ray))
-                if path is not None:
-                    junction.used.add(ray)
-                    self._meet(path)
-                    if len(path):
-                        paths[junction.number, ray] = junction, path
-                self._put_together(paths, waiting, generation)
-        except KeyboardInterrupt:
-            # The diagram shows finished halves; resuming traces them again.
-            self.log = None
-            self._put_together(paths, set(), generation)
-            raise
-
-    def _put_together(
-        self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
-    ) -> None:
-        while paths:
-            number, ray = next(iter(paths))
-            junction = paths[number, ray][0]
-            across = junction.opposite(ray)
-            if across is not None and (number, across) in waiting:
-                return
-            whole = from_point(junction.event, junction.rays[ray], paths.pop((number, ray))[1], junction.weights)
-            if across is not None and (number, across) in paths:
-                _, other = paths.pop((number, across))
-                whole = _through(from_point(junction.event, junction.rays[across], other, junction.weights), whole)
-            self._add(whole, junction.label, generation)
+        """Trace rays, those of one smooth branch one after the other, and add the branches."""
+        lines: list[tuple[Junction, list[int]]] = []
+        left = {(j.number, ray): j for j, ray in rays}
+        while left:
+            (number, ray), junction = next(iter(left.items()))
+            lines.append((junction, [k for k in junction.line(ray) if left.pop((number, k), None)]))
+        tasks = [Tracing(j.starts[ray - 2], 0, j.weights, j.used, ray) for j, line in lines for ray in line]
+        traced = self._traced(tasks)
+        for junction, line in lines:
+            halves: list[Path] = []
+            try:
+                for ray in line:
+                    path = next(traced)
+                    if path is not None:
+                        junction.used.add(ray)
+                        self._meet(path)
+                        if len(path):
+                            halves.append(from_point(junction.event, junction.rays[ray], path, junction.weights))
+            except BaseException:
+                # The diagram shows a finished half; resuming traces it again.
+                self.log = None
+                raise
+            finally:
+                if halves:
+                    whole = _through(*reversed(halves)) if len(halves) > 1 else halves[0]
+                    self._add(whole, junction.label, generation)
 
 
 def _through(behind: Path, ahead: Path) -> Path:

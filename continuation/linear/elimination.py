@@ -32,10 +32,7 @@ class Elimination:
         n = len(self.W)
         x = self.first(rhs[:n])
         q = self.small(rhs[n:] - self.R.dot(x))
-        z = np.empty(rhs.size)
-        z[:n] = x - self.W.dot(q)
-        z[n:] = q
-        return z
+        return np.concatenate([x - self.W.dot(q), q])
 
 
 def eliminated(first: Callable[[Array], Array], W: Array, rows: Array) -> Elimination:

@@ -15,7 +15,7 @@ from continuation.linear.refine import BACKWARD_ERROR
 from continuation.linear.superlu import factor_superlu, superlu_sign
 from continuation.linear.system import Solver
 
-METHODS = ("auto", "superlu", "cholmod")
+SPARSE_METHODS = ("auto", "superlu", "cholmod")
 
 CHOLMOD_FROM = 1000
 """Least order for CHOLMOD: on five-point Laplacians it takes half of SuperLU's time from 2,000 on, more below 400."""
@@ -23,9 +23,9 @@ CHOLMOD_FROM = 1000
 
 def check_method(argument: str, name: object) -> str:
     """The method's name; ValueError if unknown, ImportError if not installed."""
-    if not isinstance(name, str) or name not in METHODS:
+    if not isinstance(name, str) or name not in SPARSE_METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
-        raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")
+        raise ValueError(f"{argument}: expected one of {', '.join(SPARSE_METHODS)}, found {found}")
     if name == "cholmod" and find_spec("cvxopt") is None:
         raise ImportError(f"{argument}={name!r} needs cvxopt: pip install 'pseudoarclength[{name}]'")
     return name

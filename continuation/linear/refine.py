@@ -80,10 +80,7 @@ class BorderedMatrix:
 
 def join(r: Array, rho: float) -> Array:
     """(r, rho) in one new array."""
-    rhs = np.empty(len(r) + 1)
-    rhs[:-1] = r
-    rhs[-1] = rho
-    return rhs
+    return np.concatenate([r, (rho,)], dtype=float)
 
 
 @without_warnings(all="ignore")

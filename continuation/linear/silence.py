@@ -10,7 +10,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 Given = ParamSpec("Given")
-Found = TypeVar("Found")
+Returned = TypeVar("Returned")
 
 _silent: ContextVar[bool] = ContextVar("silent", default=False)
 
@@ -35,14 +35,14 @@ class Silence:
         self._errors.__exit__(*raised)
 
 
-def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Found]], Callable[Given, Found]]:
+def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Returned]], Callable[Given, Returned]]:
     """Decorator: no numpy warnings; free in a `Silence`."""
 
-    def decorate(function: Callable[Given, Found]) -> Callable[Given, Found]:
+    def decorate(function: Callable[Given, Returned]) -> Callable[Given, Returned]:
         guarded = np.errstate(**ignored)(function)
 
         @wraps(function)
-        def quiet(*arguments: Given.args, **named: Given.kwargs) -> Found:
+        def quiet(*arguments: Given.args, **named: Given.kwargs) -> Returned:
             return function(*arguments, **named) if silent() else guarded(*arguments, **named)
 
         return quiet

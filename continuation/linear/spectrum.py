@@ -21,7 +21,7 @@ from continuation.linear.superlu import definite
 ALL_OF_DENSE = 100
 """Largest order for all eigenvalues: 8 ms, and 80 ms at twice the order."""
 
-WANTED = 6
+EIGENVALUES = 6
 """Default number of eigenvalues for others."""
 
 OFF_AXIS = EPS / SIX_DIGITS
@@ -89,7 +89,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
     if matrix.shape[0] <= ALL_OF_DENSE and k is None:
         return _counted(_all(side * matrix))
-    return _nearest(side * matrix, WANTED if k is None else k)
+    return _nearest(side * matrix, EIGENVALUES if k is None else k)
 
 
 def nearest_zero(matrix: Matrix, k: int) -> Any:

@@ -17,7 +17,7 @@ from attrs import frozen
 from continuation.numbers import series
 from continuation.numbers.ends import Ends, moved, thin
 
-Store: TypeAlias = Any
+Coefficients: TypeAlias = Any
 """Coefficients, shape (L, ...); L = 1 is a constant."""
 
 
@@ -29,7 +29,7 @@ class TaylorAlgebra:
         """0, 1, ..., length - 1."""
         return list(range(length))
 
-    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+    def product(self, product: Callable[[Any, Any], Any], a: Coefficients, b: Coefficients) -> Coefficients:
         """The Cauchy product."""
         if product is operator.mul and not isinstance(a, Ends):
             return series.multiply(a, b)
@@ -38,7 +38,7 @@ class TaylorAlgebra:
             out[j:] += product(a[j : j + 1], b[:-j])
         return out
 
-    def expansion(self, f: list[Any], a: Store) -> Store:
+    def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
         """f_0 + f_1 d + f_2 d^2: curves through boxes have no more."""
         d, less = a[1:], a[1:-1]
         out = f[1] * d
@@ -48,20 +48,20 @@ class TaylorAlgebra:
 
 
 @frozen
-class Gradient:
+class GradientAlgebra:
     """First derivatives in many directions: c_0 + sum_i c_i e_i with e_i e_j = 0."""
 
     def degrees(self, length: int) -> list[int]:
         """0, 1, 1, ..."""
         return [0] + [1] * (length - 1)
 
-    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+    def product(self, product: Callable[[Any, Any], Any], a: Coefficients, b: Coefficients) -> Coefficients:
         """The product rule."""
         out = product(a[:1], b)
         out[1:] += product(a[1:], b[:1])
         return out
 
-    def expansion(self, f: list[Any], a: Store) -> Store:
+    def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
         """The chain rule."""
         return joined(f[0][None], f[1] * a[1:])
 
@@ -70,53 +70,53 @@ class Gradient:
 class Beside:
     """x + y s with s^2 = 0, x and y of the inner algebra, and the coefficients of x first."""
 
-    inner: TaylorAlgebra | Gradient | Beside
+    inner: TaylorAlgebra | GradientAlgebra | Beside
 
     def degrees(self, length: int) -> list[int]:
         """Degrees of x, then of y, one higher."""
         inner = self.inner.degrees(length // 2)
         return [*inner, *(degree + 1 for degree in inner)]
 
-    def product(self, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+    def product(self, multiply: Callable[[Any, Any], Any], a: Coefficients, b: Coefficients) -> Coefficients:
         """The product rule."""
         (x, y), (v, w) = _halves(a), _halves(b)
         slope = product(self.inner, multiply, x, w) + product(self.inner, multiply, y, v)
         return joined(product(self.inner, multiply, x, v), slope)
 
-    def expansion(self, f: list[Any], a: Store) -> Store:
+    def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
         """f(x) and f'(x) y."""
         x, y = _halves(a)
         slopes = [f[1], *(float(k) * f[k] for k in range(2, len(f)))]
         return joined(_at(self.inner, f, x), product(self.inner, operator.mul, _at(self.inner, slopes, x), y))
 
 
-Algebra: TypeAlias = TaylorAlgebra | Gradient | Beside
+Algebra: TypeAlias = TaylorAlgebra | GradientAlgebra | Beside
 
 
-def _halves(a: Store) -> tuple[Store, Store]:
+def _halves(a: Coefficients) -> tuple[Coefficients, Coefficients]:
     return a[: len(a) // 2], a[len(a) // 2 :]
 
 
-def _at(algebra: Algebra, f: list[Any], a: Store) -> Store:
+def _at(algebra: Algebra, f: list[Any], a: Coefficients) -> Coefficients:
     return f[0][None] if len(a) == 1 else algebra.expansion(f, a)
 
 
-def joined(*parts: Store) -> Store:
+def joined(*parts: Coefficients) -> Coefficients:
     """Coefficients, one after another."""
     return moved(lambda *arrays: np.concatenate(arrays), *parts)
 
 
-def lengthened(a: Store, length: int) -> Store:
+def lengthened(a: Coefficients, length: int) -> Coefficients:
     """`a` with zero coefficients appended."""
     return a if len(a) == length else moved(lambda x: series.padded(x, length), a)
 
 
-def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Coefficients, b: Coefficients) -> Coefficients:
     """A bilinear product; factors may be constant."""
     return multiply(a, b) if len(a) == 1 or len(b) == 1 else algebra.product(multiply, a, b)
 
 
-def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
+def quotient(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     """The quotient, by iterating q = (a - d q) / b_0 with b = b_0 + d."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
@@ -131,7 +131,7 @@ def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
     return q
 
 
-def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
+def compose(algebra: Algebra, rule: series.SeriesRule, a: Coefficients) -> Coefficients:
     """Apply a function of one argument, by its rule."""
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
@@ -146,4 +146,4 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
 
 
 TAYLOR = TaylorAlgebra()
-GRADIENT = Gradient()
+GRADIENT = GradientAlgebra()

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array, asked_by_sparse
-from continuation.numbers.algebra import GRADIENT, TAYLOR, Store
+from continuation.numbers.algebra import GRADIENT, TAYLOR, Coefficients
 from continuation.numbers.ends import Ends, moved, thin
 from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
-class Entries:
+class WithAxes:
     """Array methods; np.array([y[0], ...]) stores scalars, which lack them, as entries."""
 
     __slots__ = ()
@@ -103,7 +103,7 @@ class Jet(Truncated):
         return f"Jet(shape={self.shape}, order={self.order}, leading={self.c[0]!r})"
 
 
-class ArrayJet(Entries, Jet):
+class ArrayJet(WithAxes, Jet):
     """A jet with axes."""
 
     __slots__ = ()
@@ -153,7 +153,7 @@ class Interval(Truncated):
         return np.asarray(ends[0, 0] if ends.shape[1] == 1 else ends[0])
 
     @staticmethod
-    def constant(x: Array) -> Store:
+    def constant(x: Array) -> Coefficients:
         """Numbers as coefficients for one box.
 
         Parameters
@@ -168,7 +168,7 @@ class Interval(Truncated):
         return f"Interval(lo={self.lo!r}, hi={self.hi!r})"
 
 
-class ArrayInterval(Entries, Interval):
+class ArrayInterval(WithAxes, Interval):
     """An `Interval` with axes."""
 
     __slots__ = ()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.numbers.algebra import GRADIENT, TAYLOR, Beside, Store, joined, lengthened
+from continuation.numbers.algebra import GRADIENT, TAYLOR, Beside, Coefficients, joined, lengthened
 from continuation.numbers.array import Jet
 from continuation.numbers.truncated import Truncated, alike, common, wrap
 
@@ -199,7 +199,7 @@ def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]
     return wrap(image[:half], algebra), wrap(image[half:], algebra)
 
 
-def _image(f: Callable[[Any], Any], line: Any) -> Store:
+def _image(f: Callable[[Any], Any], line: Any) -> Coefficients:
     return lengthened(line.lifted(f(line)).c, len(line.c))
 
 

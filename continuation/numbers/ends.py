@@ -11,11 +11,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 from attrs import frozen
-from numpy.typing import NDArray
 
-from continuation.arrays import EPS, Array
-
-Mask = NDArray[np.bool_]
+from continuation.arrays import EPS, Array, Mask
 
 TINIEST = 2.0**-1074
 """Largest underflow error of an operation."""
@@ -156,10 +153,10 @@ def as_ends(x: Ends | float) -> Ends:
     return x if isinstance(x, Ends) else thin(np.asarray(x, dtype=float))
 
 
-Coefficients = TypeVar("Coefficients", Array, Ends)
+NumbersOrEnds = TypeVar("NumbersOrEnds", Array, Ends)
 
 
-def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
+def moved(move: Callable[..., Array], *arrays: NumbersOrEnds) -> NumbersOrEnds:
     """Apply `move` to numbers or both ends; shared ends stay shared."""
     if not isinstance(arrays[0], Ends):
         return move(*arrays)
@@ -167,7 +164,7 @@ def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
     return Ends(lo, lo if all(x.lo is x.hi for x in arrays) else move(*(x.hi for x in arrays)))
 
 
-def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coefficients:
+def added(add: Callable[[Array], Array], x: NumbersOrEnds, count: int) -> NumbersOrEnds:
     """Sums of up to `count` entries, in any order of `add`."""
     if not isinstance(x, Ends):
         return np.asarray(add(x))
@@ -245,7 +242,7 @@ def _middle_and_radius(x: Any) -> tuple[Any, Array | None]:
     return middle, x.radius(middle)
 
 
-def sparse_product(matrix: Any, x: Coefficients) -> Coefficients:
+def sparse_product(matrix: Any, x: NumbersOrEnds) -> NumbersOrEnds:
     """A sparse matrix times vectors, shape (..., n)."""
 
     def times(entries: Any, v: Array) -> Array:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 
-from continuation.arrays import clipped
+from continuation.arrays import Array, clipped
 from continuation.numbers.algebra import product
 from continuation.numbers.ends import added
 from continuation.numbers.truncated import Truncated, combined, common, gather, parts_of, wrap
@@ -115,15 +115,13 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
 
 
 def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
-    parts = [x.ravel() for x in parts_of(arrays)] if axis is None else parts_of(arrays)
-    along = normalize_axis_index(axis or 0, parts[0].ndim)
-    return combined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
-
-
-def _stack(arrays: Any, axis: int = 0) -> Any:
     parts = parts_of(arrays)
-    along = normalize_axis_index(axis, parts[0].ndim + 1)
-    return combined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
+    return _along(np.concatenate, [x.ravel() for x in parts] if axis is None else parts, axis or 0, parts[0].ndim)
+
+
+def _along(join: Callable[..., Array], parts: list[Any], axis: int, ndim: int) -> Any:
+    along = normalize_axis_index(axis, ndim)
+    return combined(lambda arrays, own: join(arrays, axis=along + own), parts)
 
 
 def _where(condition: Any, x: Any, y: Any) -> Any:
@@ -188,7 +186,7 @@ FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
     np.outer: lambda a, b: gather(a).reshape(-1, 1) * gather(b).reshape(1, -1),
     np.einsum: _einsum,
     np.concatenate: _concatenate,
-    np.stack: _stack,
+    np.stack: lambda arrays, axis=0: _along(np.stack, parts := parts_of(arrays), axis, parts[0].ndim + 1),
     np.hstack: lambda tup: _concatenate(parts := [np.atleast_1d(x) for x in parts_of(tup)], min(1, parts[0].ndim - 1)),
     np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in parts_of(tup)]),
     np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in parts_of(tup)], 1),

@@ -10,15 +10,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import EPS, Array
-from continuation.numbers.ends import Ends, Mask, absolute_range, down, up
+from continuation.arrays import EPS, Array, Mask
+from continuation.numbers.ends import Ends, absolute_range, down, up
 
 LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
 """Radians; larger arguments have the range [-1, 1]."""
 
-Function = Callable[[Ends], Ends]
+RangeOf = Callable[[Ends], Ends]
 
 
 def near(x: float) -> Ends:
@@ -35,7 +35,7 @@ def widened(lo: Array, hi: Array) -> Ends:
     return apart.where(np.isfinite(lo) & np.isfinite(hi))
 
 
-def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> Function:
+def _monotone(f: Callable[[Array], Array], least: float = -np.inf, most: float = np.inf) -> RangeOf:
     def rule(u: Ends) -> Ends:
         one, other = f(u.lo), f(u.hi)
         found = widened(np.minimum(one, other), np.maximum(one, other))
@@ -60,7 +60,7 @@ def _meets(u: Ends, offset: float) -> Mask:
     return found
 
 
-def _oscillating(f: Callable[[Array], Array], top: float, bottom: float) -> Function:
+def _oscillating(f: Callable[[Array], Array], top: float, bottom: float) -> RangeOf:
     def rule(u: Ends) -> Ends:
         ends, far = _monotone(f, -1.0, 1.0)(u), u.magnitude() > LARGEST_ANGLE
         lo = np.where(_meets(u, bottom) | far, -1.0, ends.lo)
@@ -84,7 +84,7 @@ def power(u: Ends, r: float) -> Ends:
     return _monotone(lambda x: np.power(x, r), 0.0)(u).where(u.lo > 0.0)
 
 
-RANGES: dict[np.ufunc, Function] = {
+RANGES: dict[np.ufunc, RangeOf] = {
     np.absolute: absolute_range,
     np.sqrt: sqrt,
     np.cbrt: _monotone(np.cbrt),

@@ -21,7 +21,7 @@ from continuation.numbers.ranges import power as power_range
 
 PowerSeries: TypeAlias = Any
 
-Rule: TypeAlias = Callable[[PowerSeries], PowerSeries]
+SeriesRule: TypeAlias = Callable[[PowerSeries], PowerSeries]
 
 
 class JetDomainError(ArithmeticError):
@@ -302,7 +302,7 @@ def _power(u: PowerSeries, r: Any, v0: Any) -> PowerSeries:
     return out
 
 
-ELEMENTARY: dict[np.ufunc, Rule] = {
+ELEMENTARY: dict[np.ufunc, SeriesRule] = {
     np.absolute: absolute,
     np.square: square,
     np.sqrt: sqrt,

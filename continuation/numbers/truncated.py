@@ -13,7 +13,7 @@ from scipy.sparse import issparse
 
 from continuation.arrays import Array
 from continuation.numbers import ufuncs
-from continuation.numbers.algebra import Algebra, Store, lengthened
+from continuation.numbers.algebra import Algebra, Coefficients, lengthened
 from continuation.numbers.ends import Ends, moved, sparse_product
 from continuation.numbers.series import ELEMENTARY
 
@@ -21,7 +21,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {}
 """Rules by numpy function, filled by the package: `functions` imports `Truncated`."""
 
 
-METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.dot)
+ARRAY_METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.dot)
 
 
 class Truncated(NDArrayOperatorsMixin):
@@ -36,7 +36,7 @@ class Truncated(NDArrayOperatorsMixin):
     LOST: ClassVar[str]
     """Number of axes in front of the shape; words for error messages."""
 
-    c: Store
+    c: Coefficients
     algebra: Algebra
 
     @property
@@ -71,7 +71,7 @@ class Truncated(NDArrayOperatorsMixin):
     def __getattr__(self, name: str) -> Any:
         # numpy's object loops call a method of the function's name.
         function = getattr(np, name, None)
-        if function not in ELEMENTARY and function not in METHODS:
+        if function not in ELEMENTARY and function not in ARRAY_METHODS:
             raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
         return partial(function, self)
 
@@ -160,7 +160,7 @@ class Truncated(NDArrayOperatorsMixin):
         return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
 
     @staticmethod
-    def constant(x: Array) -> Store:
+    def constant(x: Array) -> Coefficients:
         """Numbers as coefficients."""
         return x.astype(float, copy=False)[None]
 
@@ -189,7 +189,7 @@ KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
 """Scalar and array class by type of coefficients."""
 
 
-def wrap(c: Store, algebra: Algebra) -> Any:
+def wrap(c: Coefficients, algebra: Algebra) -> Any:
     """The array with these coefficients."""
     scalar, array = KINDS[type(c)]
     made: Truncated = object.__new__(scalar if c.ndim == scalar.OWN else array)
@@ -226,7 +226,7 @@ def common(operands: Any) -> Algebra:
     return algebra
 
 
-def alike(parts: Any) -> list[Store]:
+def alike(parts: Any) -> list[Coefficients]:
     """Coefficients, extended to equal numbers of coefficients and boxes."""
     length = max(len(x.c) for x in parts)
     stores = [lengthened(x.c, length) for x in parts]

@@ -9,26 +9,26 @@ from typing import Any
 
 import numpy as np
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Mask
 from continuation.numbers import series
-from continuation.numbers.algebra import Algebra, Store, compose, lengthened, product, quotient
-from continuation.numbers.ends import Ends, Mask, bilinear, moved
+from continuation.numbers.algebra import Algebra, Coefficients, compose, lengthened, product, quotient
+from continuation.numbers.ends import Ends, bilinear, moved
 from continuation.numbers.ranges import PI
 from continuation.numbers.series import ELEMENTARY
 
-Binary = Callable[[Algebra, Store, Store], Store]
+Binary = Callable[[Algebra, Coefficients, Coefficients], Coefficients]
 
 
 class UndecidedError(ArithmeticError):
     """A comparison holds for some numbers or boxes only."""
 
 
-def own_axes(c: Store) -> int:
+def own_axes(c: Coefficients) -> int:
     """Number of axes before the shape."""
     return 2 if isinstance(c, Ends) else 1
 
 
-def aligned(a: Store, b: Store) -> tuple[Store, Store]:
+def aligned(a: Coefficients, b: Coefficients) -> tuple[Coefficients, Coefficients]:
     """Both with equally many axes."""
     if a.ndim == b.ndim:
         return a, b
@@ -40,14 +40,14 @@ def aligned(a: Store, b: Store) -> tuple[Store, Store]:
     return moved(longer, a), moved(longer, b)
 
 
-def spread(c: Store, shape: tuple[int, ...]) -> Store:
+def spread(c: Coefficients, shape: tuple[int, ...]) -> Coefficients:
     """A copy, broadcast to `shape`."""
     return (
         c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
     )
 
 
-def _add(algebra: Algebra, a: Store, b: Store) -> Store:
+def _add(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     if len(a) == len(b):
         return a + b
     if len(a) < len(b):
@@ -58,13 +58,13 @@ def _add(algebra: Algebra, a: Store, b: Store) -> Store:
     return out
 
 
-def _multiply(algebra: Algebra, a: Store, b: Store) -> Store:
+def _multiply(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     if a is b and isinstance(a, Ends):  # a square is not negative
         return compose(algebra, series.square, a)
     return product(algebra, operator.mul, a, b)
 
 
-def _power(algebra: Algebra, a: Store, b: Store) -> Store:
+def _power(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     exponents = _exponents(b)
     if exponents is None:
         return _variable_power(algebra, a, b)
@@ -79,7 +79,7 @@ def _power(algebra: Algebra, a: Store, b: Store) -> Store:
     return a
 
 
-def _exponents(b: Store) -> Array | None:
+def _exponents(b: Coefficients) -> Array | None:
     if len(b) > 1:
         return None
     if not isinstance(b, Ends):
@@ -87,7 +87,7 @@ def _exponents(b: Store) -> Array | None:
     return np.asarray(b.lo[0, 0]) if b.shape[1] == 1 and np.array_equal(b.lo, b.hi) else None
 
 
-def _variable_power(algebra: Algebra, a: Store, b: Store) -> Store:
+def _variable_power(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     exp, log = ELEMENTARY[np.exp], ELEMENTARY[np.log]
     if isinstance(a, Ends):
         return compose(algebra, exp, product(algebra, operator.mul, compose(algebra, log, a), b))
@@ -98,34 +98,32 @@ def _variable_power(algebra: Algebra, a: Store, b: Store) -> Store:
     return out
 
 
-def _hypot(algebra: Algebra, a: Store, b: Store) -> Store:
+def _hypot(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     return compose(algebra, series.sqrt, _add(algebra, *(_multiply(algebra, x, x) for x in (a, b))))
 
 
-def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
-    if isinstance(a, Ends):
-        return _angle(algebra, a, b)
-    size = np.hypot(a[:1], b[:1])
-    series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
-    angle, a, b = np.arctan2(a[0], b[0]), a / size, b / size
-    # Rotate onto the positive axis, where arctan is analytic.
-    along, across = _add(algebra, b[:1] * b, a[:1] * a), _add(algebra, b[:1] * a, -a[:1] * b)
-    out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
-    out[0] = angle
-    return out
+def _arctan2(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
+    """arctan(a / b), or a quarter turn less arctan(b / a), whichever is defined; nan across the negative axis."""
+    a, b = (lengthened(x, max(len(a), len(b))) for x in (a, b))
+    boxes = isinstance(a, Ends)
+    if not boxes:
+        series.demand((a[0] != 0) | (b[0] != 0), "numpy.arctan2", "both leading coefficients are 0")
+    ahead: Mask = b.lo[:1] > 0.0 if boxes else ~(np.abs(b[:1]) < np.abs(a[:1]))
 
+    def chosen(x: Coefficients, y: Coefficients) -> Coefficients:
+        return moved(lambda *both: np.asarray(np.where(ahead, *both)), x, y)
 
-def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
-    """The angle of (b, a); nan across the negative axis."""
-    ahead, beside = (compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, *x)) for x in ((a, b), (b, a)))
-    above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
+    out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, chosen(a, -b), chosen(b, a)))
+    if not boxes:
+        out[0] = np.arctan2(a[0], b[0])
+        return out
+    above, quarter = a.lo[:1] > 0.0, PI * 0.5
     turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
-    aside = _add(algebra, -beside, turned)
-    return Ends(np.where(right, ahead.lo, aside.lo), np.where(right, ahead.hi, aside.hi))
+    return chosen(out, _add(algebra, out, turned))
 
 
 def _extremum(name: str, sign: int) -> Binary:
-    def rule(algebra: Algebra, a: Store, b: Store) -> Store:
+    def rule(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
         a, b = (lengthened(x, max(len(a), len(b))) for x in (a, b))
         if isinstance(a, Ends):
             return _larger(algebra, a, b) if sign > 0 else -_larger(algebra, -a, -b)
@@ -146,7 +144,7 @@ def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
     return Ends(lo, hi)
 
 
-def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
+def matmul(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     """The matrix product, as numpy's."""
     own = own_axes(a)
     if a.ndim == own or b.ndim == own:
@@ -168,11 +166,11 @@ def sums_of_products(function: Callable[[Array, Array], Array]) -> Callable[[Any
     return lambda a, b: bilinear(function, a, b) if isinstance(a, Ends) else function(a, b)
 
 
-def _composed(rule: series.Rule, algebra: Algebra, a: Store) -> Store:
+def _composed(rule: series.SeriesRule, algebra: Algebra, a: Coefficients) -> Coefficients:
     return compose(algebra, rule, a)
 
 
-UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
+UFUNC_RULES: dict[np.ufunc, Callable[..., Coefficients]] = {
     np.positive: lambda algebra, a: a.copy(),
     np.negative: lambda algebra, a: -a,
     np.fabs: partial(_composed, series.absolute),
@@ -207,7 +205,7 @@ def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
     return holds
 
 
-def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
+def compared(ufunc: np.ufunc, a: Coefficients, b: Coefficients) -> Any:
     """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
@@ -217,7 +215,7 @@ def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
     return yes
 
 
-def all_finite(c: Store) -> Any:
+def all_finite(c: Coefficients) -> Any:
     """Where all coefficients are finite."""
     if isinstance(c, Ends):
         return (np.isfinite(c.lo) & np.isfinite(c.hi)).all(axis=(0, 1))

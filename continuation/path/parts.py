@@ -9,13 +9,10 @@ from typing import TypeAlias
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import SIX_DIGITS, Array
 from continuation.path.steps import LocatedEvent, Step
 from continuation.point.segment import Segment, hermite
 from continuation.status import Kind
-
-MEET = 1e-6
-"""Largest distance of equal ends, relative to the paths' extent."""
 
 StepsAndEvents: TypeAlias = tuple[list[Step], list[LocatedEvent]]
 
@@ -107,7 +104,7 @@ def following(
     `extent`: of the larger path.
     """
     a, b = first[-1], second[0]
-    if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
+    if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= SIX_DIGITS * max(extent, np.finfo(float).tiny):
         raise ValueError(f"other: expected a path that begins at lam = {a.lam:.6g}, found one from lam = {b.lam:.6g}")
     return shifted(evolve(a, index=len(first) - 1), second, events)
 

@@ -19,8 +19,26 @@ def _one_line(name: str, point: Any) -> str:
     return f"<{name}: arclength {point.arclength:.6g}, lam = {point.lam:.6g}, y = ({shown}{more})>"
 
 
+class Located:
+    """A point `u` = (y, lam) of a path."""
+
+    __slots__ = ()
+
+    u: Array
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (N,)."""
+        return self.u[:-1]
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        return float(self.u[-1])
+
+
 @frozen(eq=False, repr=False)
-class Step:
+class Step(Located):
     """One accepted point.
 
     Attributes
@@ -74,19 +92,9 @@ class Step:
     def __repr__(self) -> str:
         return _one_line(f"Step {self.index}, {self.kind.flag.replace('_', ' ')}", self)
 
-    @property
-    def y(self) -> Array:
-        """The unknowns, shape (N,)."""
-        return self.u[:-1]
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        return float(self.u[-1])
-
 
 @frozen(eq=False, repr=False)
-class LocatedEvent:
+class LocatedEvent(Located):
     """A point of the path at which a monitor vanishes.
 
     Attributes
@@ -133,16 +141,6 @@ class LocatedEvent:
         return _one_line(f"LocatedEvent {self.name}", self)
 
     @property
-    def y(self) -> Array:
-        """The unknowns, shape (N,)."""
-        return self.u[:-1]
-
-    @property
     def turns(self) -> bool:
         """Whether the parameter turns."""
         return self.kind is Kind.TURNING_POINT and self.name == "turning point"
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        return float(self.u[-1])

@@ -13,7 +13,7 @@ from continuation.plot.drawing import (
     Axes,
     Drawing,
     Drawn,
-    Parts,
+    StableParts,
     check_path,
     chosen_components,
     draw,
@@ -107,7 +107,7 @@ def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
     return lambda u: float(u[component])
 
 
-def _parts(path: Drawn, s: Array, u: Array, stable: Stable) -> Parts:
+def _parts(path: Drawn, s: Array, u: Array, stable: Stable) -> StableParts:
     if stable is None:
         return stable_parts(path)
     solid = np.array([bool(stable(point[:-1], float(point[-1]))) for point in u])

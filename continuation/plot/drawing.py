@@ -49,7 +49,7 @@ Axes = Any
 Drawn: TypeAlias = Any
 """A path."""
 
-Parts: TypeAlias = tuple[Sequence[float], bool] | None
+StableParts: TypeAlias = tuple[Sequence[float], bool] | None
 """Arclengths where stability changes, and whether the first part is stable."""
 
 
@@ -67,7 +67,7 @@ class Drawing:
     label : str
     k : int
         Of colours and dashes.
-    parts : Parts
+    parts : StableParts
     """
 
     path: Drawn
@@ -77,7 +77,7 @@ class Drawing:
     at: Sequence[float]
     label: str
     k: int
-    parts: Parts
+    parts: StableParts
 
 
 def sampled(path: Drawn) -> tuple[Array, Array]:
@@ -109,7 +109,7 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
     return np.where(known, PchipInterpolator(s, np.where(np.isfinite(values), values, 0.0))(wanted), np.nan)
 
 
-def stable_parts(path: Drawn) -> Parts:
+def stable_parts(path: Drawn) -> StableParts:
     """From stored stability, or None.
 
     It changes at the first event between two points, else half way.

@@ -21,13 +21,13 @@ from continuation.arrays import SIX_DIGITS, Array
 from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.status import Status
-from continuation.testing.subject import Place, Subject, compare, random_directions, reporting, require
+from continuation.testing.subject import Subject, TestedPoint, compare, random_directions, reporting, require
 
 
 def max_step(subject: Subject) -> None:
     """`max_step` is positive; after a share of the way to the boundary it gives the rest."""
 
-    def longest(place: Place, u: Array, v: Array) -> float:
+    def longest(place: TestedPoint, u: Array, v: Array) -> float:
         with reporting("max_step", place.where):
             found = float(subject.homotopy.max_step(u.copy(), v.copy()))
         said = f"max_step: {place.where} it is {found:g}, expected a positive number: the point is inside the domain"

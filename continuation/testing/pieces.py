@@ -12,7 +12,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
-from continuation.testing.subject import Place, Subject, compare, reporting
+from continuation.testing.subject import Subject, TestedPoint, compare, reporting
 
 
 def pieces(subject: Subject) -> None:
@@ -40,7 +40,7 @@ def derivatives_of_pieces(subject: Subject) -> None:
                 getattr(derivatives, name)(piece)
 
 
-def _met(subject: Subject) -> Iterator[tuple[Place, Signs, Any]]:
+def _met(subject: Subject) -> Iterator[tuple[TestedPoint, Signs, Any]]:
     """Places and up to three kinks, with all pieces there."""
     each = Pieces(subject.homotopy)
     found = []
@@ -48,7 +48,7 @@ def _met(subject: Subject) -> Iterator[tuple[Place, Signs, Any]]:
         with reporting("switches", place.where):
             found.append((place, each.signs(place.u)))
     for event in subject.path.kinks[:3]:
-        signs, place = each.signs(event.u), Place(f"at the kink at lam = {event.lam:.6g}", event.u)
+        signs, place = each.signs(event.u), TestedPoint(f"at the kink at lam = {event.lam:.6g}", event.u)
         across = (tuple(-s if i == j else s for i, s in enumerate(signs)) for j in event.switches)
         found += [(place, one) for one in (signs, *across)]
     for place, signs in found:

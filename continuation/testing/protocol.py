@@ -13,8 +13,8 @@ from continuation.arrays import Array
 from continuation.linear import SingularError, factor_bordered
 from continuation.testing.subject import (
     CheckFailure,
-    Place,
     Subject,
+    TestedPoint,
     compare,
     dense,
     random_directions,
@@ -24,7 +24,7 @@ from continuation.testing.subject import (
 
 
 def answers(
-    name: str, ask: Callable[[Any, Place], Any], good: Callable[[Any, int], bool], wanted: str
+    name: str, ask: Callable[[Any, TestedPoint], Any], good: Callable[[Any, int], bool], wanted: str
 ) -> Callable[[Subject], None]:
     """A check that `good(answer, N)` holds at every place."""
 
@@ -43,7 +43,7 @@ def _double(x: Any, n: int) -> bool:
     return x.shape == (n,) and kinds and bool(np.isfinite(x).all())
 
 
-def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
+def _weights(homotopy: Any, place: TestedPoint) -> tuple[Any, Any]:
     v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
@@ -117,7 +117,7 @@ _PARTS: Mapping[str, Callable[[Any, int], list[Any]]] = {
 """An answer's numbers."""
 
 
-def _asked(subject: Subject, place: Place, name: str) -> tuple[Any, Array]:
+def _asked(subject: Subject, place: TestedPoint, name: str) -> tuple[Any, Array]:
     """An answer, and its numbers now."""
     v, border = random_directions(place.u.size, 2, 1)
     more = {"bordered": (border,), "differential": (v,)}.get(name, ())
@@ -129,6 +129,6 @@ def _asked(subject: Subject, place: Place, name: str) -> tuple[Any, Array]:
     return answer, _numbers(name, answer, place)
 
 
-def _numbers(name: str, answer: Any, place: Place) -> Array:
+def _numbers(name: str, answer: Any, place: TestedPoint) -> Array:
     parts = _PARTS[name](answer, place.u.size - 1) if name in _PARTS else [answer]
     return np.hstack([np.ravel(part) for part in parts]).astype(float)

@@ -19,6 +19,7 @@ from continuation.evaluation.derivatives import from_residual
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Automatic
 from continuation.path import Path
+from continuation.path.steps import Located
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.status import Kind, Status
@@ -58,7 +59,7 @@ def reporting(method: str, where: str) -> Iterator[None]:
 
 
 @frozen(eq=False)
-class Place:
+class TestedPoint(Located):
     """A point and its name in messages."""
 
     where: str
@@ -68,11 +69,6 @@ class Place:
     def y(self) -> Array:
         """A copy of the unknowns, shape (N,)."""
         return self.u[:-1].copy()
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        return float(self.u[-1])
 
 
 @frozen(eq=False, slots=False)
@@ -93,31 +89,31 @@ class Subject:
             return Evaluator(self.homotopy, Counts())
 
     @cached_property
-    def start(self) -> Place:
+    def start(self) -> TestedPoint:
         """The start, checked as by a trace."""
         with reporting("start", "called without arguments"):
-            return Place("at the start", self.evaluator.start())
+            return TestedPoint("at the start", self.evaluator.start())
 
     @cached_property
-    def places(self) -> tuple[Place, ...]:
+    def places(self) -> tuple[TestedPoint, ...]:
         """The start, a point beside it, and up to two points of the path."""
         start = self.start
         aside = 1e-2 * (1.0 + np.abs(start.u)) * random_directions(start.u.size, 1, 8)[0]
         if self.has("max_step"):
             with reporting("max_step", "near the start"):
                 aside *= np.clip(0.5 * float(self.homotopy.max_step(start.u.copy(), aside.copy())), 0.0, 1.0)
-        beside = Place("beside the start", start.u + aside)
+        beside = TestedPoint("beside the start", start.u + aside)
         return (start, *([beside] if np.isfinite(self.evaluator.residual_norm(beside.u)) else []), *self._sampled)
 
     @cached_property
-    def _sampled(self) -> dict[Place, Array]:
+    def _sampled(self) -> dict[TestedPoint, Array]:
         """Two inner steps, since the end may be singular, and their tangents."""
         try:
             last = len(self.regular) - 1
         except CheckFailure:
             return {}
         steps = [self.path.steps[k] for k in sorted({last // 2, last - 1}) if k > 0]
-        return {Place(f"at step {s.index} of the path (lam = {s.lam:.6g})", s.u): s.tangent for s in steps}
+        return {TestedPoint(f"at step {s.index} of the path (lam = {s.lam:.6g})", s.u): s.tangent for s in steps}
 
     @cached_property
     def first(self) -> Linearization:
@@ -164,7 +160,7 @@ class Subject:
         events = [event for event in path.events if event.step < end.index]
         return Path(steps=path.steps[:-1], events=events, status=Status.BUDGET_EXHAUSTED, counts=path.counts)
 
-    def points(self) -> Iterator[tuple[Place, Linearization]]:
+    def points(self) -> Iterator[tuple[TestedPoint, Linearization]]:
         """Places on the path, linearized."""
         yield self.start, self.first.with_weights(np.ones_like(self.start.u))
         for place, tangent in self._sampled.items():
@@ -172,7 +168,7 @@ class Subject:
             with reporting("bordered" if self.has("bordered") else "jacobian", place.where):
                 yield place, linearize(self.evaluator, place.u, np.ones_like(border), border)
 
-    def derivative(self, place: Place) -> Array:
+    def derivative(self, place: TestedPoint) -> Array:
         """The matrix [[H_y, H_lam]], dense, shape (N, N + 1)."""
         if self.has("jacobian"):
             with reporting("jacobian", place.where):
@@ -182,7 +178,7 @@ class Subject:
         return np.column_stack([dense(H_y, place.u.size - 1), np.asarray(H_lam, dtype=float)])
 
 
-def compare(name: str, place: Place, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
+def compare(name: str, place: TestedPoint, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
     """End a check unless numbers have one shape and agree, by default bit for bit."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
     shapes = f"expected shape {expected.shape}, found {found.shape}"

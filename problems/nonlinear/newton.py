@@ -8,7 +8,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import ALLGOWER_GEORG
-from problems.bibliography import KELLER
+from problems.bibliography import KELLER_1978
 from problems.nonlinear.start_checks import FromPoint, Function, Jacobian
 from problems.options import quiet
 
@@ -33,7 +33,7 @@ class NewtonHomotopy(FromPoint):
     Methods, 2003.
     """
 
-    references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
+    references: ClassVar[tuple[str, ...]] = (KELLER_1978, ALLGOWER_GEORG)
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:

@@ -7,11 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import scipy.sparse as sp
 from attrs import evolve, field, frozen
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
 
-from continuation.arrays import EPS, Array, Matrix, finite, largest
+from continuation.arrays import EPS, Array, Mask, Matrix, finite, largest
 from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.factoring import Factoring
@@ -21,8 +20,6 @@ from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure, scaled_band
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import row_terms
-
-Mask = NDArray[np.bool_]
 
 SINGULAR_CONDITION = 1e-14
 """Reciprocal condition of a singular face, whose solution has hardly a digit left."""

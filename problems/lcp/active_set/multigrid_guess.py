@@ -10,11 +10,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Mask, Matrix
 from continuation.counts import Counts
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import BACKWARD_ERROR
-from problems.lcp.active_set.face import Faces, Mask
+from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State

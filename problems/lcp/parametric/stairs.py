@@ -9,12 +9,9 @@ from typing import Any, Self
 
 import numpy as np
 from attrs import frozen
-from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Mask
 from problems.lcp.data.problem import MixedLCP, State
-
-Mask = NDArray[np.bool_]
 
 
 @frozen(eq=False)

@@ -12,8 +12,8 @@ import time
 import numpy as np
 from scipy.linalg.lapack import dgesv
 
+from continuation.arrays import Mask
 from continuation.counts import Counts
-from problems.lcp.active_set.face import Mask
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.proof.certificate import ROUND_OFF, certified
 from problems.lcp.proof.verdict import LARGEST_DECIDED

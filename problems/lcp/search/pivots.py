@@ -10,8 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
-from problems.lcp.active_set.face import Mask
+from continuation.arrays import Array, Mask
 from problems.lcp.data.problem import LCP, active_state
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
 from problems.lcp.pivoting.starts import Game, covering, unit_of

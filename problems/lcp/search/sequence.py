@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from attrs import define, field
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Mask, Matrix
 from continuation.budget import Budget
 from continuation.linear.silence import Silence
 from continuation.linear.threads import one_thread
-from problems.lcp.active_set.face import Face, Faces, Mask
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
