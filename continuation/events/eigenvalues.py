@@ -126,7 +126,7 @@ def _eigenvalues(
         small = H[: k + 1, : k + 1]
         if 0.5 * _size(small + small.T) + left_over <= min(right, -left):
             # No real part exceeds the norm of the symmetric part.
-            values, errors, vectors = [], [], small
+            values, errors, vectors = list[complex](), list[float](), small
         else:
             values, errors, vectors = _eig(small, 0.0 if whole else left_over)
         told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
