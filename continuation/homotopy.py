@@ -192,7 +192,7 @@ class SupportsMetric(Protocol):
 
 @runtime_checkable
 class SupportsExtents(Protocol):
-    """Approximate sizes of unknowns and parameter, positive, shape (N + 1,): units of those that stay zero."""
+    """A homotopy that knows sizes of unknowns and parameter, positive, shape (N + 1,), for those that stay zero."""
 
     extents: Array
 
@@ -209,7 +209,7 @@ class SupportsFinish(Protocol):
     """The problem's own end, tried after accepted steps."""
 
     def finish(self, y: Array, lam: float) -> Array | None:
-        """Return the certified end, or None.
+        """Return the solution at the target, found from a point of the path and verified; None to trace on.
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class SupportsBound(Protocol):
     """An event that needs the path's evaluator."""
 
     def bound(self, evaluator: Any) -> Watcher:
-        """Return the event for one path.
+        """Return a copy of the event for one path, which may keep what it learns there.
 
         Parameters
         ----------

@@ -116,7 +116,7 @@ class Automatic:
 
     @property
     def longest(self) -> float:
-        """Longest step: it at most doubles the known extent."""
+        """Longest step: one extent, so that a step at most doubles how far the path is known."""
         return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:

@@ -250,7 +250,10 @@ def pack(checkpoint: Checkpoint) -> bytes:
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint; None if missing, torn or of another major version; creates no named object."""
+    """The checkpoint; None if missing, torn or of another major version of the library.
+
+    No class that the bytes name is imported.
+    """
     try:
         sequence, length, crc = HEAD.unpack_from(raw)
         body = raw[HEAD.size : HEAD.size + length]

@@ -75,7 +75,7 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 
 
 def gather(files: Sequence[File], target: File) -> None:
-    """Merge parts of a sweep in member order; paths of another size lose their points."""
+    """Merge parts of a sweep in member order; a path with another number of unknowns than the first keeps no points."""
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))

@@ -75,7 +75,7 @@ class Engine(Protocol):
         ...
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """Bounds for radii up to `radius`.
+        """Bound Krawczyk's operator on tubes about the slabs, with radii up to `radius`.
 
         Parameters
         ----------

@@ -145,7 +145,10 @@ class ByIntervals:
 
 
 def engine_of(homotopy: Any) -> Engine:
-    """The homotopy's own engine, else interval arithmetic; TypeError names an operation that intervals lack."""
+    """What bounds H and H' on boxes: the homotopy's own engine, else its residual in interval arithmetic.
+
+    `TypeError` names an operation of the residual that intervals lack.
+    """
     if isinstance(homotopy, SupportsProofEngine):
         return homotopy.proof_engine()
     y, lam = homotopy.start()

@@ -24,7 +24,7 @@ class Traced(Protocol):
 
 
 def cite(source: Any) -> str:
-    """BibTeX of the library, a run's methods and the homotopy's sources.
+    """BibTeX of the library, the methods that a traced path used, and its homotopy's sources.
 
     Parameters
     ----------

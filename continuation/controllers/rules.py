@@ -93,7 +93,7 @@ class AllgowerGeorg:
 
 @frozen
 class SeriesRange:
-    """The whole range of a series predictor, which has an error bound; a failure halves it once."""
+    """A step as long as a series predictor's error bound allows; a failure halves it for that step alone."""
 
     distance: float = field(default=1e-3, validator=POSITIVE)
     max_angle: float = field(default=1.4, validator=POSITIVE)

@@ -55,7 +55,7 @@ def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
 
 
 def as_size(size: Any, at: Any, u: Array) -> Array:
-    """Scales of components: given, from the event's metric, or the point's size."""
+    """Scales of the components of `u`: `size` if given, else from the metric of the event `at`, else their sizes."""
     if size is None:
         weights = getattr(at, "weights", None)
         return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))

@@ -100,7 +100,10 @@ class Calculus:
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
 
     def second(self, u: Array, mu: float, v: Array, left: Array) -> Array:
-        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,); v is real."""
+        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,).
+
+        `v`: real; `left`, shape (N,), may be complex and is not conjugated.
+        """
         if not v.any():
             return np.zeros(u.size + 1)
         if self.jets:

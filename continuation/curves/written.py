@@ -2,9 +2,9 @@
 
     H(y, lam; mu) = 0,   H_y v = 0,             |v| = 1                     (folds)
     H(y, lam; mu) = 0,   H_y v = i omega v,     c* v = 1,   v complex       (Hopf points)
-    H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0
+    H(y, lam; mu) = 0,   [H_y, H_lam] t = 0,    |t| = 1,    g(y, lam, t) = 0    (a monitor g)
 
-These are regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J. Numer. Anal. 3
+The systems are regular where the curve is (Seydel, Numer. Math. 33 (1979); Griewank and Reddien, IMA J. Numer. Anal. 3
 (1983)). Dual numbers give derivatives along v. The curve is the projection on (y, lam, omega, mu).
 """
 

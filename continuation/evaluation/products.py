@@ -233,5 +233,8 @@ def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
 
 
 def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
-    """Jets, else complex steps, if they `agree` with differences along w, or None."""
+    """Products H' v without truncation error, by jets, else by complex steps.
+
+    None if neither agrees with differences of the residual at u along w.
+    """
     return next((products for products in (BY_JETS, BY_COMPLEX_STEP) if agree(products, residual, u, w)), None)

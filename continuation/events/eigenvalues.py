@@ -150,7 +150,10 @@ def _eigenvalues(
 
 
 def _closed(H: Array, left_over: float, right: float) -> bool:
-    """Whether no eigenvalue hides outside the space: what leads out comes back multiplied by at most the size of C."""
+    """Whether the Krylov space of C misses no eigenvalue above `right`.
+
+    `H`: C projected on the space; `left_over`: size of what C adds to it. That returns multiplied by the entries of C.
+    """
     return left_over * max(right, float(np.abs(H).max())) <= OUTSIDE_SPACE * right * right
 
 

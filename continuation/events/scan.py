@@ -22,7 +22,10 @@ SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points found by each `continuation.homotopy.Watcher`, and whether these and `found` explain the arc."""
+    """Points that the `continuation.homotopy.Watcher`s among the events find, and whether all of these accept the arc.
+
+    `found`: the other events' points, each with the event's index.
+    """
     watching: list[tuple[int, Any]] = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
     known = [(events[i].kind, point) for i, point in (*found, *own)]

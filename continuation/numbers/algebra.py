@@ -39,7 +39,7 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
-        """f_0 + f_1 d + f_2 d^2: curves through boxes have no more."""
+        """f_0 + f_1 d + f_2 d^2, d being `a` without its constant: numbers of this algebra have no third order."""
         d, less = a[1:], a[1:-1]
         out = f[1] * d
         if len(less):

@@ -94,7 +94,7 @@ def sampled(path: Drawn) -> tuple[Array, Array]:
 
 
 def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
-    """Numbers known at points and events, between them by monotone cubics, without further extrema."""
+    """`number(point)` at the arclengths `wanted`: known at points and events, between them by monotone cubics."""
     from scipy.interpolate import PchipInterpolator
 
     points = sorted([*path.events, *path.steps], key=lambda point: point.arclength)

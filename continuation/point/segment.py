@@ -50,7 +50,7 @@ class PolynomialSegment:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Quarters: a cubic's derivative changes sign at most twice."""
+        """The quarters. Between them no oscillation is missed: a cubic's derivative changes sign at most twice."""
         return _QUARTERS
 
     def at(self, t: float) -> Array:
@@ -115,7 +115,7 @@ class SeriesSegment:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """Sixteenths: a series may turn several times."""
+        """The sixteenths, since a series may turn several times."""
         return _SIXTEENTHS
 
     def at(self, t: float) -> Array:

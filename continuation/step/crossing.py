@@ -133,7 +133,7 @@ class _Looks:
     along: Array = field(default=Factory(lambda looks: np.zeros_like(looks.arc.a.u), takes_self=True), init=False)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """Large changes 1 - z at u, near t."""
+        """Changes 1 - z above TOLD or below LOWEST, for eigenvalues z at the point u, near the arc's parameter t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []

@@ -13,7 +13,10 @@ from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One panel per family; every problem has a planted solution."""
+    """The chart's panels: one a family of random problems, with a solution planted in each.
+
+    `compare`: add other software.
+    """
     orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 4), "full": ((5, 10, 20, 50), 25)}[size]
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [

@@ -74,7 +74,7 @@ class Here:
 
     @cached_property
     def matrices(self) -> tuple[sp.csc_array, Array]:
-        """Derivatives by the unknowns, sparse, and by p."""
+        """Derivatives of the collocation equations by the unknowns, sparse, and by the parameter p."""
         grid, n = self.grid, self.scale.size
         blocks = self._blocks / grid.widths[:, None, None, None, None]
         size = self.X.size

@@ -66,7 +66,7 @@ def arrow(start: tuple[float, float], along: tuple[float, float], k: int, label:
 
 
 def rectangle(place: Array, width: float, height: float, **style: Any) -> Mark:
-    """A rectangle at (x, y), turned by an angle."""
+    """A rectangle about `place` = (x, y, angle in radians)."""
     x, y, angle = place
     corners = 0.5 * np.array([[-width, width, width, -width], [-height, -height, height, height]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

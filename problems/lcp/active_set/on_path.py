@@ -1,4 +1,4 @@
-"""When the finish is tried on a path."""
+"""Decides at which points of a path the finish is tried: active sets, from the point's own set."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The common form of the homotopies: rows blend two ends, products of pairs fade with lambda.
+"""The common form of the homotopies: linear rows go from `origin` to `goal`, products p q + plain from c to 0.
 
     ((1 - lam) goal + lam origin, p q + plain - lam c)
 
-`parts` defines goal, origin, p, q and plain, affine in u = (y, lam).
+`parts` defines goal, origin, p, q and plain, affine in u = (y, lam); c is the value of p q + plain at the start.
 """
 
 from __future__ import annotations

@@ -130,7 +130,7 @@ def _row_multipliers(problem: MixedLCP, x0: Array, product: float, w0: Array) ->
 
 
 def default_start(problem: MixedLCP) -> Start:
-    """The centred start with equal components, feasible if possible.
+    """The centred start, of equal products x_i w_i, at x of a typical size; feasible if possible.
 
     Parameters
     ----------

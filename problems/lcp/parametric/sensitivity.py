@@ -118,7 +118,7 @@ class Sensitivity:
 
 
 def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
-    """The derivatives of a solution.
+    """The derivatives of a solution by the data.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
     Raises
     ------
     NotDifferentiableError
-        If A is singular on the moving indices.
+        If A is singular on the indices that are between their bounds.
     """
     w = problem.w(x)
     A = problem.A.toarray() if problem.sparse else problem.A

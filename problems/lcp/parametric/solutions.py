@@ -44,6 +44,7 @@ class Solutions:
     complete : bool
         Whether these are all solutions, by an exact test.
     paths : int
+        Traced.
     message : str
     """
 

@@ -208,7 +208,7 @@ class _Scaled:
         return cls(problem, system, matrix, vector / _power_of_two(np.abs(vector).max(keepdims=True)), rows)
 
     def exact(self, guess: Array) -> Farkas | None:
-        """The scaled guess as it is, or with its tight conditions solved exactly, if it is a proof."""
+        """A rational proof: the guess, scaled by the rows, or the solution of its tight conditions; else None."""
         weights = integers(self.rows.max() / self.rows)[0]
         rounded = [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
         return self._proved(rounded) or self._proved(self._vertex(guess))

@@ -70,7 +70,7 @@ def is_strictly_feasible(problem: LCP, x: Array) -> bool:
 
 
 def _programs(problem: LCP) -> Iterator[Array | None]:
-    """The least x of margin 1; then the x of largest margin t <= 1."""
+    """Yield the x of least sum with x >= 1 and A x + q >= 1, scaled; then that of the largest t <= 1 in place of 1."""
     rows, columns = scales(problem)
     (matrix, vector), n = scaled_data(problem, rows, columns), problem.n
     result = linprog(np.ones(n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")

@@ -1,4 +1,7 @@
-"""Quadratic residuals from products of affine parts, along cubics and with bounds of their rounding."""
+"""Residuals that are sums of products of two affine functions.
+
+They have values, polynomials along cubic arcs, and bounds of rounding errors.
+"""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def _float(value: Fraction) -> float:
 
 
 def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
-    """Whether an LCP of that order has as many faces."""
+    """Whether the problem has no more faces than an LCP of order `order`, so that all can be tried."""
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 

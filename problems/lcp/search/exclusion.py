@@ -80,7 +80,10 @@ class Exclusion:
     sought: bool = field(default=False, init=False)
 
     def run(self, work: float) -> str:
-        """Visit up to `work` nodes (0: the root alone), seek a Farkas vector, try all leaves."""
+        """Branch on groups of faces, up to `work` nodes of the tree, and try the leaves.
+
+        With 0 seek one Farkas vector that excludes all faces.
+        """
         search = self.search
         if work and groupable(search) and self._branched(int(work)):
             assert self.tree is not None

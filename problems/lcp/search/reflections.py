@@ -114,7 +114,7 @@ class Sets:
 
 
 def reflectable(search: Search) -> bool:
-    """Whether projections are affordable and A is not semidefinite."""
+    """Whether reflections are tried: n is small enough to project on w = A x + q, and A is not semidefinite."""
     return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.structure.semidefinite
 
 
