@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, largest
 from continuation.contraction import MONOTONE
 from continuation.evaluation.noise import allowed_along
 from continuation.events.eigenvalues import EIGENVALUE_ACCURACY
@@ -28,10 +28,6 @@ BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
 
 Z_ROUND_OFF = SIX_DIGITS * SIX_DIGITS
 """Round-off of z, by products."""
-
-PLACED = 1e-2
-"""Distance of a zero of higher order, in arc lengths, that is near enough where secant steps stall: corrections end on
-either of the branches, which are closer than a prediction's error. Without it 2 of 8 curved tacnodes were located."""
 
 FARTHEST = 3.0
 """Branch points farther ahead, in arc lengths, are left to the next arc."""
@@ -71,15 +67,22 @@ def degenerate_point(
     def beside(place: float) -> float:
         return z_at(place, prediction(place * arc.length))
 
+    @cache
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
         if lost > 1 or order <= SIMPLE_ORDER:
             # Symmetry keeps the prediction from errors that vanishing eigenvalues would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
-        return solver.project(arc.a, u, arc.a.border)[0]
+        return _twice(solver, solver.project(arc.a, u, arc.a.border)[0], arc.a.border)
+
+    def settled(place: float) -> float:
+        z = z_at(place, on_path(place))
+        # Corrections end on either of two branches that touch.
+        return abs(z) if order > SIMPLE_ORDER and lost == 1 else z
 
     order = FIRST_ORDER
+    near: tuple[Array, float] | None = None
     try:
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
@@ -93,20 +96,28 @@ def degenerate_point(
         # Points on the path may cost factorisations.
         t, last = ahead - order * beyond, np.inf
         while 0.0 < t < FARTHEST:
-            z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
+            z, left = _left(settled, t, order)
             u = on_path(t)
             if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
                 return u, order
+            if order > SIMPLE_ORDER and abs(z) ** (1.0 / order) <= EIGENVALUE_ACCURACY:
+                near = u, order
             if not abs(left) < MONOTONE * abs(last):
-                # M_a is nearly singular: z is round-off.
-                if order > SIMPLE_ORDER and abs(z) ** (1.0 / order) <= PLACED:
-                    return u, order
-                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else None
+                # M_a is nearly singular, or branches are closer than what is known of z: z is round-off.
+                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else near
             last, t = left, t - order * left
     except ArithmeticError:
         # z is NaN, or secant points coincide.
         pass
-    return None
+    return near
+
+
+def _twice(solver: PathSolver, u: Array, border: Array) -> Array:
+    """The point after Newton's increment, taken twice, if H is smaller there: so it is at a double root."""
+    evaluator = solver.evaluator
+    r = evaluator.residual(u)
+    further = u + 2.0 * evaluator.factor(u, border).solve(-r, 0.0)
+    return further if largest(evaluator.residual(further)) < largest(r) else u
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
