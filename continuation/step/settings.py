@@ -81,7 +81,8 @@ class Settings:
         """
         if self.target is not None:
             return math.inf
-        known = ((value - u[i], v[i]) for i, value in self.stops)
+        ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal == 1]
+        known = ((event.value - u[event.component], v[event.component]) for event in ends)
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
