@@ -316,7 +316,9 @@ def test_frequencies_do_not_run_off_to_infinity(preset):
     values, vectors = np.linalg.eig(Q.T @ np.diag(np.r_[np.ones(n - 1), 1.5]))
     x = np.abs(vectors[:, np.argmax(values.real)].real)
     path = trace(
-        from_functions(residual, start=(x / x.sum(), 1.0), target=2.0), preset=preset, budget=Budget(steps=2000)
+        from_functions(residual, start=(x / x.sum(), 1.0), target=2.0),
+        preset=preset,
+        budget=Budget(factorizations=4000),
     )
     assert path.status is not Status.DIVERGED
 
