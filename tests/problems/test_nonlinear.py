@@ -23,4 +23,8 @@ def test_brown_jacobian_also_where_components_vanish(n, zeros):
 @pytest.mark.parametrize("form", FORMS)
 def test_the_structure_of_the_derivative_is_kept(make, form):
     slope, y = partial(cubic_slope, form), np.array([0.3, -0.7, 1.1, 0.2])
-    assert type(make(cubic, np.full(4, 0.5), slope).jacobian(y, 0.6)[0]) is type(slope(y))
+    homotopy = make(cubic, np.full(4, 0.5), slope)
+    H_y, H_lam = homotopy.jacobian(y, 0.6)
+    assert type(H_y) is type(slope(y))
+    exact = [homotopy.residual(u[:-1], u[-1]).imag * 1e200 for u in np.append(y, 0.6) + 1e-200j * np.eye(5)]
+    np.testing.assert_allclose(np.column_stack((H_y @ np.eye(4), H_lam)), np.transpose(exact), rtol=0, atol=1e-13)
