@@ -39,6 +39,13 @@ def of_sizes(z, p):
     return np.stack([a * x - y, a * y + x])
 
 
+def two_circles(z, p):
+    """A circle of period 2 pi, stable, and across it a focus that loses its stability at p = 0: a torus."""
+    x, y, u, v = z
+    a, b = 1.0 - x * x - y * y, p - u * u - v * v
+    return np.stack([a * x - y, a * y + x, b * u - 0.3 * v, b * v + 0.3 * u])
+
+
 def simulated(f, p, x0, settling=100.0, time=60.0):
     """Times and states of a simulation that has settled."""
     options = {"rtol": 1e-8, "atol": 1e-8, "method": "DOP853"}
