@@ -70,19 +70,18 @@ def degenerate_point(
     @cache
     def on_path(place: float) -> Array:
         u = prediction(place * arc.length)
-        if lost > 1 or order <= SIMPLE_ORDER:
+        if not touching:
             # Symmetry keeps the prediction from errors that vanishing eigenvalues would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
         return _twice(solver, solver.project(arc.a, u, arc.a.border)[0], arc.a.border)
 
-    def settled(place: float) -> float:
-        z = z_at(place, on_path(place))
+    def at(place: float, u: Array) -> float:
         # Corrections end on either of two branches that touch.
-        return abs(z) if order > SIMPLE_ORDER and lost == 1 else z
+        z = z_at(place, u)
+        return abs(z) if touching else z
 
-    order = FIRST_ORDER
-    near: tuple[Array, float] | None = None
+    order, touching = FIRST_ORDER, False
     try:
         z, left = _left(beside, t, FIRST_ORDER)
         ahead = t - FIRST_ORDER * left
@@ -93,23 +92,26 @@ def degenerate_point(
             return None
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         order = max((ahead - t) / (beyond - left), 1.0)
+        touching = order > SIMPLE_ORDER and lost == 1
         # Points on the path may cost factorisations.
         t, last = ahead - order * beyond, np.inf
         while 0.0 < t < FARTHEST:
-            z, left = _left(settled, t, order)
+            z, left = _left(lambda place: at(place, on_path(place)), t, order)
             u = on_path(t)
-            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
+            solve: Callable[[Array], Array] = arc.a.approximate
+            if touching:
+                # H hardly changes along the kernel at u.
+                solve = partial(solver.evaluator.factor(u, arc.a.border).approximate, rho=0.0)
+            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, u, z, partial(at, t), solve, arc.a.weights)):
                 return u, order
-            if order > SIMPLE_ORDER and abs(z) ** (1.0 / order) <= EIGENVALUE_ACCURACY:
-                near = u, order
             if not abs(left) < MONOTONE * abs(last):
                 # M_a is nearly singular, or branches are closer than what is known of z: z is round-off.
-                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else near
+                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else None
             last, t = left, t - order * left
     except ArithmeticError:
         # z is NaN, or secant points coincide.
         pass
-    return near
+    return None
 
 
 def _twice(solver: PathSolver, u: Array, border: Array) -> Array:
@@ -128,13 +130,20 @@ def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float
     return z, z * step / change if change else 0.0
 
 
-def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
+def _blur(
+    solver: PathSolver,
+    u: Array,
+    z: float,
+    look: Callable[[Array], float],
+    solve: Callable[[Array], Array],
+    weights: Array,
+) -> float:
     """Effect of H's round-off on z; 0 if too large."""
     residual = solver.evaluator.residual
     r = residual(u)
     allowed = np.abs(r) + solver.evaluator.round_off(u, r)
-    way = arc.a.approximate(allowed)
-    size = norm(arc.a.weights, way)
+    way = solve(allowed)
+    size = norm(weights, way)
     if not size > 0.0:
         return 0.0
     blur = abs(look(u + allowed_along(residual, u, way / size, 2.0 * allowed, size) * way / size) - z)
