@@ -74,7 +74,7 @@ def degenerate_point(
             # Symmetry keeps the prediction from errors that vanishing eigenvalues would magnify.
             settled = solver.settled(arc.a, u, arc.a.border)
             return u if settled is None else settled
-        return _twice(solver, solver.project(arc.a, u, arc.a.border)[0], arc.a.border)
+        return solver.project(arc.a, u, arc.a.border)[0]
 
     def at(place: float, u: Array) -> float:
         # Corrections end on either of two branches that touch.
@@ -95,31 +95,41 @@ def degenerate_point(
         touching = order > SIMPLE_ORDER and lost == 1
         # Points on the path may cost factorisations.
         t, last = ahead - order * beyond, np.inf
+        place, u = t, arc.a.u
         while 0.0 < t < FARTHEST:
-            z, left = _left(lambda place: at(place, on_path(place)), t, order)
-            u = on_path(t)
-            solve: Callable[[Array], Array] = arc.a.approximate
-            if touching:
-                # H hardly changes along the kernel at u.
-                solve = partial(solver.evaluator.factor(u, arc.a.border).approximate, rho=0.0)
-            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, u, z, partial(at, t), solve, arc.a.weights)):
+            place = t
+            z, left = _left(lambda s: at(s, on_path(s)), place, order)
+            u = on_path(place)
+            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, u, z, partial(at, place), arc.a.approximate, arc.a.weights)):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
-                # M_a is nearly singular, or branches are closer than what is known of z: z is round-off.
-                return (u, order) if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY else None
+                # M_a is nearly singular: z is round-off.
+                if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY:
+                    return u, order
+                break
             last, t = left, t - order * left
+        if touching:
+            # Branches were closer than what is known of u.
+            u, solve = _at_double_root(solver, u, arc.a.border)
+            z = at(place, u)
+            if abs(z) <= _blur(solver, u, z, partial(at, place), solve, arc.a.weights):
+                return u, order
     except ArithmeticError:
         # z is NaN, or secant points coincide.
         pass
     return None
 
 
-def _twice(solver: PathSolver, u: Array, border: Array) -> Array:
-    """The point after Newton's increment, taken twice, if H is smaller there: so it is at a double root."""
+def _at_double_root(solver: PathSolver, u: Array, border: Array) -> tuple[Array, Callable[[Array], Array]]:
+    """The point after Newton's increment, taken twice, if H is smaller there, as at a double root; and its solver.
+
+    Near the kernel of H', along which H hardly changes, only a solver from there shows how far round-off reaches.
+    """
     evaluator = solver.evaluator
     r = evaluator.residual(u)
-    further = u + 2.0 * evaluator.factor(u, border).solve(-r, 0.0)
-    return further if largest(evaluator.residual(further)) < largest(r) else u
+    solve = partial(evaluator.factor(u, border).approximate, rho=0.0)
+    further = u - 2.0 * solve(r)
+    return further if largest(evaluator.residual(further)) < largest(r) else u, solve
 
 
 def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
