@@ -109,10 +109,10 @@ def degenerate_point(
                 break
             last, t = left, t - order * left
         if touching:
-            # Branches were closer than what is known of u.
+            # Branches were closer than what is known of u. Half of the digits of z are all that a path is known to.
             u, solve = _at_double_root(solver, u, arc.a.border)
             z = at(place, u)
-            if abs(z) <= _blur(solver, u, z, partial(at, place), solve, arc.a.weights):
+            if abs(z) <= max(ROOT_OF_ROUND_OFF, _blur(solver, u, z, partial(at, place), solve, arc.a.weights)):
                 return u, order
     except ArithmeticError:
         # z is NaN, or secant points coincide.
