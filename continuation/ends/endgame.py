@@ -50,7 +50,7 @@ weights at t = 0."""
 EQUALLY_GOOD = 10.0
 """Factor of the best error within which the smallest winding number wins: multiples fit later."""
 
-AT_PARAMETER = BorderedNewton(max_contraction=MONOTONE)
+AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
 
 

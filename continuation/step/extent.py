@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, Array, dot, generic_vector, median
+from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.evaluation.noise import ENDLESS, allowed_along
@@ -42,14 +42,17 @@ LENGTHS_TRIED = 40
 GROWTH = 30.0
 """Largest growth of the length in one try: a straight beginning predicts nothing."""
 
+STRAIGHT_LENGTH = 1e30
+"""A path straight to this length, in units of its start, has no scale."""
+
 STANDSTILL = 1e-60
 """Part of the largest motion below which a component stands still."""
 
 STILL_PIECEWISE = 1e-13
 """STANDSTILL on pieces, which have round-off of other components."""
 
-REPLACED = 0.1
-"""A tangent component with less than half of the largest's digits is round-off if refinement changes it by more."""
+SUSPECT, REPLACED = 1e-8, 0.1
+"""A smaller tangent component, relatively, is round-off if refinement changes it by more than the second."""
 
 UNCERTAIN = 100.0
 """Corrections below this multiple of round-off are ignored."""
@@ -96,7 +99,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    blur = np.max([np.spacing(np.abs(u)), *(np.abs(_held(v, given, z)) for z in samples)], axis=0)
+    blur = np.maximum(_largest([_held(v, given, z) for z in samples]), np.spacing(np.abs(u)))
     if near:
         # Round-off of the tangent is round-off of the way.
         blur = np.maximum(blur, ahead * np.abs(given - v))
@@ -108,7 +111,7 @@ def initial_extent(
         seen = np.maximum(blur, size * np.partition(blur[moving] / size[moving], 1)[1])
     unseen = UNCERTAIN * seen
     h = SEARCH_START * length
-    low, high, power = 0.0, np.inf, 1.0
+    begin, low, high, power = h, 0.0, np.inf, 1.0
     apart = np.abs(point.approximate(residual))
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
@@ -134,16 +137,16 @@ def initial_extent(
         else:
             low = found = h
             off = d
+            if h > STRAIGHT_LENGTH:
+                # Only the start's size is left as a scale.
+                found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
+                break
         h *= min(max(rest, 0.1), GROWTH)
         if not low < h < high:
             h = 0.5 * (low + high)
         h = min(h, whole)
         if high < AROUND * low:
             break
-    else:
-        if np.isinf(high):
-            # A straight path: only the start's size is left as a scale.
-            found, off = length, off * (length / found) ** 2
     if found > room:
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off)) / unit
@@ -179,7 +182,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
 
     A tiny component may have another unit; refinement with H' nearby decides, and with H at length h, if given.
     """
-    small = (v != 0.0) & (np.abs(v) < ROOT_OF_ROUND_OFF * float(np.abs(v).max()))
+    small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
         return v
     onward = allowed_along(evaluator.residual, point.u, v, np.abs(residual) + evaluator.round_off(point.u, residual))
@@ -220,6 +223,11 @@ def _held(v: Array, given: Array, z: Array) -> Array:
     parts = np.sort(z[moving] / v[moving])
     beside: Array = z - min(parts[(parts.size - 1) // 2], parts[parts.size // 2], key=abs) * given
     return beside
+
+
+def _largest(samples: list[Array]) -> Array:
+    found: Array = np.abs(samples).max(axis=0)
+    return found
 
 
 def _nonlinearity(

@@ -31,7 +31,8 @@ class SingularStartError(StartError):
     """The Jacobian has no full rank at the start: the path has no direction."""
 
 
-CORRECTING = BorderedNewton()
+CORRECTING = BorderedNewton(max_iterations=20)
+"""Many iterations are cheap: one correction a path."""
 
 CLEAR_OF_NOISE = 4.0
 """Tolerance in units of a correction's noise: two standard deviations of a difference. With half, CONSERVATIVE fails in

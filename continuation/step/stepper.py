@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from attrs import frozen
 
-from continuation.arrays import SIX_DIGITS, Array, dot, finite
+from continuation.arrays import Array, dot, finite
 from continuation.correctors import Correction, Corrector
 from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner
@@ -20,8 +20,11 @@ LOW_ORDER_FRACTION = 0.9
 """Part of the distance to the boundary for a prediction, as in interior methods (Wright, Primal-Dual Interior-Point
 Methods, 1997)."""
 
-SHORTEST = 0.1
-"""Least factor of a cut at a boundary: a curved prediction may come back into the domain."""
+SHORTENINGS, SHORTEST = 60, 0.1
+"""Limit of cuts at a boundary, and least factor: they go below any least step."""
+
+TANGENT = 1e-6
+"""Accuracy of the tangent, in tolerances."""
 
 
 @frozen(eq=False)
@@ -53,7 +56,10 @@ class Stepper:
         max_step = self.solver.max_step
         if max_step is None:
             return h
-        while h > 0.0 and (room := self.fraction * max_step(point.u, prediction(h) - point.u)) < 1.0:
+        for _ in range(SHORTENINGS):
+            room = self.fraction * max_step(point.u, prediction(h) - point.u)
+            if room >= 1.0:
+                return h
             # Curved predictions may need more cuts.
             h *= max(room, SHORTEST)
         return h
@@ -88,7 +94,7 @@ class Stepper:
         evaluator, weights, anchor = self.solver.evaluator, point.weights, correction.anchor
         try:
             if anchor is not None:
-                accuracy = max(REFINED, SIX_DIGITS * self.solver.tolerance.relative)
+                accuracy = max(REFINED, TANGENT * self.solver.tolerance.relative)
                 arrival = relinearize(evaluator, correction.u, weights, anchor, border, True, accuracy)
             else:
                 arrival = linearize(evaluator, correction.u, weights, border)
