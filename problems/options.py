@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
 from numbers import Integral, Real
 from typing import Any
@@ -11,7 +12,7 @@ import scipy.sparse as sp
 from attrs import Attribute
 
 from continuation.arguments.checks import FINITE, expect, integer, is_number
-from continuation.arrays import Array
+from continuation.arrays import Array, Mask, Matrix
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
 from continuation.linear.silence import without_warnings
@@ -100,6 +101,12 @@ def sound_sparse(name: str, value: Any) -> Any:
     return matrix
 
 
+def expect_nowhere(wrong: Mask, name: str, expected: str, found: Callable[[int], str]) -> None:
+    """Raise ValueError with what is found at the first index, if any, where numbers are wrong."""
+    if wrong.any():
+        raise ValueError(f"{name}: expected {expected}, found {found(int(np.argmax(wrong)))}")
+
+
 def check_finite(name: str, value: Any) -> None:
     """Raise ValueError naming the first nonfinite entry."""
     entries = value if isinstance(value, np.ndarray) else value.data
@@ -112,6 +119,13 @@ def check_finite(name: str, value: Any) -> None:
         at = np.array([value.coords[0][at[0]], value.coords[1][at[0]]])
     index = int(at[0]) if at.size == 1 else tuple(map(int, at))
     raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)][0]} at index {index}")
+
+
+def finite_matrix(name: str, value: Any) -> Matrix:
+    """Copy `value` to an array of finite floats, or a CSR matrix if it is sparse, or raise ValueError."""
+    matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
+    check_finite(name, matrix)
+    return matrix
 
 
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:

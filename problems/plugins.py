@@ -10,6 +10,7 @@ from continuation.arguments.checks import expect
 from continuation.arrays import Array
 from problems.lcp.data.files import read_problem
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy, Registered
 from problems.nonlinear import FixedPointHomotopy, brown
 
@@ -50,10 +51,11 @@ globals().update({name: _plugin(homotopy) for name, homotopy in HOMOTOPIES.items
 def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
     if file:
         try:
-            return read_problem(file, q or None), None
+            read = read_problem(file, q or None)
         except ValueError as error:
             # The reader's parameter is `path`.
             raise ValueError(str(error).replace("path:", "file:", 1)) from error
+        return read.problem if isinstance(read, Program) else read, None
     from problems.paper import EXAMPLES
 
     expect(number in range(1, len(EXAMPLES) + 1), "example", f"a number from 1 to {len(EXAMPLES)}", number)

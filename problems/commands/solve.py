@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, solve, print."""
     from continuation.budget import Budget
     from problems import lcp
-    from problems.lcp.data.files import read_problem, read_program, read_vector
+    from problems.lcp.data.files import read_problem, read_vector
 
     if arguments.file == SCENE:
         return _run_scene(arguments)
@@ -67,12 +67,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         check_picture("--plot", arguments.plot)
     with file_of(arguments.file) as file:
-        program = read_program(file) if arguments.q is None else None
-        problem = read_problem(file, arguments.q) if program is None else program.problem
+        given = read_problem(file, arguments.q)
+        problem = given.problem if isinstance(given, lcp.Program) else given
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
         budget = None if arguments.seconds is None else Budget(math.inf, arguments.seconds)
         solution = lcp.solve(
-            problem if program is None else program,
+            given,
             homotopy=arguments.homotopy,
             x0=x0,
             tolerance=arguments.tolerance,

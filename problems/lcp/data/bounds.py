@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.arrays import Array
-from problems.options import real_array
+from problems.options import expect_nowhere, real_array
 
 
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
@@ -27,21 +27,15 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     if bounds.shape != (size,):
         raise ValueError(f"{name}: expected {size} numbers, one an unknown, found shape {bounds.shape}")
     wrong = np.isnan(bounds) | (bounds == -default)
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise ValueError(f"{name}: expected numbers or {default}, found {bounds[i]} at index {i}")
+    expect_nowhere(wrong, name, f"numbers or {default}", lambda i: f"{bounds[i]} at index {i}")
     return bounds
 
 
 def without_equal_bounds(low: Array, high: Array) -> None:
     """Raise ValueError, naming the first index, where low = high."""
-    if (low == high).any():
-        i = int(np.argmax(low == high))
-        raise ValueError(f"lower: expected less than upper, found both {low[i]} at index {i}; leave x[{i}] out")
+    expect_nowhere(low == high, "lower", "less than upper", lambda i: f"both {low[i]} at index {i}; leave x[{i}] out")
 
 
 def ordered_bounds(low: Array, high: Array, name: str = "lower", other: str = "upper") -> None:
     """Raise ValueError, naming the first index, where low > high."""
-    if (low > high).any():
-        i = int(np.argmax(low > high))
-        raise ValueError(f"{name}: expected at most {other}, found {name}[{i}] = {low[i]} > {other}[{i}] = {high[i]}")
+    expect_nowhere(low > high, name, f"at most {other}", lambda i: f"{name}[{i}] = {low[i]} > {other}[{i}] = {high[i]}")

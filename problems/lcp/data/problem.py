@@ -7,14 +7,13 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
 from continuation.arguments.checks import expect, integer
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
-from problems.options import check_finite, finite_vector, real_array, sound_sparse
+from problems.options import finite_matrix, finite_vector
 
 State = NDArray[np.int8]
 """`LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER` for each index."""
@@ -34,11 +33,9 @@ def _q(value: Any) -> Array:
 
 def square_matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
-    dense = isinstance(value, np.ndarray) or not sp.issparse(value)
-    matrix = real_array("A", value) if dense else sound_sparse("A", value)
+    matrix = finite_matrix("A", value)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
-    check_finite("A", matrix)
     return matrix
 
 

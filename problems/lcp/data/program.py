@@ -16,7 +16,7 @@ from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.lcp.data.matrix_structure import semidefinite
 from problems.lcp.data.problem import MixedLCP
-from problems.options import check_finite, finite_vector, real_array, sound_sparse
+from problems.options import finite_matrix, finite_vector
 
 
 @frozen(eq=False, slots=False)
@@ -115,8 +115,8 @@ def from_qp(
 
     Parameters
     ----------
-    P : array_like or scipy sparse, shape (n, n)
-        Symmetric.
+    P : array_like or scipy sparse, shape (n, n), or None
+        Symmetric; None for a linear program.
     c : array_like, shape (n,)
     G : array_like or scipy sparse, shape (m, n), optional
     h : array_like, shape (m,), or one number, optional
@@ -134,6 +134,8 @@ def from_qp(
     """
     c = finite_vector("c", c)
     n = c.size
+    if P is None:
+        P = (sp.csr_array if sp.issparse(G) or sp.issparse(A_eq) else np.zeros)((n, n))
     P = _matrix("P", P, n)
     expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
     expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
@@ -185,18 +187,13 @@ def from_lp(
     c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
         As for `from_qp`.
     """
-    c = finite_vector("c", c)
-    P = sp.csr_array((c.size, c.size))
-    if not (sp.issparse(G) or sp.issparse(A_eq)):
-        P = P.toarray()
-    return from_qp(P, c, G, h, A_eq, b_eq, lower, upper, rows_lower=rows_lower)
+    return from_qp(None, c, G, h, A_eq, b_eq, lower, upper, rows_lower=rows_lower)
 
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
-    matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
+    matrix = finite_matrix(name, value)
     fine = matrix.ndim == 2 and matrix.shape[1] == columns
     expect(fine, name, f"{columns} columns, one a number of c", matrix.shape)
-    check_finite(name, matrix)
     return matrix
 
 

@@ -26,7 +26,7 @@ from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
 from problems.lcp.parametric.walk import OUTSIDE_LIMITS
 from problems.lcp.search.solver import solve
-from problems.options import check_budget, finite_vector
+from problems.options import check_budget, expect_nowhere, finite_vector
 
 CORNERS = 100_000
 """Default budget; Murty's example of order 16 has 65,535 kinks."""
@@ -114,7 +114,7 @@ def along(
             status, message = Status.SINGULAR_START, str(Status.SINGULAR_START)
         trail = Trail(np.append(np.ldexp(1.0, columns), 1.0))
         if walk is None:
-            trail.points, trail.tangents = [np.append(point, first)], [np.zeros(n + 1)]
+            trail.points, trail.ways = [np.append(point, first)], [np.zeros(n + 1)]
         else:
             status, message = trail.follow(walk, last, budget or Budget(steps=CORNERS))
         off = natural_residuals(problem, slope, levels, np.array(trail.points))
@@ -159,11 +159,8 @@ def levels_of(level: Any, problem: MixedLCP) -> Array:
         level = np.where(free, level, 0.0)
     found = finite_vector("level", np.full(problem.n, level) if np.ndim(level) == 0 else level, problem.n)
     wrong = (found < 0.0) | ((found > 0.0) & ~free)
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise ValueError(
-            f"level: expected 0 where there are bounds, and nowhere negative, found {found[i]} at index {i}"
-        )
+    expected = "0 where there are bounds, and nowhere negative"
+    expect_nowhere(wrong, "level", expected, lambda i: f"{found[i]} at index {i}")
     return found
 
 
@@ -187,7 +184,6 @@ def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> A
         return found.x
     given = finite_vector("x", x, problem.n)
     off = np.abs(natural_residuals(problem, d, levels, np.append(given, t)[None])[0])
-    if (off > OUTSIDE_LIMITS * at.scale(given)).any():
-        i = int(np.argmax(off))
-        raise ValueError(f"x: expected a solution for t = {t:g}, found one that is off by {off[i]:.1e} at index {i}")
+    wrong = off > OUTSIDE_LIMITS * at.scale(given)
+    expect_nowhere(wrong, "x", f"a solution for t = {t:g}", lambda i: f"one that is off by {off[i]:.1e} at index {i}")
     return given

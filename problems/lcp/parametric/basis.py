@@ -34,32 +34,27 @@ class Basis:
     _factors: tuple[Any, Any]
 
     @classmethod
-    def of(cls, rows: NDArray[np.intp], columns: NDArray[np.intp], block: Array) -> Self:
-        """Factor the block; raises `SingularBasisError`."""
+    def of(cls, rows: NDArray[np.intp], columns: NDArray[np.intp], block: Array, least: float = 0.0) -> Self:
+        """Factor the block; raises `SingularBasisError` unless all pivots are above `least`."""
         if not rows.size:
             return cls(rows, columns, block, (None, None))
-        lu, pivots, singular = dgetrf(block[rows])
-        if singular or not np.isfinite(lu).all():
+        lu, pivots, _ = dgetrf(block[rows])
+        if not (np.isfinite(lu).all() and np.abs(lu.diagonal()).min() > least):
             raise SingularBasisError("the columns are dependent")
         return cls(rows, columns, block, (lu, pivots))
 
     def solve(self, right: Array) -> tuple[Array, Array]:
         """The z with ``block z + right = 0`` on the rows, shape (k, m), and the residual of all rows."""
-        if not self.rows.size:
-            return np.zeros((0, right.shape[1])), right
         block, fine = self.block, self.block.size <= EXTENDED
-        z = -self._inverse(right[self.rows])
+        z = -self.inverse(right[self.rows])
         for _ in range(2):
             left = (block.astype(np.longdouble) @ z + right).astype(float) if fine else block @ z + right
-            correction = self._inverse(left[self.rows])
+            correction = self.inverse(left[self.rows])
             z -= correction
             left -= block @ correction
         return z, left
 
-    def row_of_inverse(self, column: int) -> Array:
-        """The dependence of one basic variable on the rows."""
-        return self._inverse((self.columns == column).astype(float), transposed=1)
-
-    def _inverse(self, right: Array, transposed: int = 0) -> Array:
-        solved: Array = dgetrs(*self._factors, right, trans=transposed)[0]
+    def inverse(self, right: Array, transposed: int = 0) -> Array:
+        """The rows' inverse, or its transpose, times `right`."""
+        solved: Array = dgetrs(*self._factors, right, trans=transposed)[0] if right.size else right
         return solved

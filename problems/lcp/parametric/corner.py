@@ -30,10 +30,10 @@ def rays(S: Array, r: Array) -> list[Ray]:
     if m > LARGEST_LISTED:
         grown = _a_solution(S, r)
         return [] if grown is None else [Ray(grown, 1.0)]
-    unit = np.maximum(np.abs(r), np.abs(S).max(axis=1))
+    unit = np.maximum(np.abs(r), np.abs(S).max(axis=1, initial=0.0))
     unit = np.where(unit > 0.0, unit, 1.0)
     whole = np.column_stack([S / unit[:, None], r / unit])
-    wide = np.abs(whole[:, :m]).max(axis=0)
+    wide = np.abs(whole[:, :m]).max(axis=0, initial=0.0)
     wide = np.where(wide > 0.0, wide, 1.0)
     whole[:, :m] /= wide
     found: list[Array] = []

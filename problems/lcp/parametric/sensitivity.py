@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.linalg import lu_solve
-from scipy.linalg.lapack import dgetrf
 
 from continuation.arguments.checks import expect
-from continuation.arrays import Array
+from continuation.arrays import EPS, Array
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.parametric.basis import Basis, SingularBasisError
 from problems.lcp.parametric.corner import rays
 from problems.options import finite_vector, real_array
 
@@ -54,7 +53,7 @@ class Sensitivity:
         Indices at a bound with w_i = 0.
     side : ndarray, shape (n,)
         1 at a lower bound, -1 at an upper one.
-    factors : tuple
+    basis : Basis
         LU of A on the moving indices.
     A : ndarray, shape (n, n)
     """
@@ -63,7 +62,7 @@ class Sensitivity:
     moving: NDArray[np.intp]
     biactive: NDArray[np.intp]
     side: Array
-    factors: Any
+    basis: Basis
     A: Array
 
     @property
@@ -88,20 +87,16 @@ class Sensitivity:
         ----------
         Cottle, Pang and Stone, section 7.4; Robinson, Math. Oper. Res. 5, 1980.
         """
-        n, inside, at = self.x.size, self.moving, self.biactive
+        n, at, side = self.x.size, self.biactive, self.side[self.biactive]
         moved = np.zeros(n) if dq is None else finite_vector("dq", dq, n)
         if dA is not None:
             moved = moved + _square("dA", dA, n) @ self.x
+        z, left = self.basis.solve(np.column_stack([self.A[:, at] * side, moved]))
+        small = side[:, None] * left[at]
+        grown = _only(small[:, :-1], small[:, -1])
         dx = np.zeros(n)
-        dx[inside] = -lu_solve(self.factors, moved[inside])
-        if at.size:
-            side = self.side[at]
-            into = lu_solve(self.factors, self.A[np.ix_(inside, at)] * side)
-            S = side[:, None] * (self.A[np.ix_(at, at)] * side - self.A[np.ix_(at, inside)] @ into)
-            r = side * (moved[at] + self.A[np.ix_(at, inside)] @ dx[inside])
-            grown = _only(S, r)
-            dx[at] = side * grown
-            dx[inside] -= into @ grown
+        dx[at] = side * grown
+        dx[self.moving] = z @ np.append(grown, 1.0)
         return dx
 
     def vjp(self, g: Any) -> Gradient:
@@ -113,7 +108,7 @@ class Sensitivity:
         """
         n, inside = self.x.size, self.moving
         q = np.zeros(n)
-        q[inside] = -lu_solve(self.factors, finite_vector("g", g, n)[inside], trans=1)
+        q[inside] = -self.basis.inverse(finite_vector("g", g, n)[inside], transposed=1)
         return Gradient(q, np.outer(q, self.x), not self.differentiable)
 
 
@@ -138,14 +133,14 @@ def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
         off = (np.abs(A) * room > BIACTIVE * terms[:, None]).any(axis=0) | np.isinf(room)
     inside = np.flatnonzero(off)
     at = np.flatnonzero(~off & ~problem.fixed & (np.abs(w) <= BIACTIVE * terms))
-    block = A[np.ix_(inside, inside)]
-    size = np.abs(block).max(initial=0.0)
-    factors: Any = dgetrf(block)[:2] if inside.size else (np.zeros((0, 0)), np.zeros(0, dtype=np.int32))
-    pivots = np.abs(np.diag(factors[0]))
-    if inside.size and not pivots.min() > np.finfo(float).eps * inside.size * size:
-        raise NotDifferentiableError("x: expected an isolated solution, found A singular where x is off its bounds")
+    size = np.abs(A[np.ix_(inside, inside)]).max(initial=0.0)
+    try:
+        basis = Basis.of(inside, inside, A[:, inside], EPS * inside.size * size)
+    except SingularBasisError:
+        said = "x: expected an isolated solution, found A singular where x is off its bounds"
+        raise NotDifferentiableError(said) from None
     side = np.where(x - problem.lower <= problem.upper - x, 1.0, -1.0)
-    return Sensitivity(x, inside, at, side, factors, A)
+    return Sensitivity(x, inside, at, side, basis, A)
 
 
 def _only(S: Array, r: Array) -> Array:

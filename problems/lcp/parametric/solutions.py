@@ -6,12 +6,11 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from attrs import define, evolve, field, frozen
+from attrs import evolve, frozen
 
 from continuation.arguments.checks import check_flag
 from continuation.arrays import SIX_DIGITS, Array
 from continuation.budget import Budget
-from continuation.counts import Counts
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
@@ -106,14 +105,30 @@ def solutions(
     check_flag("enumerate_faces", enumerate_faces)
     if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_LISTED):
         return _on_faces(problem, tolerance)
-    search = _Search(Structure(problem), tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
     first = solve(problem, tolerance=tolerance, seed=seed)
     if not first.solved or first.x is None:
         return Solutions(problem, (), False, 0, f"No path has begun. {first.message}")
-    search.take(first.x)
-    ended = search.run()
-    message = f"{len(search.found)} found on {search.paths} paths (seed {seed}), which tell of no others. {ended}"
-    return Solutions(problem, tuple(search.found), False, search.paths, message)
+    found: list[Certificate] = []
+    structure, n = Structure(problem), problem.n
+    _take(first.x, found, structure, tolerance)
+    random, most = np.random.default_rng(seed), budget or Budget(steps=200_000)
+    left, paths, tried, in_vain = most.steps, 0, 0, 0
+    while left > 0 and in_vain < max(IN_VAIN, 2 * len(found)):
+        before, d, start = len(found), random.standard_normal(n), found[tried % len(found)].x
+        for end in (math.inf, -math.inf):
+            few = evolve(most, steps=max(min(left, CORNERS_A_PATH * n), 2))
+            path = along(problem, d, (0.0, end), x=start, budget=few)
+            left -= path.counts.accepted
+            paths += 1
+            for u in path.crossings(0.0)[1:]:
+                _take(u[:n], found, structure, tolerance)
+        in_vain = 0 if len(found) > before else in_vain + 1
+        tried += 1
+    ended = f"The last {in_vain} directions found nothing new."
+    if left <= 0:
+        ended = f"The budget is used up: {most.steps:g} steps."
+    message = f"{len(found)} found on {paths} paths (seed {seed}), which tell of no others. {ended}"
+    return Solutions(problem, tuple(found), False, paths, message)
 
 
 def _on_faces(problem: LCP, tolerance: float) -> Solutions:
@@ -129,55 +144,19 @@ def _on_faces(problem: LCP, tolerance: float) -> Solutions:
     return Solutions(problem, certified, complete, 0, message)
 
 
-@define(eq=False)
-class _Search:
-    structure: Structure
-    tolerance: float
-    random: np.random.Generator
-    budget: Budget
-    found: list[Certificate] = field(factory=list)
-    paths: int = 0
-    counts: Counts = field(factory=Counts)
+def _take(x: Array, found: list[Certificate], structure: Structure, tolerance: float) -> None:
+    """Add a point if it is a new solution."""
+    if _known(x, found):
+        return
+    # Its piece's equations are more accurate than interpolation.
+    finish, problem = Finish(Faces(structure), tolerance), structure.problem
+    piece = Stairs.of(problem, np.zeros(x.size)).states(problem, x)
+    solved = finish.settle(piece, Policy(steps=0), x)
+    solved = finish.take(x) if solved is None else solved
+    if solved is not None and finish.certificate is not None and not _known(solved, found):
+        found.append(finish.certificate)
 
-    @property
-    def problem(self) -> MixedLCP:
-        """The problem."""
-        return self.structure.problem
 
-    def take(self, x: Array) -> bool:
-        """Add a point if it is a new solution."""
-        if self._known(x):
-            return False
-        # Its piece's equations are more accurate than interpolation.
-        finish = Finish(Faces(self.structure), self.tolerance)
-        piece = Stairs.of(self.problem, np.zeros(x.size)).states(self.problem, x)
-        solved = finish.settle(piece, Policy(steps=0), x)
-        solved = finish.take(x) if solved is None else solved
-        if solved is None or finish.certificate is None or self._known(solved):
-            return False
-        self.found.append(finish.certificate)
-        return True
-
-    def _known(self, x: Array) -> bool:
-        size = SIX_DIGITS * float(np.abs(x).max(initial=0.0))
-        return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in self.found)
-
-    def run(self) -> str:
-        """Follow paths from all solutions; return why the search ended."""
-        n, in_vain, tried = self.problem.n, 0, 0
-        while in_vain < max(IN_VAIN, 2 * len(self.found)):
-            left = self.budget.steps - self.counts.accepted
-            if left <= 0:
-                return f"The budget is used up: {self.budget.steps:g} steps."
-            d = self.random.standard_normal(n)
-            start = self.found[tried % len(self.found)].x
-            tried += 1
-            new = 0
-            for end in (math.inf, -math.inf):
-                few = evolve(self.budget, steps=max(min(left, CORNERS_A_PATH * n), 2))
-                path = along(self.problem, d, (0.0, end), x=start, budget=few)
-                self.paths += 1
-                self.counts = self.counts + path.counts
-                new += sum(self.take(u[:n]) for u in path.crossings(0.0)[1:])
-            in_vain = 0 if new else in_vain + 1
-        return f"The last {in_vain} directions found nothing new."
+def _known(x: Array, found: list[Certificate]) -> bool:
+    size = SIX_DIGITS * float(np.abs(x).max(initial=0.0))
+    return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in found)

@@ -23,17 +23,14 @@ from problems.lcp.parametric.walk import FLAT, Walk
 class Trail:
     """A path in the making.
 
-    `units` are scales of x and t, `tangents` directions of arrival; `kinks` maps a point's number to name, pairs and
-    rays.
+    `units` are scales of x and t, `ways` the directions in which points are left; `kinks` maps a point's number to
+    name, pairs and rays, of which the second is its way.
     """
 
     units: Array
     points: list[Array] = field(factory=list)
-    tangents: list[Array] = field(factory=list)
+    ways: list[Array] = field(factory=list)
     kinks: dict[int, tuple[str, tuple[int, ...], Array]] = field(factory=dict)
-    _unit: Array | None = field(default=None, init=False)
-    _sign: float = field(default=0.0, init=False)
-    _left: list[tuple[Array, Array]] = field(factory=list, init=False)
 
     def follow(self, walk: Walk, last: float, budget: Budget) -> tuple[Status, str]:
         """Follow a walk to t = `last`; return its status and a sentence."""
@@ -62,12 +59,12 @@ class Trail:
             step = walk.next_corner()
             to_last = math.nan if walk.still else (last - walk.t) / walk.dt
             if not walk.still and _arrives(walk, last, to_last, step):
-                self._end(unit, to_last * length, last)
+                self._end(to_last * length, last)
                 return Status.REACHED_TARGET, str(Status.REACHED_TARGET)
-            if len(self.points) > 1 and self._closes(unit, step * length):
+            if len(self.points) > 1 and self._closes(step * length):
                 return Status.CLOSED, str(Status.CLOSED)
             if math.isinf(step):
-                return self._leave(walk, unit, length, last)
+                return self._leave(walk, length, last)
             spent = budget.spent(Counts(accepted=len(self.points)), time.perf_counter() - began)
             if spent:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
@@ -76,19 +73,20 @@ class Trail:
             if corner is None:
                 return _no_way(t)
             if corner.dead:
-                self._end(unit, step * length, t)
+                self._end(step * length, t)
                 self.kinks[len(self.points) - 1] = "dead end", corner.switches, -unit[None]
                 return Status.DEAD_END, str(Status.DEAD_END)
 
     def steps(self, residuals: Array) -> tuple[list[Step], list[LocatedEvent]]:
         """The points as steps, with `residuals`, and the kinks."""
         gaps = [0.0, *(math.sqrt(float(gap @ gap)) for gap in np.diff(self.points, axis=0))]
+        tangents = [self.ways[0], *self.ways]
         arcs, last = np.cumsum(gaps).tolist(), len(self.points) - 1
         kinds = [Kind.KINK if k in self.kinks else Kind.TARGET if k == last else Kind.REGULAR for k in range(last + 1)]
         kinds[0] = Kind.START
         steps = [
             Step(k, u, tangent, arcs[k], gaps[k], residual_norm=residual, kind=kinds[k])
-            for k, (u, tangent, residual) in enumerate(zip(self.points, self.tangents, residuals.tolist()))
+            for k, (u, tangent, residual) in enumerate(zip(self.points, tangents, residuals.tolist()))
         ]
         events = [
             LocatedEvent(
@@ -101,55 +99,49 @@ class Trail:
 
     def _add(self, u: Array, unit: Array, corner: Corner | None) -> None:
         # A kink's first ray leads back, its second on.
-        arrival = unit if self._unit is None else self._unit
         if corner is not None:
-            back = -arrival
+            back = -self.ways[-1]
             found = [_unit(one * self.units) for one in corner.directions]
             others = [one for one in found if not (_same(one, back) or _same(one, unit))]
-            turned = unit[-1] * self._sign < 0.0
+            turned = unit[-1] * next((way[-1] for way in reversed(self.ways) if way[-1] != 0.0), 0.0) < 0.0
             name = "branching kink" if others else "turning kink" if turned else "kink"
             self.kinks[len(self.points)] = name, corner.switches, np.array([back, unit, *others])
         self.points.append(u)
-        self.tangents.append(arrival)
-        self._unit = unit
-        if unit[-1] != 0.0:
-            self._sign = math.copysign(1.0, unit[-1])
+        self.ways.append(unit)
 
-    def _end(self, unit: Array, length: float, t: float) -> None:
-        u = self.points[-1] + length * unit
+    def _end(self, length: float, t: float) -> None:
+        u = self.points[-1] + length * self.ways[-1]
         u[-1] = t
         self.points.append(u)
-        self.tangents.append(unit)
 
-    def _leave(self, walk: Walk, unit: Array, length: float, last: float) -> tuple[Status, str]:
+    def _leave(self, walk: Walk, length: float, last: float) -> tuple[Status, str]:
         far = 1.0 + largest(walk.u[0]) if walk.still else 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt)
-        self._end(unit, far * length, walk.t if walk.still else walk.t + far * walk.dt)
+        self._end(far * length, walk.t if walk.still else walk.t + far * walk.dt)
         if math.isinf(last) and not walk.still and walk.dt * last > 0.0:
             return Status.REACHED_TARGET, "The path goes along a ray to its end at infinity."
         where = "stands still" if walk.still else f"goes to {math.copysign(math.inf, walk.dt)}"
         return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
-        """Whether the path left this kink in this direction before."""
+        """Whether the path left a kink of several pairs at this point in this direction before."""
         size = ZERO_COMPONENT * (1.0 + largest(u))
-        been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
-        self._left.append((u, unit))
-        return been
+        last = len(self.points) - 1
+        several = (k for k, (_, pairs, _) in self.kinks.items() if len(pairs) > 1 and k < last)
+        return any(largest(u - self.points[k]) <= size and _same(unit, self.ways[k]) for k in several)
 
-    def _closes(self, unit: Array, length: float) -> bool:
+    def _closes(self, length: float) -> bool:
         """Whether the path returns to its first point before the next corner."""
-        first, last = self.points[0], self.points[-1]
+        first, last, unit = self.points[0], self.points[-1], self.ways[-1]
         # Mostly t alone rules this out.
         if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
             return False
         gap = first - last
         ahead = float(gap @ unit)
-        if not 0.0 < ahead <= length * (1.0 + ZERO_COMPONENT) or not _same(unit, self.tangents[0]):
+        if not 0.0 < ahead <= length * (1.0 + ZERO_COMPONENT) or not _same(unit, self.ways[0]):
             return False
         if largest(gap - ahead * unit) > ZERO_COMPONENT * (1.0 + largest(first)):
             return False
         self.points.append(first)
-        self.tangents.append(unit)
         return True
 
 

@@ -104,7 +104,7 @@ class Walk:
         self.still = False
         # The rounding of a slow t is estimated.
         if j != n and abs(self.dt) <= SIX_DIGITS * motion:
-            of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
+            of_t = np.abs(self.basis.inverse((columns == n).astype(float), transposed=1)) @ self.sizes[self.basis.rows]
             self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
         whole[0, :n] += fixed
         self.gaps, self.rates = y[0] - limits - self.t * self.slopes, y[1] - self.dt * self.slopes

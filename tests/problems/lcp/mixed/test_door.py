@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from continuation.cli import main
 from problems import lcp
-from problems.lcp.data.files import read_problem, read_program
+from problems.lcp.data.files import read_problem
 
 A, Q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-5.0, -6.0])
 
@@ -41,8 +41,9 @@ def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
     file = written(tmp_path / ("bounded" + suffix), bounded)
     problem = read_problem(file)
     np.testing.assert_array_equal([problem.lower, problem.upper], [bounded["lower"], bounded["upper"]])
-    assert read_program(file) is None
-    read = read_program(written(tmp_path / ("program" + suffix), program))
+    assert type(problem) is lcp.MixedLCP
+    read = read_problem(written(tmp_path / ("program" + suffix), program))
+    assert isinstance(read, lcp.Program)
     np.testing.assert_array_equal(lcp.solve(read).x, lcp.solve(lcp.from_qp(**program)).x)
 
 
@@ -59,7 +60,7 @@ MODEL = (
 def test_models_are_read_by_highs_where_it_is_installed(tmp_path, name, more, x, objective):
     pytest.importorskip("highspy")
     (tmp_path / name).write_text(f"{MODEL}{more}ENDATA\n")
-    solution = lcp.solve(read_program(tmp_path / name))
+    solution = lcp.solve(read_problem(tmp_path / name))
     np.testing.assert_array_equal(solution.named["x"], x)
     assert solution.objective == objective
 
