@@ -48,11 +48,7 @@ def _numpy(file: str, allowance: Allowance) -> Mapping[str, Any]:
 
 def _json(file: str, allowance: Allowance) -> Mapping[str, Any]:
     value = json.loads(Path(file).read_text(encoding="utf-8"), object_pairs_hook=_named_once)
-    if isinstance(value, dict):
-        return value
-    if isinstance(value, list):
-        return {ALONE: value}
-    raise ValueError(f"it holds {value!r}, not an object with A and q")
+    return value if isinstance(value, dict) else {ALONE: value}
 
 
 def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -158,17 +158,14 @@ class Structure:
     @cached_property
     def semidefinite(self) -> bool:
         """Whether A + A' is positive semidefinite to working precision: by Cholesky, or by dominance if sparse."""
-        diagonal = self.symmetrized.diagonal()
-        if (diagonal < 0.0).any():
-            return False
-        if self.problem.sparse:
-            S = self.symmetrized
-            S.eliminate_zeros()
-            rows = np.flatnonzero(np.diff(S.indptr) > 0)
-            if rows.size <= LARGEST_SYMMETRIC_PART and not self.problem.standard:
-                return not rows.size or semidefinite(S[rows][:, rows].toarray())
-            return bool((2.0 * diagonal >= np.asarray(abs(S).sum(axis=1))).all())
-        return semidefinite(self.symmetrized)
+        S = self.symmetrized
+        if not self.problem.sparse:
+            return semidefinite(S)
+        S.eliminate_zeros()
+        rows = np.flatnonzero(np.diff(S.indptr) > 0)
+        if rows.size <= LARGEST_SYMMETRIC_PART and not self.problem.standard:
+            return not rows.size or semidefinite(S[rows][:, rows].toarray())
+        return bool((2.0 * S.diagonal() >= np.asarray(abs(S).sum(axis=1))).all())
 
     @cached_property
     def negative_diagonal(self) -> bool:
@@ -235,18 +232,10 @@ class Structure:
         -------
         ndarray or sparse array, shape (2n, 2n)
         """
-        n = self.n
+        zero = np.zeros(self.n)
+        top = scaled(self.symmetrized, factor * columns, shift * columns + diagonal)
+        right = scaled(self.transpose, -factor * (np.ones(self.n) if turn is None else turn), zero)
+        bottom = scaled(scaled(self.transpose, z2, zero).T, columns, zero)
         if self.problem.sparse:
-            scaling = sp.diags_array(columns)
-            top = (factor * self.symmetrized + shift * sp.eye_array(n)) @ scaling + sp.diags_array(diagonal)
-            bottom = sp.diags_array(z2) @ self.problem.A @ scaling
-            turned = self.transpose if turn is None else self.transpose @ sp.diags_array(turn)
-            return sp.block_array([[top, -factor * turned], [bottom, sp.diags_array(w)]], format="csc")
-        whole = np.empty((2 * n, 2 * n), order="F")
-        whole[:n, :n] = factor * self.symmetrized * columns
-        whole[:n, n:] = -factor * (self.transpose if turn is None else self.transpose * turn)
-        whole[n:, :n] = z2[:, None] * self.problem.A * columns
-        whole[n:, n:] = np.diag(w)
-        first = np.arange(n)
-        whole[first, first] += shift * columns + diagonal
-        return whole
+            return sp.block_array([[top, right], [bottom, sp.diags_array(w)]], format="csc")
+        return np.asfortranarray(np.block([[top, right], [bottom, np.diag(w)]]))

@@ -20,11 +20,6 @@ State = NDArray[np.int8]
 
 LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
-OF_MATRIX = ("units", "range", "symmetric")
-"""Cached results that another q keeps."""
-
-_ANOTHER_ORDER = "q: expected {} numbers, one a row of A, found {}"
-
 
 def _q(value: Any) -> Array:
     nothing = (isinstance(value, (list, tuple)) and not value) or getattr(value, "shape", None) == (0,)
@@ -67,12 +62,11 @@ class MixedLCP:
     upper: Array = field(default=None)
     primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
-    """Cached results by name; see `OF_MATRIX`."""
+    """What is known of A, by name."""
 
     @q.validator
-    def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
-        if q.size != self.A.shape[0]:
-            raise ValueError(_ANOTHER_ORDER.format(self.A.shape[0], q.size))
+    def _same_order(self, attribute: Attribute[Any] | None, q: Array) -> None:
+        expect(q.size == self.A.shape[0], "q", f"{self.A.shape[0]} numbers, one a row of A", q.size)
 
     def __attrs_post_init__(self) -> None:
         object.__setattr__(self, "lower", bound_vector("lower", self.lower, self.q.size, -math.inf))
@@ -177,16 +171,6 @@ class MixedLCP:
         """
         return np.where(state == LOWER, self.lower, np.where(state == UPPER, self.upper, 0.0))
 
-    def settled(self, x: Array, w: Array) -> Array:
-        """The point x, moved to the bounds that its piece imposes.
-
-        Parameters
-        ----------
-        x, w : ndarray, shape (n,)
-        """
-        state = self.states(x, w)
-        return np.where(state == BETWEEN, x, self.at(state))
-
     def natural_residual(self, x: Array) -> float:
         """max_i |x - mid(lower, x - w, upper)|_i.
 
@@ -274,10 +258,8 @@ class LCP(MixedLCP):
         q : array_like, shape (n,)
         """
         vector, other = _q(q), object.__new__(LCP)
-        if vector.size != self.n:
-            raise ValueError(_ANOTHER_ORDER.format(self.n, vector.size))
-        known = {name: self.known[name] for name in OF_MATRIX if name in self.known}
-        vars(other).update(vars(self) | {"q": vector, "known": known})
+        self._same_order(None, vector)
+        vars(other).update(vars(self) | {"q": vector, "known": dict(self.known)})
         return other
 
 

@@ -84,15 +84,11 @@ def along(
     Turlach, IMA J. Numer. Anal. 20, 2000.
     """
     began = time.perf_counter()
-    require_problem(problem)
+    problem, slope, levels = checked(problem, d, level)
     check_budget(budget)
+    first, last = _interval(t)
     file = None if archive is None else new_file("archive", archive)
     n = problem.n
-    slope = finite_vector("d", d, n)
-    levels = levels_of(level, problem)
-    first, last = _interval(t)
-    if problem.sparse:
-        problem = evolve(problem, A=problem.A.toarray())
     sign = 1.0 if last > first else -1.0
     towards = None if ray is None else finite_vector("ray", ray, n + 1)
     status, message, walk = Status.TRACING, "", None
@@ -152,16 +148,19 @@ _CITED = (
 )
 
 
-def levels_of(level: Any, problem: MixedLCP) -> Array:
-    """The levels, zero at bounds; `ValueError` for others."""
+def checked(problem: MixedLCP, d: Any, level: Any) -> tuple[MixedLCP, Array, Array]:
+    """The problem with a dense matrix, d, and the levels, zero at bounds; `ValueError` for others."""
+    require_problem(problem)
+    slope = finite_vector("d", d, problem.n)
     free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
-    if np.ndim(level) == 0 and free.any():
-        level = np.where(free, level, 0.0)
-    found = finite_vector("level", np.full(problem.n, level) if np.ndim(level) == 0 else level, problem.n)
+    if np.ndim(level) == 0:
+        level = np.where(free | ~free.any(), level, 0.0)
+    found = finite_vector("level", level, problem.n)
     wrong = (found < 0.0) | ((found > 0.0) & ~free)
     expected = "0 where there are bounds, and nowhere negative"
     expect_nowhere(wrong, "level", expected, lambda i: f"{found[i]} at index {i}")
-    return found
+    dense = evolve(problem, A=problem.A.toarray()) if problem.sparse else problem
+    return dense, slope, found
 
 
 def _interval(t: Any) -> tuple[float, float]:

@@ -11,18 +11,17 @@ from math import lcm
 from typing import Any
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arguments.checks import expect
 from continuation.arrays import SIX_DIGITS, Array
 from continuation.path import Path
 from continuation.path.path import require_path
-from problems.lcp.data.problem import MixedLCP, State, require_problem
-from problems.lcp.parametric.along import levels_of
+from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.parametric.along import checked
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.rational import Integers, fractions, full_row_rank, integers, solve_exactly
-from problems.options import finite_vector
 
 Exactly = tuple[Fraction, ...]
 
@@ -72,12 +71,8 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     UnprovenError
         If the path is not as claimed.
     """
-    require_problem(problem)
+    problem, slope, levels = checked(problem, d, level)
     require_path(path)
-    slope = finite_vector("d", d, problem.n)
-    levels = levels_of(level, problem)
-    if problem.sparse:
-        problem = evolve(problem, A=problem.A.toarray())
     fine = len(path) > 1 and path.endpoint.u.size == problem.n + 1
     expect(fine, "path", f"two points of {problem.n} unknowns at least", path)
     exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
@@ -85,10 +80,9 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     # Both ends hold a bound exactly.
     states = [exact.stairs.states(problem, 0.5 * a[:-1] + 0.5 * b[:-1]) for a, b in pairwise(u)]
     tied = {event.step: event.switches for event in path.kinks}
-    points = [exact.point(states[0], states[0], u[0], held=_mostly(u[1] - u[0]))]
-    for k, (before, after) in enumerate(pairwise(states), 1):
-        points.append(exact.point(before, after, u[k], tied.get(k, ())))
-    points.append(exact.point(states[-1], states[-1], u[-1], held=_mostly(u[-1] - u[-2])))
+    held = {0: _mostly(u[1] - u[0]), len(u) - 1: _mostly(u[-1] - u[-2])}
+    sides = pairwise([states[0], *states, states[-1]])
+    points = [exact.point(*side, u[k], tied.get(k, ()), held.get(k)) for k, side in enumerate(sides)]
     _as_listed(path, points, states)
     single, every = True, np.arange(problem.n)
     for k, state in enumerate(states):
@@ -147,9 +141,7 @@ class _Exactly:
         rows[:, -2:] -= self.values[1::-1, pieces, pairs].T
         return rows
 
-    def point(
-        self, before: State, after: State, near: Array, tied: tuple[int, ...] = (), held: int | None = None
-    ) -> Exactly:
+    def point(self, before: State, after: State, near: Array, tied: tuple[int, ...], held: int | None) -> Exactly:
         """The corner between two pieces where `tied` switch, or a point with one number held."""
         there = before != after
         there[list(tied)] = True

@@ -202,7 +202,7 @@ BAD = {
     "not a mat": ("p.mat", b"hello", r"path: expected a .mat file"),
     "not h5": ("p.h5", b"hello", r"path: expected a .h5 file"),
     "broken json": ("p.json", b'{"A": [', r"path: expected a .json file, found one that cannot be read"),
-    "json number": ("p.json", b"3", r"it holds 3, not an object with A and q"),
+    "json number": ("p.json", b"3", r"path: expected A and q, found one array in"),
     "ragged": ("p.json", b'{"A": [[1, 2], [3]], "q": [1, 2]}', r"path: A: expected real numbers"),
     "words": ("p.json", b'{"A": [["one"]], "q": [1]}', r"path: A: expected real numbers"),
     "huge integer": ("p.json", b'{"A": [[1%s]], "q": [1]}' % (b"0" * 400), r"path: A: expected real numbers"),
