@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
-from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, integer
+from continuation.arguments.checks import expect, is_number
 from continuation.arrays import Array
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
@@ -20,26 +20,6 @@ from problems.options import quiet
 
 LITERAL_SOLVED_TO = 1e-3
 """Relative natural residual of a solution: 8e-5 on example 7 at the stopping rule, at least 0.1 at a false end."""
-
-
-@frozen
-class LiteralSettings:
-    """Step 0: the algorithm's numbers.
-
-    Steps are a = l0^l. The run stops at lambda <= eps1; Step 4 compares lambda and its change with eps2; Steps 3 and 2
-    shorten a to eps3 and a0. The paper gives no a0; 1e-6 ends seven examples early, by Step 4 at a negative lambda. Nor
-    does it give `max_iterations`; example 8 needs 3,289.
-    """
-
-    l0: float = field(default=0.5, validator=FRACTION)
-    eps1: float = field(default=1e-9, validator=POSITIVE_FINITE)
-    eps2: float = field(default=1e-3, validator=POSITIVE_FINITE)
-    eps3: float = field(default=1e-6, validator=POSITIVE_FINITE)
-    a0: float = field(default=1e-9, validator=POSITIVE_FINITE)
-    max_iterations: int = field(default=10_000, validator=integer(1))
-
-
-DEFAULT = LiteralSettings()
 
 
 @frozen(eq=False)
@@ -81,9 +61,13 @@ class LiteralRun:
 
 
 def run_literally(
-    problem: LCP, x0: Any, z1: Any = None, z2: Any = None, settings: LiteralSettings = DEFAULT
+    problem: LCP, x0: Any, z1: Any = None, z2: Any = None, *, a0: float = 1e-9, max_iterations: int = 10_000
 ) -> LiteralRun:
     """Run Steps 0-5 on the KKT homotopy from x0 > 0 with A x0 + q > 0.
+
+    Steps are a = l0^l. The run stops at lambda <= eps1; Step 4 compares lambda and its change with eps2; Steps 3 and 2
+    shorten a to eps3 and a0. The paper gives no a0; 1e-6 ends seven examples early, by Step 4 at a negative lambda. Nor
+    does it give `max_iterations`; example 8 needs 3,289.
 
     `problem`: small (dense solves of 3 n unknowns). `x0`, `z1`, `z2`: shape (n,), positive; z default to ones. Raises
     `ValueError` for other starts.
@@ -92,6 +76,7 @@ def run_literally(
     ----------
     Dutta, Das and Jana, "Bounded Homotopy Path Approach", section "Algorithm".
     """
+    expect(is_number(a0) and a0 > 0.0, "a0", "a positive number", a0)
     homotopy = KKTHomotopy(problem, x0, z1, z2)
     w0 = problem.w(homotopy.origin.x0)
     if (w0 <= 0.0).any():
@@ -99,36 +84,37 @@ def run_literally(
     y0, lam0 = homotopy.start()
     points = [np.append(y0, lam0)]
     ended = ""
-    while not ended and len(points) <= settings.max_iterations:
-        point, step = _iterate(homotopy, points[-1], settings, first=len(points) == 1)
+    l0, eps1, eps2, eps3 = 0.5, 1e-9, 1e-3, 1e-6
+    while not ended and len(points) <= max_iterations:
+        point, step = _iterate(homotopy, points[-1], l0, eps3, a0, first=len(points) == 1)
         before = points[-1][-1]
         points.append(point)
-        if step == 5 and abs(point[-1]) <= settings.eps1:
+        if step == 5 and abs(point[-1]) <= eps1:
             return LiteralRun(np.array(points), "Step 5: lambda <= eps1.", True, problem)
-        if step == 4 and abs(point[-1] - before) < settings.eps2:
-            if abs(point[-1]) < settings.eps2:
+        if step == 4 and abs(point[-1] - before) < eps2:
+            if abs(point[-1]) < eps2:
                 return LiteralRun(np.array(points), "Step 4: lambda stalls below eps2.", True, problem)
             ended = "Step 4: lambda stalls; unable to find a solution."
-    ended = ended or f"No end within {settings.max_iterations} iterations."
+    ended = ended or f"No end within {max_iterations} iterations."
     return LiteralRun(np.array(points), ended, False, problem)
 
 
 @quiet
-def _iterate(homotopy: KKTHomotopy, u: Array, settings: LiteralSettings, first: bool) -> tuple[Array, int]:
+def _iterate(homotopy: KKTHomotopy, u: Array, l0: float, eps3: float, a0: float, first: bool) -> tuple[Array, int]:
     tangent = _tangent(homotopy, u, first)
     a = 1.0
     while True:
         predicted = u + a * tangent
         point = predicted - _moore_penrose(homotopy, predicted)
         if not 0.0 < point[-1] < 1.0:
-            shortest, too_short = min(a, float(np.linalg.norm(point - u))), settings.a0
+            shortest, too_short = min(a, float(np.linalg.norm(point - u))), a0
         elif np.linalg.norm(homotopy.residual(point[:-1], float(point[-1]))) <= 1.0 and (point[:-1] > 0.0).all():
             return point, 5
         else:
-            shortest, too_short = a, settings.eps3
+            shortest, too_short = a, eps3
         if shortest <= too_short:
             return point, 4
-        a *= settings.l0
+        a *= l0
 
 
 def _tangent(homotopy: KKTHomotopy, u: Array, first: bool) -> Array:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from problems.literal import LiteralSettings, run_literally
+from problems.literal import run_literally
 from problems.paper import EXAMPLES
 
 # Iterations of an independent implementation with l0 = 0.5, eps1 = 1e-9, eps2 = 1e-3, eps3 = 1e-6.
@@ -45,7 +45,7 @@ def test_the_claim_is_true_on_all_examples_but_the_first(number):
 )
 def test_a_run_ends_early_and_says_how(number, settings, ended, claims):
     example = EXAMPLES[number - 1]
-    result = run_literally(example.problem, example.x0, settings=LiteralSettings(**settings))
+    result = run_literally(example.problem, example.x0, **settings)
     assert ended in result.ended_by
     assert result.claims_solution is claims
     assert claims or result.iterations == 5

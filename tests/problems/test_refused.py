@@ -14,7 +14,7 @@ from problems import lcp, scenes
 from problems.charts import families
 from problems.lcp import LCP, MixedLCP, classes, strategies
 from problems.lcp.reference.enumeration import LARGEST_FACES, exhaust
-from problems.literal import LiteralSettings, run_literally
+from problems.literal import run_literally
 from problems.nonlinear import MixedComplementarity, NormalMap, bratu_under_obstacle, brown, fixed_point, newton
 from problems.orbits import PeriodicOrbit, from_model
 from problems.orbits.models import lorenz, normal_form
@@ -77,7 +77,6 @@ STARTS = {
     ),
     "w0": ("w0: expected positive finite numbers", {"w0": [1.0, 1.0, -1.0, 1.0]}),
 }
-SETTINGS = (("l0", 1.0), ("l0", 0.0), ("eps1", 0.0), ("eps2", -1.0), ("eps3", 0.0), ("a0", 0.0), ("max_iterations", 0))
 ORBITS = (
     ("states", np.ones((79, 2))), ("states", [1.0]), ("states", np.full((80, 2), NAN)), ("period", 0.0),
     ("parameter", NAN), ("mesh", 1), ("mesh", [0.0, 0.5, 0.5, 1.0]), ("degree", 1), ("scale", [1.0]),
@@ -132,7 +131,7 @@ WRONG_VALUES = {
         r"x0: expected a strictly feasible point.*found -1 at 1",
         lambda: run_literally(LCP([[1, 0], [0, 1]], [0, -2]), [1, 1]),
     ),
-    **{f"the paper's {name} = {value}": (name, partial(LiteralSettings, **{name: value})) for name, value in SETTINGS},
+    "the paper's a0": ("a0: expected a positive number, found 0.0", lambda: run_literally(PAIR, [1, 1], a0=0.0)),
     "Brown, x": (r"x: expected shape \(3,\), found \(2,\)", lambda: brown(3)(np.zeros(2))),
     "Brown, n": ("n: expected at least 1, found 0", lambda: brown(0)),
     "no vector of bounds": ("lower: expected a vector of bounds", bounded),

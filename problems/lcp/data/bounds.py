@@ -17,8 +17,7 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     `value` may be one number, or None for `default`. Raises `ValueError` if it is sparse, not real, of another length,
     NaN, or the wrong infinity.
     """
-    if value is None:
-        return np.full(size, default)
+    value = default if value is None else value
     if sp.issparse(value):
         raise ValueError(f"{name}: expected a dense vector, found a sparse one; give toarray(), in which 0 is a bound")
     bounds = real_array(name, value)

@@ -88,13 +88,12 @@ def _in_files(**files: str | PathLike[str]) -> Iterator[None]:
 
 def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
     file = fspath(path)
-    suffix = Path(file).suffix.lower()
+    suffix = Path(file).suffix.lower() or "no extension"
     if not Path(file).is_file():
         found = "a directory or a device" if Path(file).exists() else "nothing"
         raise ValueError(f"{argument}: expected a file, found {found} at {file!r}")
     if suffix not in READERS:
-        known = ", ".join(READERS)
-        raise ValueError(f"{argument}: expected one of {known}, found {suffix or 'no extension'} in {file!r}")
+        raise ValueError(f"{argument}: expected one of {', '.join(READERS)}, found {suffix} in {file!r}")
     allowance = Allowance(Path(file).stat().st_size)
     try:
         # Claimed sizes may overflow when multiplied.
@@ -105,8 +104,8 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
             allowance.take(f"its shape {value.shape}", 8 * max(value.shape))
     except Exception as error:
         reason = str(error) or type(error).__name__
-        complaint = f"expected a {suffix} file, found one that cannot be read: {file!r} ({reason})"
-        raise ValueError(f"{argument}: {complaint}") from None
+        said = f"{argument}: expected a {suffix} file, found one that cannot be read: {file!r} ({reason})"
+        raise ValueError(said) from None
     return arrays
 
 

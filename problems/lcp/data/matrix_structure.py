@@ -33,10 +33,8 @@ def semidefinite(symmetric: Array) -> bool:
     if (diagonal < 0.0).any():
         return False
     # Shifts follow the diagonal: factorisations ignore its scaling.
-    shifted, sizes = symmetric.copy(), diagonal
-    if (diagonal == 0.0).any():
-        rows = np.abs(symmetric).max(axis=1)
-        sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
+    shifted, rows = symmetric.copy(), np.abs(symmetric).max(axis=1)
+    sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
     shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * sizes
     return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
@@ -107,11 +105,6 @@ class Structure:
         vars(other).update(vars(self) | {"problem": problem})
         return other
 
-    @property
-    def n(self) -> int:
-        """The order of A."""
-        return self.problem.n
-
     @cached_property
     def transpose(self) -> Matrix:
         """A', a view if dense."""
@@ -130,9 +123,9 @@ class Structure:
         entries = self.problem.A.tocoo()
         below = entries.row.astype(np.int64) - entries.col
         lower, upper = int(max(0, below.max(initial=0))), int(max(0, -below.min(initial=0)))
-        if lower + upper + 1 > min(WIDEST_BAND, self.n):
+        if lower + upper + 1 > min(WIDEST_BAND, self.problem.n):
             return None
-        ab = np.zeros((lower + upper + 1, self.n))
+        ab = np.zeros((lower + upper + 1, self.problem.n))
         ab[upper + below, entries.col] = entries.data
         return Banded(ab, lower, upper)
 
@@ -142,13 +135,11 @@ class Structure:
         if not self.problem.sparse or self.band is not None:
             return True
         terms = float((np.diff(self.problem.A.indptr).astype(float) ** 2).sum())
-        return terms <= FILL * float(self.problem.A.nnz + self.n)
+        return terms <= FILL * float(self.problem.A.nnz + self.problem.n)
 
     @cached_property
     def symmetric(self) -> bool:
         """Whether A = A' exactly."""
-        if "symmetric" in self.problem.known:
-            return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
         # One row and column show most asymmetries.
@@ -212,7 +203,7 @@ class Structure:
             square = A.T @ (weights[:, None] * A)
         square += self.symmetrized
         square *= factor
-        square[np.diag_indices(self.n)] += diagonal
+        square[np.diag_indices(len(A))] += diagonal
         return square
 
     def augmented(
@@ -232,9 +223,9 @@ class Structure:
         -------
         ndarray or sparse array, shape (2n, 2n)
         """
-        zero = np.zeros(self.n)
+        zero, one = np.zeros(w.size), np.ones(w.size)
         top = scaled(self.symmetrized, factor * columns, shift * columns + diagonal)
-        right = scaled(self.transpose, -factor * (np.ones(self.n) if turn is None else turn), zero)
+        right = scaled(self.transpose, -factor * (one if turn is None else turn), zero)
         bottom = scaled(scaled(self.transpose, z2, zero).T, columns, zero)
         if self.problem.sparse:
             return sp.block_array([[top, right], [bottom, sp.diags_array(w)]], format="csc")

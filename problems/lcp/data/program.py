@@ -139,8 +139,6 @@ def from_qp(
     P = _matrix("P", P, n)
     expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
     expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
-    if not sp.issparse(P):
-        P.flags.writeable = False
     if (G is None) != (h is None and rows_lower is None):
         raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
     if (A_eq is None) != (b_eq is None):
@@ -164,8 +162,6 @@ def from_qp(
         np.concatenate([x_low, np.repeat([-np.inf, 0.0], [sizes[0], row.size - sizes[0]])]),
         np.append(x_high, np.full(row.size, np.inf)), primal=n,
     )  # fmt: skip
-    if not row.size:
-        problem.known["symmetric"] = True
     return Program(P, c, problem, (B.shape[0], m), row, sign)
 
 
@@ -192,8 +188,7 @@ def from_lp(
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = finite_matrix(name, value)
-    fine = matrix.ndim == 2 and matrix.shape[1] == columns
-    expect(fine, name, f"{columns} columns, one a number of c", matrix.shape)
+    expect(matrix.shape[1:] == (columns,), name, f"{columns} columns, one a number of c", matrix.shape)
     return matrix
 
 

@@ -84,9 +84,8 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 
 def _by(problem: MixedLCP, rows: Exponents, columns: Exponents, q: Array, *bounds: Array) -> Scaled:
     A = _scaled(problem.A, rows, columns)
-    back = _scaled(A, -rows, -columns)
-    same = np.array_equal(back.data, problem.A.data) if problem.sparse else np.array_equal(back, problem.A)
-    exact = same and np.array_equal(_times(q, -rows), problem.q)
+    same = abs(_scaled(A, -rows, -columns) - problem.A).max() == 0.0
+    exact = bool(same) and np.array_equal(_times(q, -rows), problem.q)
     scaled = MixedLCP(A, q, *bounds, primal=problem.primal) if bounds else LCP(A, q, primal=problem.primal)
     return Scaled(scaled, rows, columns, exact)
 
@@ -117,20 +116,18 @@ def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
 
 
 def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    n = problem.n
+    n, zero = problem.n, np.zeros(problem.n)
     row, column, log, counts = _logarithms(problem.A)
     r, c = _least_squares(row[counts], column[counts], log[counts], n)
     for _ in range(RUIZ):
         now = log + r[row] + c[column]
-        r, c = r - 0.5 * _largest(row, now, n), c - 0.5 * _largest(column, now, n)
+        r, c = r - 0.5 * _largest(row, now, zero), c - 0.5 * _largest(column, now, zero)
     # Each connected part has a free factor, which makes its largest q_i one, or leaves its last row.
     part_of_row, part_of_column = _parts(row, column, n)
     shift = np.zeros(2 * n)
     shift[part_of_row] = r
     asked = np.flatnonzero(problem.q)
-    sizes = np.full(2 * n, -np.inf)
-    np.maximum.at(sizes, part_of_row[asked], np.log2(np.abs(problem.q[asked])) + r[asked])
-    shift = np.where(sizes > -np.inf, sizes, shift)
+    shift = _largest(part_of_row[asked], np.log2(np.abs(problem.q[asked])) + r[asked], shift)
     r, c = r - shift[part_of_row], c + shift[part_of_column]
     difference = _rounded(r - c)
     rows = _rounded(0.5 * (r + c + difference))
@@ -163,10 +160,10 @@ def _least_squares(row: Indices, column: Indices, log: Array, n: int) -> tuple[A
     return -(of_rows + weights @ c) / in_row, c
 
 
-def _largest(index: Indices, values: Array, n: int) -> Array:
-    found = np.full(n, -np.inf)
+def _largest(index: Indices, values: Array, default: Array) -> Array:
+    found = np.full(default.size, -np.inf)
     np.maximum.at(found, index, values)
-    return np.where(found > -np.inf, found, 0.0)
+    return np.where(found > -np.inf, found, default)
 
 
 def _parts(row: Indices, column: Indices, n: int) -> tuple[Indices, Indices]:

@@ -34,18 +34,13 @@ def largest_entries(problem: MixedLCP) -> tuple[float, float]:
 
 
 def _found_entries(problem: MixedLCP) -> tuple[float, float]:
-    if problem.sparse:
-        entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
-        np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
-        np.maximum.at(both, problem.n + problem.A.indices, entries)
-    else:
-        sizes = np.abs(problem.A)
-        both = np.concatenate([np.maximum.reduce(sizes, axis=0), np.maximum.reduce(sizes, axis=1)])
+    sizes = abs(problem.A)
+    most = [sizes.max(axis=0), sizes.max(axis=1)]
+    both = np.concatenate([one.toarray() for one in most] if problem.sparse else most)
     return least(both), largest(both)
 
 
 def extreme(problem: MixedLCP) -> bool:
     """Whether products of three entries may overflow or vanish."""
     size = np.abs(np.concatenate([problem.A.data if problem.sparse else problem.A.ravel(), problem.q]))
-    size = size if np.count_nonzero(size) == size.size else size[size > 0.0]
-    return bool(size.size) and (largest(size) > EXTREME or least(size) < 1.0 / EXTREME)
+    return bool(((size > EXTREME) | ((size > 0.0) & (size < 1.0 / EXTREME))).any())
