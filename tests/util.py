@@ -2,7 +2,6 @@
 
 import importlib.util
 import io
-import os
 import re
 import sys
 from functools import cache
@@ -68,25 +67,3 @@ def refused(argument, call, words=""):
     assert text.startswith(f"{argument}: "), text
     assert re.search(words, text), text
     assert len(text) < 400
-
-
-def in_child(work):
-    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
-    return os.waitpid(child(work), 0)[1]
-
-
-def child(work):
-    """A process that does it; two threads that fork at once wait for each other's locks."""
-    process = os.fork()
-    if process:
-        return process
-    status = 0
-    try:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        work()
-    except ArchiveError as error:
-        status = 7 if "\n" not in str(error) else 8
-    except BaseException:
-        status = 8
-    finally:
-        os._exit(status)

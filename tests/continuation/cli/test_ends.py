@@ -93,7 +93,7 @@ def test_a_disk_that_fails(folder, command, reads):
             raise OSError(errno.EIO, os.strerror(errno.EIO))
         return real(*arguments)
 
-    status, said = forked(folder, WITH_ARCHIVES[command], lambda: setattr(os, "pread", pread))
+    status, said = forked(WITH_ARCHIVES[command], lambda: setattr(os, "pread", pread))
     assert (status, said.count("\n")) == (2, 1), said
     assert "Input/output error" in said
     # What the disk does not read is not what the file lacks: nothing is taken for damaged.
