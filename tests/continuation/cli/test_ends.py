@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from continuation import Budget, trace
+from continuation.cli import BAD_INPUT
 from problems.bifurcation import ExponentialCosine
 
 from .util import forked
@@ -75,8 +76,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("command", REFUSED)
 def test_one_line(run, command):
-    status, _, said = run(*REFUSED[command])
-    assert status == 2
+    said = run(*REFUSED[command], status=BAD_INPUT).err
     assert "Traceback" not in said
     if "leaves" in " ".join(REFUSED[command]):
         assert "SystemExit: 3" in said
