@@ -7,11 +7,13 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
 from continuation.archive import ArchiveError
+from continuation.linear import Banded
 
 
 def by_preset(*presets):
@@ -35,6 +37,11 @@ def load(file):
 def benchmark(name):
     """A module of the benchmarks, by its path below them."""
     return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
+
+
+def tridiagonal(A):
+    """The matrix in bands."""
+    return Banded(np.array([[0.0, *A.diagonal(1)], A.diagonal(), [*A.diagonal(-1), 0.0]]), 1, 1)
 
 
 def share(examples):

@@ -78,12 +78,13 @@ def test_normal_maps_are_proved_through_kinks_in_which_the_parameter_turns(subje
     assert counted == [[1, 1], [6, 4], [8, 3]]
 
 
-@pytest.mark.parametrize("fault", corrupted.AT_KINKS, ids=lambda fault: fault.__name__)
+@pytest.mark.parametrize(
+    "fault", [corrupted.swapped, corrupted.moved, *corrupted.AT_KINKS], ids=lambda fault: fault.__name__
+)
 def test_what_is_wrong_with_kinks_is_refused(subjects, fault):
     rng = np.random.default_rng(1)
     for homotopy, path, proof in subjects[:2]:
-        more = {"homotopy": homotopy} if fault is corrupted.straight_on else {}
-        wrong = fault(path, proof, rng, **more)
+        wrong = fault(homotopy, path, proof, rng)
         assert wrong is None or not certify(wrong, homotopy).complete
 
 

@@ -1,7 +1,7 @@
 """Diagrams that are known: the cubic equation on an interval, and pitchforks on a trunk."""
 
 import numpy as np
-from attrs import frozen
+from attrs import define, frozen
 
 from continuation.linear import Banded
 
@@ -36,7 +36,7 @@ class ChafeeInfante:
         return 4.0 / self.h**2 * np.sin(0.5 * np.arange(1, 6) * self.h) ** 2
 
 
-@frozen
+@define(eq=False)
 class Forks:
     """Pitchforks on a trunk: (lam - k) y_k - y_k^3, or with |y|^2 y_k, so that no branch leaves an arm."""
 

@@ -5,15 +5,9 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from continuation.linear import Banded
 from continuation.linear.spectrum import spectrum
 
-
-def banded(matrix):
-    ab = np.zeros((3, len(matrix)))
-    ab[0, 1:], ab[1], ab[2, :-1] = matrix.diagonal(1), matrix.diagonal(), matrix.diagonal(-1)
-    return Banded(ab, 1, 1)
-
+from ...util import tridiagonal
 
 # Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs, which it does not hide.
 TURN = la.block_diag([[0.0, 3.0], [-3.0, 0.0]], [[0.0, 1.0], [-1.0, 0.0]])
@@ -31,7 +25,7 @@ BENDING = 0.14 * np.eye(300) - BENDING @ BENDING
 @pytest.mark.parametrize(
     ("matrix", "make", "k"),
     [
-        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, banded)),
+        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, tridiagonal)),
         *((ALIKE, make, None) for make in (np.asarray, sp.csc_array)),
         (TWENTY, sp.csc_array, None),
         (BENDING, sp.csc_array, None),
