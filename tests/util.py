@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status, trace
 from continuation.archive import ArchiveError
 from continuation.linear import Banded
 
@@ -37,6 +37,13 @@ def load(file):
 def benchmark(name):
     """A module of the benchmarks, by its path below them."""
     return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
+
+
+def path_of(homotopy, status=Status.REACHED_TARGET, **options):
+    """A homotopy's path, whose status is as expected."""
+    path = trace(homotopy, **options)
+    assert path.status is status, path.message
+    return path
 
 
 def tridiagonal(A):

@@ -4,13 +4,14 @@ from math import inf
 
 import pytest
 
-from continuation import Status, trace
 from continuation.auditing import audit
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
+
+from ..util import path_of
 
 TURNS = {5: 10, 6: 12, 7: 18, 8: 24}
 """By order: the number of turning points."""
@@ -28,15 +29,13 @@ def unguarded(monkeypatch):
 
 @pytest.mark.parametrize("n", TURNS)
 def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=PAPER)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(ExponentialCosine(n), predictor=Tangent(), controller=PAPER)
     assert len(path.turning_points) == TURNS[n]
 
 
 @pytest.mark.parametrize("n", TURNS)
 @pytest.mark.usefixtures("unguarded")
 def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=PAPER, metric=Euclidean())
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(ExponentialCosine(n), predictor=Tangent(), controller=PAPER, metric=Euclidean())
     assert len(path.turning_points) != TURNS[n]
     assert not audit(ExponentialCosine(n), path).same

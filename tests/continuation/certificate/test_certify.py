@@ -17,6 +17,7 @@ from problems.lcp.data.problem import MixedLCP
 
 from ...util import benchmark
 from . import second
+from .util import proved
 
 corrupted, Rescaled = benchmark("corrupted.py"), benchmark("rescaled.py").Rescaled
 EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
@@ -32,9 +33,7 @@ def duffing(y, lam):
 def test_the_ten_examples_are_proved_with_a_box_a_step(k):
     example = EXAMPLES[k]
     homotopy = homotopies.KKTHomotopy(example.problem, example.x0)
-    path = trace(homotopy)
-    proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
+    path, proof = proved(homotopy)
     assert len(proof.turning_points) == len(path.turning_points)
     assert proof.boxes <= 1.3 * len(path)
     if k == 6:  # its end is singular: proved up to there, and the solution by rational arithmetic
@@ -59,9 +58,7 @@ ACCEPTED = {
 @pytest.mark.parametrize("name", ACCEPTED)
 def test_a_path_is_proved_with_all_its_turning_points(name):
     homotopy, steps = ACCEPTED[name]
-    path = trace(homotopy, budget=Budget(steps=steps))
-    proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
+    path, proof = proved(homotopy, budget=Budget(steps=steps))
     assert len(proof.turning_points) == len(path.turning_points)
     assert all(
         begin - 0.02 <= turn.arclength <= end + 0.02
@@ -91,9 +88,7 @@ def scaled(homotopy, seed):
 def test_units_do_not_matter(seed):
     for inner in (FreudensteinRoth(), ExponentialCosine(3)):
         homotopy = scaled(inner, seed)
-        path = trace(homotopy)
-        proof = certify(path, homotopy)
-        assert proof.complete, str(proof)
+        _, proof = proved(homotopy)
         assert len(proof.turning_points) == len(trace(inner).turning_points)
 
 

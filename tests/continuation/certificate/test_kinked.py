@@ -11,6 +11,7 @@ from problems.nonlinear import bratu_under_obstacle
 
 from ...util import benchmark
 from ..kinks.util import Joined
+from .util import proved
 
 corrupted = benchmark("corrupted.py")
 drawn = benchmark("subjects.py")
@@ -112,9 +113,7 @@ def test_random_paths_with_kinks_are_proved(seed):
     # the cubic behind a kink leads astray, so that the step is halved; in the others the parameter turns within the
     # first step behind a kink, and moves by next to nothing in all.
     homotopy = drawn.cubic(seed)
-    path = trace(homotopy, budget=Budget(steps=60))
-    proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
+    path, proof = proved(homotopy, budget=Budget(steps=60))
     assert len(proof.kinks) == len(path.kinks)
 
 

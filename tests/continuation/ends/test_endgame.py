@@ -12,7 +12,7 @@ from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import KKTHomotopy, WangHomotopy
 
-from ...util import by_preset
+from ...util import by_preset, path_of
 from ..util import scalar
 from .test_ends import power
 
@@ -62,8 +62,7 @@ def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_th
         lambda y, lam: (np.array([[lam**2]]), np.array([2.0 * lam * (y[0] - np.exp(lam)) - lam**2 * np.exp(lam)])),
         start=([np.e], 1.0),
     )
-    path = continuation.trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset)
     assert path.end_error < 1e-8
     assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
 
@@ -74,9 +73,8 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     homotopy = scalar(
         lambda y, lam: y - lam if lam > 0.0 else y - 1.0, lambda y, lam: (1.0, -1.0), start=(1.0, 1.0), target=0.0
     )
-    path = continuation.trace(homotopy, preset=preset)
+    path = path_of(homotopy, preset=preset, status=Status.STEP_TOO_SMALL)
     # It is followed to the jump and no farther, and nothing is claimed of an end.
-    assert path.status is Status.STEP_TOO_SMALL
     np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-9)
     assert (path.end_error, path.winding_number) == (None, None)
 
@@ -110,8 +108,7 @@ class NearlyMeeting:
 def test_a_path_that_turns_off_next_to_the_end_is_followed(c, ratio, preset):
     """The other branch is ten tolerances away, or more: nearer ones count as a branch point, which is passed."""
     homotopy = NearlyMeeting(c, c * ratio)
-    path = continuation.trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset)
     # Straight on it would be 0, about.
     np.testing.assert_allclose(path.endpoint.y, homotopy.upper(0.0), rtol=1e-6)
 
@@ -148,6 +145,5 @@ def test_the_path_of_a_random_problem_is_followed_to_its_own_end(make, n, seed, 
     Where no orientation is known, the path between samples is looked at.
     """
     rng = np.random.default_rng([seed, n])
-    path = continuation.trace(make(LCP(rng.normal(size=(n, n)), rng.normal(size=n))), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(make(LCP(rng.normal(size=(n, n)), rng.normal(size=n))), preset=preset)
     np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)

@@ -11,6 +11,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.products import BY_JETS, by_differences, exact
 from problems.bifurcation import Bratu1D, Bratu2D, Circle, ExponentialCosine, FreudensteinRoth
 
+from ...util import path_of
 from ..util import scalar
 
 
@@ -53,8 +54,7 @@ def test_derivatives_from_any_residual_are_paid_for_in_residuals(function):
         calls.append(lam)
         return function(y, lam)
 
-    path = trace(from_functions(residual, start=([0.0, 1.0], 0.0), target=1.0))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(residual, start=([0.0, 1.0], 0.0), target=1.0))
     np.testing.assert_allclose(path.endpoint.u, (1.0, np.e, 1.0), rtol=0, atol=1e-9)
     # Choosing the way costs a few residuals more, once.
     assert path.counts.residuals <= len(calls) <= path.counts.residuals + 20
@@ -96,8 +96,7 @@ def test_a_component_that_begins_at_almost_zero_is_followed_far_from_it(small):
         a, b = (float(part) for part in y)
         return np.array([a - lam, b - 1.0 - np.sin(3.0 * a)])
 
-    path = trace(from_functions(residual, start=([small, 1.0], 0.0), target=1.0), budget=Budget(steps=40))
-    assert path.status is Status.REACHED_TARGET
+    path_of(from_functions(residual, start=([small, 1.0], 0.0), target=1.0), budget=Budget(steps=40))
 
 
 def spoiled(homotopy, row, column, by):

@@ -6,8 +6,10 @@ import attrs
 import numpy as np
 import pytest
 
-from continuation import Monitor, Status, trace
+from continuation import Monitor, Status
 from continuation.linear import factor_bordered
+
+from ...util import path_of
 
 OFF = Monitor(lambda u, v: float(np.abs(u).max()) - 50.0, "off", terminal=1)
 ROWS = np.array([[1.0, 1.0], [-1.0, 1.0], [1.5, 0.5]])
@@ -55,8 +57,7 @@ class Largest:
 @pytest.mark.parametrize("make", [row, applied])
 def test_pieces_that_are_not_there_are_left_out(make):
     largest = Largest(make)
-    path = trace(largest, direction=1, events=[OFF])
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(largest, direction=1, events=[OFF], status=Status.STOPPED_AT_EVENT)
     (kink,) = path.kinks
     assert (kink.switches, len(kink.rays)) == ((0, 1, 2), 2)
     assert max(abs(largest.residual(ray[:1], ray[1])[0]) for ray in kink.rays) < 1e-14

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from continuation import Monitor, Status, trace
+from continuation import Monitor, Status
 from continuation import kink_rays as rays
 
+from ...util import path_of
 from .util import Folded, Joined
 
 NEAR = Monitor(lambda u, v: float(np.abs(u).max()) - 0.3, "near", terminal=1)
@@ -59,8 +60,7 @@ def test_every_branch_of_a_curved_map_is_found_and_followed(n, m):
             continue
         np.testing.assert_allclose(unit(rays(curved, np.zeros(n + 1))), wanted, rtol=0, atol=1e-6)
         for v in wanted:
-            path = trace(curved, start=(np.zeros(n + 1), v), events=[NEAR])
-            assert path.status is Status.STOPPED_AT_EVENT, cone
+            path = path_of(curved, start=(np.zeros(n + 1), v), events=[NEAR], status=Status.STOPPED_AT_EVENT)
             for step in path.steps[1:]:
                 np.testing.assert_allclose(unit([straight(step.u)])[0], v, rtol=0, atol=1e-6)
             followed += 1

@@ -13,7 +13,7 @@ from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve
 from problems.lcp.strategies import badly_scaled_lcps, near_singular_lcps, planted_lcps
 from problems.paper import COUNTEREXAMPLES
 
-from ...util import for_interior_paths, share
+from ...util import for_interior_paths, path_of, share
 from .util import x_at_end
 
 MERGE = 3.9121535
@@ -89,8 +89,7 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
     them all, by way of samples at larger values. `end_error` holds: presets, which sample elsewhere, differ by less.
     """
     problem = LCP(A, q)
-    path = trace(KKTHomotopy(problem, x0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(problem, x0), preset=preset)
     assert certify(problem, x_at_end(problem, path), 1e-8).solves(1e-8)
     assert path.endpoint.residual_norm < 1e-12
     assert 0.0 < path.end_error < 1e-8
@@ -104,8 +103,7 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
 def test_degenerate_vertices_of_p_matrices(pair):
     """Some x_i = w_i = 0, which only the half power reaches: the solution to ten digits, from an infeasible start."""
     problem, x = pair
-    path = trace(KKTHomotopy(problem))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(problem))
     assert path.winding_number == 2
     np.testing.assert_allclose(x_at_end(problem, path), x, rtol=1e-9, atol=1e-9)
 
@@ -122,8 +120,7 @@ def test_two_solutions_within_the_tolerance(q):
 
 @pytest.mark.parametrize("case", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_path_of_wang_runs_off_where_there_is_nothing_to_find(case):
-    path = trace(WangHomotopy(case.problem))
-    assert path.status is Status.DIVERGED
+    path = path_of(WangHomotopy(case.problem), status=Status.DIVERGED)
     assert "runs off to infinity" in path.message
     assert path.endpoint.lam > 1e-3
     assert np.abs(path.endpoint.y).max() > 1e3

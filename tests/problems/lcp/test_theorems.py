@@ -10,12 +10,12 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from continuation import Status, trace
+from continuation import trace
 from problems.lcp import KKTHomotopy, certify, random_start
 from problems.lcp.strategies import feasible_lcps, lcps
 from problems.paper import EXAMPLES
 
-from ...util import share
+from ...util import path_of, share
 
 
 @share(40)
@@ -27,8 +27,7 @@ def test_the_path_of_a_feasible_start_is_feasible_throughout_and_ends_at_lambda_
     is not proved in the paper, nor here; no counterexample is known.
     """
     problem, _ = pair
-    path = trace(KKTHomotopy(*pair))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(*pair))
     assert path.endpoint.lam == 0.0
     assert (path.lam[1:] < 1.0).all()
     for step in path.steps[:-1]:
@@ -56,8 +55,7 @@ def test_row_sufficient_matrices_are_solved(pair):
     Cottle, Pang and Venkateswaran 1989; Cottle, Pang and Stone, Theorem 3.5.4. PSD, P and P_* matrices are such.
     """
     problem, _ = pair
-    path = trace(KKTHomotopy(*pair))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(*pair))
     certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0), 1e-8)
     assert certificate.solves(1e-8), (certificate.relative_residual, path.message)
 
