@@ -110,16 +110,6 @@ def test_a_parameter_that_hardly_enters(metric):
     assert len(path) <= 5
 
 
-def gas(y, lam):
-    """p V = p0 V0 from p0 = 1e7 Pa, in terms of p - p0."""
-    return (y + 1e7) * (1.0 - lam) - 1e7
-
-
-def asymptotic(y, lam):
-    """lam = 3 x (1 - x) / (1 - exp(-5 x)) tends to 0 as x falls, and never is 0."""
-    return 3.0 * y * (1.0 - y) - lam * (1.0 - np.exp(-5.0 * y))
-
-
 def powell(start):
     """Powell's badly scaled function: the parameter rises to a pole at which the first unknown vanishes.
 
@@ -141,7 +131,9 @@ ENDS = {
         Status.DIVERGED, "An asymptote: the parameter tends to 1 ", None, None,
     ),
     "an asymptote at zero": (
-        asymptotic, ([-0.5], 3.0 * -0.5 * 1.5 / (1.0 - np.exp(2.5))), 0.0,
+        # lam = 3 x (1 - x) / (1 - exp(-5 x)) tends to 0 as x falls, and never is 0.
+        lambda y, lam: 3.0 * y * (1.0 - y) - lam * (1.0 - np.exp(-5.0 * y)),
+        ([-0.5], 3.0 * -0.5 * 1.5 / (1.0 - np.exp(2.5))), 0.0,
         Status.DIVERGED, "An asymptote: the parameter tends to 0 ", None, None,
     ),
     "growth for ever": (
@@ -155,7 +147,11 @@ ENDS = {
         lambda y, lam: y**2 + lam - 1.0 + 1e-9, ([-1.0], 0.0), 1.0,
         Status.BUDGET_EXHAUSTED, "Reached: numbers of ", None, pytest.approx([1.0 - 1e-9], abs=1e-14),
     ),
-    "pascals": (gas, ([0.0], 0.0), 0.5, Status.REACHED_TARGET, "", pytest.approx(1e7, rel=1e-12), []),
+    # p V = p0 V0 from p0 = 1e7 Pa, in terms of p - p0.
+    "pascals": (
+        lambda y, lam: (y + 1e7) * (1.0 - lam) - 1e7, ([0.0], 0.0), 0.5,
+        Status.REACHED_TARGET, "", pytest.approx(1e7, rel=1e-12), [],
+    ),
     **{
         f"a slope of {slope}": (
             lambda y, lam, slope=slope: y - slope * lam, ([0.0], 0.0), 1.0,

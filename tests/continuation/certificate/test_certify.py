@@ -183,16 +183,12 @@ def test_python_flint_confirms_every_tube(name):
 # --- the door ---------------------------------------------------------------------------------------------
 
 
-def unsorted(y, lam):
-    return np.sort(y) - lam
-
-
 @pytest.mark.parametrize(
     ("homotopy", "points", "words"),
     [
         (FreudensteinRoth(), 1, "at least two points, found 1"),
         (ExponentialCosine(5), None, "expected points of"),
-        (from_functions(unsorted, start=(np.zeros(2), 0.0), target=1.0), None, r"numpy\.sort"),
+        (from_functions(lambda y, lam: np.sort(y) - lam, start=(np.zeros(2), 0.0), target=1.0), None, r"numpy\.sort"),
     ],
 )
 def test_bad_input_is_named(homotopy, points, words):

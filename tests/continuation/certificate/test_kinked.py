@@ -37,10 +37,6 @@ def path():
     return trace(BENT)
 
 
-def listing(path, events):
-    return Path(steps=path.steps, events=sorted(events, key=lambda e: e.arclength), status=path.status)
-
-
 def test_the_kinks_are_isolated(path):
     proof = certify(path, BENT)
     assert proof.complete, str(proof)
@@ -60,7 +56,7 @@ def test_a_kink_that_is_not_listed_or_none_or_listed_twice_is_a_gap(path):
         ([*path.events, none], "a kink is listed where there is none"),
         ([*path.events, first], "more kinks are listed"),
     ):
-        assert said in str(certify(listing(path, events), BENT))
+        assert said in str(certify(evolve(path, events=sorted(events, key=lambda e: e.arclength)), BENT))
 
 
 @pytest.fixture(scope="module")

@@ -19,11 +19,6 @@ def power(p, start=(1.0, 1.0), target=0.0):
     return scalar(lambda y, lam: y**p - lam, lambda y, lam: (p * y ** (p - 1), -1.0), start=start, target=target)
 
 
-def grown(n):
-    """y_k = k lam^2, far away."""
-    return from_functions(lambda y, lam: y - lam**2 * np.arange(1.0, n + 1), start=(np.zeros(n), 0.0), target=1e5)
-
-
 @every_preset
 @pytest.mark.parametrize(
     ("homotopy", "y", "within"),
@@ -34,7 +29,11 @@ def grown(n):
         # Of multiplicity p: an error of round-off in lam is one of its p-th root in y.
         *((power(p), 0.0, 10.0 * EPS ** (1.0 / p)) for p in (3, 5)),
         (power(3, target=-1.0), -1.0, 1e-9),
-        *((grown(n), 1e10, 1.0) for n in (1, 3)),
+        # y_k = k lam^2, far away.
+        *(
+            (from_functions(lambda y, lam, k=k: y - lam**2 * k, start=(0.0 * k, 0.0), target=1e5), 1e10, 1.0)
+            for k in (np.array([1.0]), np.array([1.0, 2.0, 3.0]))
+        ),
         # A start near the path is brought on it; one unknown may be a number; and overflow makes no noise.
         (scalar(lambda y, lam: y * y - 1.0 - lam, lambda y, lam: (2.0 * y, -1.0), (1.2, 0.0)), math.sqrt(2.0), 1e-10),
         (from_functions(lambda y, lam: y**3 + y - lam, start=(0.0, 0.0), target=2.0), 1.0, 1e-10),
