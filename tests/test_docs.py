@@ -64,21 +64,19 @@ def test_the_scripts_of_the_gallery_run(script, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_the_commands_of_a_page_exist(page):
-    parser = Parser(prog="continuation")
+def test_the_commands_and_files_of_a_page_exist_and_docutils_sets_its_formulas(page):
+    text, parser = page.read_text(encoding="utf-8"), Parser(prog="continuation")
     register(parser.add_subparsers())
-    for block in _SHELL.findall(page.read_text(encoding="utf-8")):
-        for line in block.splitlines():
-            words = shlex.split(line, comments=True)
-            if words and words[0] == "continuation":
-                parser.parse_args(words[1:])
-
-
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_the_formulas_of_a_page_are_ones_that_docutils_sets(page):
-    text = page.read_text(encoding="utf-8")
+    for line in "".join(_SHELL.findall(text)).splitlines():
+        words = shlex.split(line, comments=True)
+        if words and words[0] == "continuation":
+            parser.parse_args(words[1:])
     for formula in filter(None, _DISPLAYED.findall(text) + _INLINE.findall(text)):
         _set(formula, page)
+    named = re.findall(r"\b(?:continuation|problems|tests|docs|examples)/[\w/*]+\.(?:py|md)\b", text)
+    if page.name == "CONTRIBUTING.md":
+        named += re.findall(r"`((?:continuation|problems|tests|docs)/[\w/*.]*)`", text)
+    assert [name for name in named if not list(ROOT.glob(name))] == []
 
 
 @pytest.mark.parametrize("room", ["continuation", "problems", "examples"])
@@ -101,12 +99,3 @@ def test_every_page_is_in_the_table_of_contents():
     listed = {line for tree in _TREE.findall((DOCS / "index.md").read_text()) for line in tree.split("\n")}
     pages = {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES if DOCS in page.parents} - {"index"}
     assert [page for page in pages if not any(fnmatch(page, pattern) for pattern in listed)] == []
-
-
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_the_files_that_a_page_names_exist(page):
-    text = page.read_text("utf-8")
-    named = re.findall(r"\b(?:continuation|problems|tests|docs|examples)/[\w/*]+\.(?:py|md)\b", text)
-    if page.name == "CONTRIBUTING.md":
-        named += re.findall(r"`((?:continuation|problems|tests|docs)/[\w/*.]*)`", text)
-    assert [name for name in named if not list(ROOT.glob(name))] == []

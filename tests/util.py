@@ -2,17 +2,18 @@
 
 import importlib.util
 import io
-import os
 import re
 import sys
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status, trace
 from continuation.archive import ArchiveError
+from continuation.linear import Banded
 
 
 def by_preset(*presets):
@@ -36,6 +37,18 @@ def load(file):
 def benchmark(name):
     """A module of the benchmarks, by its path below them."""
     return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
+
+
+def path_of(homotopy, status=Status.REACHED_TARGET, **options):
+    """A homotopy's path, whose status is as expected."""
+    path = trace(homotopy, **options)
+    assert path.status is status, path.message
+    return path
+
+
+def tridiagonal(A):
+    """The matrix in bands."""
+    return Banded(np.array([[0.0, *A.diagonal(1)], A.diagonal(), [*A.diagonal(-1), 0.0]]), 1, 1)
 
 
 def share(examples):
@@ -68,25 +81,3 @@ def refused(argument, call, words=""):
     assert text.startswith(f"{argument}: "), text
     assert re.search(words, text), text
     assert len(text) < 400
-
-
-def in_child(work):
-    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
-    return os.waitpid(child(work), 0)[1]
-
-
-def child(work):
-    """A process that does it; two threads that fork at once wait for each other's locks."""
-    process = os.fork()
-    if process:
-        return process
-    status = 0
-    try:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        work()
-    except ArchiveError as error:
-        status = 7 if "\n" not in str(error) else 8
-    except BaseException:
-        status = 8
-    finally:
-        os._exit(status)

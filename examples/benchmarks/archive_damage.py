@@ -4,7 +4,6 @@ python examples/benchmarks/archive_damage.py [NUMBER] [SEED]
 """
 
 import gc
-import os
 import random
 import resource
 import sys
@@ -35,7 +34,7 @@ def subjects(folder: Path) -> list[Path]:
     """Archives of each kind: closed, left by a kill, of many paths, merged and compressed."""
     closed, killed, many, packed = (folder / name for name in ("closed.h5", "killed.h5", "many.h5", "packed.nc"))
     trace(HOMOTOPY, archive=PathLog(closed, limits=Limits(rows=7)), budget=Budget(steps=60), **OPTIONS)
-    left_by_a_kill(killed, 60, 7, **OPTIONS)
+    left_by_a_kill(killed, HOMOTOPY, 60, 7, **OPTIONS)
     with PathLog(many, limits=Limits(rows=16)) as log:
         for steps in (5, 30, 1, 12):
             trace(HOMOTOPY, archive=log, budget=Budget(steps=steps), **OPTIONS)
@@ -173,8 +172,8 @@ def judge(case: tuple[Judge, str, Path], way: Any) -> Verdict:
     found = done.answer or {}
     if not done.ended or seconds > SECONDS:
         found["time"] = f"{WRONG}: {seconds:.1f} s" if done.ended else f"{WRONG}: hangs"
-    elif os.WIFSIGNALED(done.status):
-        found["process"] = f"{WRONG}: signal {os.WTERMSIG(done.status)}"
+    elif done.status:
+        found["process"] = f"{WRONG}: status {done.status}"
     bad = [f"{verdict} in {name} of {file.name}, {kind}" for name, verdict in found.items() if WRONG in verdict]
     return bad[0] if bad else ", ".join(f"{name} {verdict}" for name, verdict in found.items()), seconds
 

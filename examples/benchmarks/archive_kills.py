@@ -16,6 +16,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -47,50 +48,58 @@ SHORT = {"budget": Budget(steps=12)}
 
 @frozen
 class Child:
-    """The result of a process: its answer, whether it ended by itself in time, its status and resource usage."""
+    """The result of a process: its answer, its words on stderr, whether it ended in time, its status and its usage."""
 
     answer: Any
+    said: str
     ended: bool
     status: int
     usage: Any
 
 
 def child(work: Callable[[], object], seconds: float | None = None) -> Child:
-    """Do it in a process of its own, with its children; killed after so many seconds if it is not done by then."""
+    """Do it in a process of its own, with its children; killed after so many seconds if it is not done by then.
+
+    Not in two threads at once: forked processes would wait for each other's locks.
+    """
     ours, theirs = os.pipe()
-    process = os.fork()
-    if not process:
-        os.setpgid(0, 0)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        try:
-            os.write(theirs, pickle.dumps(work()))
-        finally:
-            os._exit(0)
-    os.close(theirs)
-    pidfd = os.pidfd_open(process)
-    # An answer comes before the end; a process that was killed by a signal gives none.
-    ended = bool(select.select([ours, pidfd], [], [], seconds)[0])
-    if not ended:
-        try:
-            os.killpg(process, signal.SIGKILL)
-        except ProcessLookupError:
+    with tempfile.TemporaryFile("w+") as said, os.fdopen(ours, "rb") as pipe:
+        process = os.fork()
+        if not process:
+            os.setpgid(0, 0)
+            os.dup2(said.fileno(), 2)
+            try:
+                os.write(theirs, pickle.dumps(work()))
+                os._exit(0)
+            finally:
+                os._exit(1)
+        os.close(theirs)
+        pidfd = os.pidfd_open(process)
+        # An answer comes before the end; what raised an exception, or was killed by a signal, gives none.
+        ended = bool(select.select([pipe, pidfd], [], [], seconds)[0])
+        if not ended:
+            with suppress(ProcessLookupError):
+                os.killpg(process, signal.SIGKILL)
             os.kill(process, signal.SIGKILL)
-    _, status, usage = os.wait4(process, 0)
-    os.close(pidfd)
-    with os.fdopen(ours, "rb") as pipe:
+        _, status, usage = os.wait4(process, 0)
+        os.close(pidfd)
+        os.set_blocking(ours, False)  # Its own children may be there yet.
         raw = pipe.read()
-    return Child(pickle.loads(raw) if raw else None, ended, status, usage)
+        said.seek(0)
+        return Child(pickle.loads(raw) if raw else None, said.read(), ended, status, usage)
 
 
-def left_by_a_kill(file: Path, steps: int, rows: int, **options: Any) -> None:
-    """An archive whose writer was killed after so many steps."""
+def left_by_a_kill(file: Path, homotopy: Any, steps: int, rows: int, **options: Any) -> Path:
+    """An archive whose writer was killed after so many steps, and committed every so many rows."""
 
     def work() -> None:
-        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=rows)),), **options):
+        log = PathLog(file, limits=Limits(rows=rows, seconds=3600.0))
+        for step in Tracer(homotopy, observers=(log,), **options):
             if step.index == steps:
                 os.kill(os.getpid(), signal.SIGKILL)
 
-    child(work)
+    assert child(work).status == signal.SIGKILL
+    return file
 
 
 def pooled(file: Path) -> None:
@@ -110,7 +119,7 @@ class Kills:
         steps = len(self.path) // 2
         trace(HOMOTOPY, archive=self.half, budget=Budget(steps=steps), **OPTIONS)
         trace(HOMOTOPY, archive=self.whole, **OPTIONS)
-        left_by_a_kill(self.left, steps, 9, **OPTIONS)
+        left_by_a_kill(self.left, HOMOTOPY, steps, 9, **OPTIONS)
         self.seconds: dict[str, float] = {}
         # The file to begin with, and how many of its rows may be missing afterwards: none but those of a block.
         self.begin = {"resume": (self.half, steps), "recover": (self.left, steps - 9), "merge": (self.whole, 0),

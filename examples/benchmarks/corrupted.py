@@ -49,7 +49,7 @@ def numbered(path: Path, steps: list, events: list) -> Path:
     return evolve(path, steps=again, events=kept)
 
 
-def moved(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def moved(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """Up to three points in a row moved off the curve, by twice the radius of the tubes beside the first at least.
 
     And by a thousandth of the path's extent at least.
@@ -66,7 +66,7 @@ def moved(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return evolve(path, steps=[evolve(s, u=s.u + off) if k <= s.index <= last else s for s in path.steps])
 
 
-def swapped(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def swapped(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """Two points exchanged, or a run of points reversed, with its tangents or not."""
     i, j = sorted(rng.choice(np.arange(1, len(path) - 1), 2, replace=False).tolist())
     steps = list(path.steps)
@@ -78,7 +78,7 @@ def swapped(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return numbered(path, steps, path.events)
 
 
-def jumped(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
+def jumped(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Continued on another sheet: from some point on the path is that from a far point of the same curve."""
     n, least = len(path), 2 if path.kinks else 6
     if n < least + 6:
@@ -94,7 +94,7 @@ def jumped(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     return numbered(path, steps, events)
 
 
-def elsewhere(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def elsewhere(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """An event moved off the curve."""
     event = one_of(path.events, rng)
     off = rng.normal(size=event.u.size) * np.ptp(path.u, axis=0) * 10.0 ** rng.uniform(-2.0, 1.0)
@@ -106,7 +106,7 @@ def listed(step: Any) -> LocatedEvent:
     return LocatedEvent("on the path", Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index)
 
 
-def left_out(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
+def left_out(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Points left out on one and the same curve: no fault, but the tubes are then to hold them."""
     kinks = {e.step for e in path.kinks}
     inner = [s for s in path.steps[1:-1] if s.index not in kinks]
@@ -131,7 +131,7 @@ def drawn(path: Path, rng: np.random.Generator) -> Any:
     return one_of(path.kinks or path.turning_points, rng)
 
 
-def unlisted(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def unlisted(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink dropped, half of the times with its point; or a turning point dropped, or listed twice."""
     twice = rng.random() < 0.5
     event = one_of([*path.kinks, *path.turning_points], rng)
@@ -141,7 +141,7 @@ def unlisted(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return numbered(path, steps, [e for e in path.events if e is not event])
 
 
-def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
+def misplaced(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """A kink or turning point at another point of the path: one more, or the event itself."""
     kink = drawn(path, rng)
     away = [s for s in path.steps if not {s.index, s.index + 1} & {e.step for e in path.events}]
@@ -152,7 +152,7 @@ def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None
     return changed(path, kink, like, *([kink] if rng.random() < 0.5 else []))
 
 
-def pushed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def pushed(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink moved along the arc before it or after it, on the curve or nearly, with its point."""
     kink = drawn(path, rng)
     other = path.u[kink.step + (1 if rng.random() < 0.5 else -1)]
@@ -161,7 +161,7 @@ def pushed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return changed(evolve(path, steps=steps), kink, evolve(kink, u=u))
 
 
-def renamed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+def renamed(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink in which another switch is said to vanish, or one more, or the parameter to turn where it does not."""
     kink = drawn(path, rng)
     count = path.u.shape[1] - 1
@@ -176,10 +176,10 @@ def renamed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     return changed(path, kink, evolve(kink, switches=switches))
 
 
-def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: Any = None) -> Path | None:
+def straight_on(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Continued on the wrong piece: past a kink by the equations that held before it."""
     k = drawn(path, rng).step
-    if k < 2 or homotopy is None:
+    if k < 2 or isinstance(homotopy, Linear):
         return None
     before = 0.5 * (path.u[k - 1] + path.u[k])
     signs = np.where(homotopy.switches(before[:-1], before[-1]) > 0.0, 1, -1)
@@ -213,8 +213,7 @@ def cases(number: int, seed: int) -> Iterator[tuple[Any, Path, Any, Path]]:
         while left:
             homotopy, path, proof = one_of(tried, rng)
             fault = rng.choice(faults(path))
-            more = {"homotopy": homotopy} if fault is straight_on and not isinstance(homotopy, Linear) else {}
-            corrupted = fault(path, proof, rng, **more)
+            corrupted = fault(homotopy, path, proof, rng)
             if corrupted is not None:
                 left -= 1
                 yield homotopy, path, fault, corrupted

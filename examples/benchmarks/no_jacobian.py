@@ -11,7 +11,6 @@ from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import frozen
 from campaign import asked, timed
 from five import brusselator
 from five import ways as written
@@ -22,105 +21,76 @@ from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.bratu_2d import five_point
 
 
-@frozen
-class SwiftHohenberg:
-    """r u - (1 + d^2/dx^2)^2 u + 2 u^2 - u^3 = 0 on (0, 40), mirrored at both ends."""
+def swift_hohenberg(n):
+    """r u - (1 + d^2/dx^2)^2 u + 2 u^2 - u^3 = 0 on (0, 40), mirrored at both ends: from a pattern in the middle."""
+    x, g = (np.arange(n) + 0.5) * 40.0 / n, (n / 40.0) ** 2
+    line = np.full(n, 1.0 - 2.0 * g)
+    line[[0, -1]] = 1.0 - g
+    L = sp.diags_array([np.full(n - 1, g), line, np.full(n - 1, g)], offsets=[-1, 0, 1])
+    square = sp.dia_array(-(L @ L))
 
-    n: int
-
-    def start(self):
-        """A pattern in the middle."""
-        x = (np.arange(self.n) + 0.5) * 40.0 / self.n
-        return 1.5 * np.cos(x) / np.cosh(0.25 * x), -0.4
-
-    def once(self, u):
-        """(1 + d^2/dx^2) u."""
+    def once(u):
         mirrored = np.concatenate((u[:1], u, u[-1:]))
-        return u + (mirrored[:-2] - 2.0 * u + mirrored[2:]) * (self.n / 40.0) ** 2
+        return u + (mirrored[:-2] - 2.0 * u + mirrored[2:]) * g
 
-    def residual(self, y, lam):
-        """By second differences."""
-        return (lam + 2.0 * y - y * y) * y - self.once(self.once(y))
-
-    def jacobian(self, y, lam):
-        """Five diagonals."""
-        g = (self.n / 40.0) ** 2
-        line = np.full(self.n, 1.0 - 2.0 * g)
-        line[[0, -1]] = 1.0 - g
-        L = sp.diags_array([np.full(self.n - 1, g), line, np.full(self.n - 1, g)], offsets=[-1, 0, 1])
-        square = sp.dia_array(-(L @ L))
-        band = np.zeros((5, self.n))
+    def jacobian(y, lam):
+        band = np.zeros((5, n))
         band[2 - square.offsets] = square.data
         band[2] += lam + 4.0 * y - 3.0 * y * y
         return Banded(band, 2, 2), y.copy()
 
+    start = 1.5 * np.cos(x) / np.cosh(0.25 * x), -0.4
+    return continuation.from_functions(
+        lambda y, lam: (lam + 2.0 * y - y * y) * y - once(once(y)), jacobian, start=start
+    )
 
-@frozen(eq=False)
-class AllenCahn:
+
+def allen_cahn(m):
     """Laplacian(u) + lam (u - u^3) = 0 on the unit square, u = 0 on its edge: along u = 0 through branch points."""
+    A, h2 = five_point(m), (m + 1.0) ** -2
 
-    m: int
-    target: float = 60.0
-
-    def start(self):
-        """The trivial solution."""
-        return np.zeros(self.m**2), 10.0
-
-    def residual(self, y, lam):
-        """On m x m points."""
-        u = np.pad(y.reshape(self.m, self.m), 1)
+    def residual(y, lam):
+        u = np.pad(y.reshape(m, m), 1)
         bent = u[2:, 1:-1] + u[:-2, 1:-1] + u[1:-1, 2:] + u[1:-1, :-2] - 4.0 * u[1:-1, 1:-1]
-        return bent.ravel() + lam / (self.m + 1.0) ** 2 * (y - y**3)
+        return bent.ravel() + lam * h2 * (y - y**3)
 
-    def jacobian(self, y, lam):
-        """Five points."""
-        h2 = (self.m + 1.0) ** -2
-        return sp.csc_array(five_point(self.m) + sp.diags_array(lam * h2 * (1.0 - 3.0 * y * y))), h2 * (y - y**3)
+    def jacobian(y, lam):
+        return sp.csc_array(A + sp.diags_array(lam * h2 * (1.0 - 3.0 * y * y))), h2 * (y - y**3)
+
+    return continuation.from_functions(residual, jacobian, start=(np.zeros(m * m), 10.0), target=60.0)
 
 
 OPTIONS = {
     # Bratu's paths go through the fold, and end where lam falls below a value.
     Bratu1D: {"events": [continuation.TargetValue(1.0, direction=-1)]},
     Bratu2D: {"events": [continuation.TargetValue(2.0, direction=-1)]},
-    SwiftHohenberg: {"budget": continuation.Budget(steps=30), "direction": 1, "tolerance": 1e-6},
+    swift_hohenberg: {"budget": continuation.Budget(steps=30), "direction": 1, "tolerance": 1e-6},
 }
 
 PROBLEMS = {
     f"{name}-{size}": partial(kind, size)
     for name, kind, sizes in (
         ("bratu-1d", Bratu1D, (100, 1000, 10_000)), ("bratu-2d", Bratu2D, (20, 50, 200)),
-        ("swift-hohenberg", SwiftHohenberg, (300, 3000)), ("allen-cahn", AllenCahn, (40,)),
+        ("swift-hohenberg", swift_hohenberg, (300, 3000)), ("allen-cahn", allen_cahn, (40,)),
         ("brusselator", lambda n: written(brusselator(n))["numpy"](), (64, 1000)),
     )
     for size in sizes
 }  # fmt: skip
 
 
-@frozen(eq=False)
-class Plain:
-    """The residual of another homotopy; `sparsity` where it has one."""
+def plain(of, sparsity=None, compiled=False):
+    """The residual of another homotopy alone, or as compiled code gives it."""
 
-    of: object
-    sparsity: object = None
-    compiled: bool = False
+    def floats(y, lam):
+        return of.residual(np.asarray(y, dtype=float), float(lam))
 
-    @property
-    def target(self):
-        """The other's."""
-        return getattr(self.of, "target", 0.0)
-
-    def start(self):
-        """The other's."""
-        return self.of.start()
-
-    def residual(self, y, lam):
-        """The other's."""
-        return self.of.residual(np.asarray(y, dtype=float), float(lam)) if self.compiled else self.of.residual(y, lam)
+    residual = floats if compiled else of.residual
+    return continuation.from_functions(residual, start=of.start(), target=of.target, sparsity=sparsity)
 
 
-def options(homotopy, preset):
-    """The options of a trace, by problem."""
-    return {"preset": getattr(continuation, preset), **OPTIONS.get(type(homotopy), {})}
+def options(kind, preset):
+    """The options of a trace, by kind of problem."""
+    return {"preset": getattr(continuation, preset), **OPTIONS.get(kind, {})}
 
 
 def ways(homotopy):
@@ -129,9 +99,9 @@ def ways(homotopy):
     pattern = slope.tosparse() if isinstance(slope, Banded) else slope
     return {
         "own": homotopy,
-        "alone": Plain(homotopy),
-        "known": Plain(homotopy, sparsity=pattern != 0),
-        "differences": Plain(homotopy, compiled=True),
+        "alone": plain(homotopy),
+        "known": plain(homotopy, sparsity=pattern != 0),
+        "differences": plain(homotopy, compiled=True),
         "stability": homotopy,
     }
 
@@ -139,7 +109,7 @@ def ways(homotopy):
 def measured(name, rounds, preset="FAST", which=None):
     """By way: the path, and its processor seconds."""
     homotopy = PROBLEMS[name]()
-    given, forms, found = options(homotopy, preset), ways(homotopy), {}
+    given, forms, found = options(PROBLEMS[name].func, preset), ways(homotopy), {}
     for way in which or forms:
         more = {"observers": [continuation.Stability()]} if way == "stability" else {}
         found[way] = timed(partial(continuation.trace, forms[way], **given, **more), rounds)

@@ -88,16 +88,13 @@ def dual_cyclic(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
     return -V[m:], -V[:m][r.permutation(m)].T
 
 
-def covariant(rho: float) -> Callable[[Array, Array, np.random.Generator], tuple[Array, Array]]:
-    """Costs of such a correlation."""
-    return lambda X, Y, r: (X, rho * X + math.sqrt(1.0 - rho * rho) * Y)
-
-
 KINDS: dict[str, Callable[[Array, Array, np.random.Generator], tuple[Array, Array]]] = {
     "normal": lambda X, Y, r: (X, Y),
     "0-1": lambda X, Y, r: ((X < 0.0).astype(float), (Y < 0.0).astype(float)),
-    "covariant -.9": covariant(-0.9),
-    "covariant .5": covariant(0.5),
+    **{
+        f"covariant {rho}": lambda X, Y, r, rho=rho: (X, rho * X + math.sqrt(1.0 - rho * rho) * Y)
+        for rho in (-0.9, 0.5)
+    },
     "zero-sum": lambda X, Y, r: (X, -X),
     "unit vectors": lambda X, Y, r: unit_vectors(Y, r),
     "dual cyclic": lambda X, Y, r: dual_cyclic(Y, r),

@@ -3,17 +3,9 @@
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.linear import Banded
-
-
-def dense(H_y: Any) -> Array:
-    """A Jacobian in whatever structure as an array."""
-    H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
-    return H_y.toarray() if sp.issparse(H_y) else np.asarray(H_y)
 
 
 @frozen(eq=False)
@@ -46,7 +38,7 @@ class Rescaled:
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """Dense, whatever the homotopy's is."""
         H_y, H_lam = self.homotopy.jacobian((y - self.c) / self.D, (lam - self.b) / self.a)
-        return self.E[:, None] * dense(H_y) / self.D, self.E * np.asarray(H_lam) / self.a
+        return self.E[:, None] * (H_y @ np.eye(self.D.size)) / self.D, self.E * np.asarray(H_lam) / self.a
 
     def original(self, u: Array) -> Array:
         """A point (y, lam) in the units of the homotopy."""

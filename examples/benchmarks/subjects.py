@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation import Budget, certify, trace
+from continuation import Budget, certify, from_functions, trace
 from continuation.certificate import Proof
 from continuation.path import Path
 from problems.bifurcation import Cusp, ExponentialCosine, FreudensteinRoth
@@ -45,20 +45,9 @@ def cubic(seed: int) -> NormalMap:
     )  # fmt: skip
 
 
-@frozen
-class TwoSheets:
+def two_sheets(gap: float) -> Any:
     """y^2 = lam^2 + gap^2: for a small gap each of the two sheets has a sharp bend next to that of the other."""
-
-    gap: float
-    target: float = 1.0
-
-    def start(self) -> tuple[np.ndarray, float]:
-        """On the upper sheet."""
-        return np.array([np.hypot(1.0, self.gap)]), -1.0
-
-    def residual(self, y: Any, lam: Any) -> Any:
-        """The residual of y^2 = lam^2 + gap^2."""
-        return y**2 - lam**2 - self.gap**2
+    return from_functions(lambda y, lam: y**2 - lam**2 - gap**2, start=([np.hypot(1.0, gap)], -1.0), target=1.0)
 
 
 @cache
@@ -73,7 +62,7 @@ def subjects(seed: int = 0) -> list[tuple[Any, Path, Proof]]:
         ExponentialCosine(3),
         KKTHomotopy(LCP(matrix, q)),
         *kinked(),
-        *([TwoSheets(10.0 ** rng.uniform(-4.0, -1.0))] if seed else []),
+        *([two_sheets(10.0 ** rng.uniform(-4.0, -1.0))] if seed else []),
         *map(KKTHomotopy, drawn_ones),
         *([cubic(int(rng.integers(1000)))] if seed else []),
     ]

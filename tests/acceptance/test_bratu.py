@@ -2,16 +2,15 @@
 
 import pytest
 
-from continuation import FAST, Status, TargetValue, trace
+from continuation import FAST, Status, TargetValue
 from problems.bifurcation import Bratu1D, Bratu2D
 from tests.truth import bratu
 
-from ..util import every_preset
+from ..util import every_preset, path_of
 
 
 def upper_branch(homotopy, lam, **options):
-    path = trace(homotopy, events=[TargetValue(lam, direction=-1)], **options)
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(homotopy, events=[TargetValue(lam, direction=-1)], **options, status=Status.STOPPED_AT_EVENT)
     assert path.endpoint.lam == lam
     (fold,) = path.turning_points
     return path, fold

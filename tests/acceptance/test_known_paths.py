@@ -11,6 +11,8 @@ from problems.bifurcation import Aircraft, Circle, Cusp, ExponentialCosine
 from problems.nonlinear import brown, fixed_point
 from tests.truth import aircraft, exponential_cosine
 
+from ..util import path_of
+
 # n: x1 at the end, turning points of lam.
 COSINES = {
     2: (1.1003509626909, 0), 3: (0.37472756109156, 4), 4: (0.42145547339476, 4), 5: (1.5875828159969, 10),
@@ -80,8 +82,7 @@ CASES = {
 @pytest.mark.parametrize(("preset", "row"), CASES.values(), ids=CASES)
 def test_turning_points_ends_and_lengths(preset, row):
     homotopy, options, status, turns, (rtol, atol), end, along = row
-    path = trace(homotopy, preset=preset, **options)
-    assert path.status is status
+    path = path_of(homotopy, preset=preset, **options, status=status)
     assert status is not Status.REACHED_TARGET or path.endpoint.lam == homotopy.target
     found = np.reshape([event.u for event in path.turning_points], np.shape(turns))
     np.testing.assert_allclose(found, turns, rtol=rtol, atol=atol)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-import continuation
-from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint
 from continuation.controllers import AllgowerGeorg, Bounds
 from problems.bifurcation import FreudensteinRoth
+
+from ..util import path_of
 
 TABLE = [
     ("turning point of component 0", (14.28309125009385, -1.741376892197492, 0.258577871376728)),
@@ -25,8 +26,7 @@ TABLE = [
     ids=["FAST", "DEFAULT", "CONSERVATIVE", "30", "20", "3", "0.5"],
 )
 def test_freudenstein_roth_under_every_preset_and_whatever_the_longest_step(options):
-    path = trace(FreudensteinRoth(), events=[TurningPoint(0)], **options)
-    assert path.status is continuation.Status.REACHED_TARGET
+    path = path_of(FreudensteinRoth(), events=[TurningPoint(0)], **options)
     assert [event.name for event in path.events] == [name for name, _ in TABLE]
     for event, (_, point) in zip(path.events, TABLE):
         np.testing.assert_allclose(event.u, point, rtol=0, atol=1e-10)

@@ -30,7 +30,7 @@ from continuation.evaluation.noise import noise_along
 from continuation.metric import Euclidean
 from continuation.step.tracer import Tracer
 
-from ..util import benchmark, by_preset
+from ..util import benchmark, by_preset, path_of
 
 families = benchmark("ends.py")
 without_series = by_preset(FAST, DEFAULT, CONSERVATIVE)
@@ -71,11 +71,10 @@ def test_the_error_of_an_end_is_a_bound(preset, others, d):
 
     start = [1.0, *(at for at, _ in others)]
     homotopy = from_functions(residual, start=(start, 0.0), target=1.0 - d)
-    path = trace(homotopy, preset=preset)
+    path = path_of(homotopy, preset=preset)
     with mp.workdps(50):
         true = mp.sqrt((1 - mpf(homotopy.target)) * (1 + mpf(homotopy.target)))
         error = float(abs(mpf(float(path.endpoint.y[0])) - true))
-    assert path.status is Status.REACHED_TARGET
     assert error <= 2.0 * path.end_error
     # Round-off of the parameter moves the end by eps / sqrt(d).
     known = np.finfo(float).eps / (np.sqrt(d) if others else 1.0)
@@ -94,31 +93,19 @@ def test_the_error_of_an_end_is_a_bound(preset, others, d):
 )
 def test_the_error_of_an_end_before_a_pole_is_a_bound(preset, size, unit, target):
     """The parameter is rounded by its unit, alike at all samples of the endgame that lie close together."""
-    path = trace(
+    path = path_of(
         from_functions(lambda y, lam: (1.0 - lam / unit) * (y / size) - 1.0, start=([size], 0.0), target=target),
         preset=preset,
     )
     true = Fraction(size) / (1 - Fraction(target) / Fraction(unit))
-    assert path.status is Status.REACHED_TARGET
     assert abs(float(Fraction(float(path.endpoint.y[0])) - true)) <= 2.0 * path.end_error
 
 
 @pytest.mark.parametrize("metric", [None, Euclidean()])
 def test_a_parameter_that_hardly_enters(metric):
     homotopy = from_functions(lambda y, lam: y**3 + y - 1.0 - 1e-9 * lam, start=([0.6823278038280193], 0.0))
-    path = trace(homotopy, target=1.0, metric=metric)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, target=1.0, metric=metric)
     assert len(path) <= 5
-
-
-def gas(y, lam):
-    """p V = p0 V0 from p0 = 1e7 Pa, in terms of p - p0."""
-    return (y + 1e7) * (1.0 - lam) - 1e7
-
-
-def asymptotic(y, lam):
-    """lam = 3 x (1 - x) / (1 - exp(-5 x)) tends to 0 as x falls, and never is 0."""
-    return 3.0 * y * (1.0 - y) - lam * (1.0 - np.exp(-5.0 * y))
 
 
 def powell(start):
@@ -142,7 +129,9 @@ ENDS = {
         Status.DIVERGED, "An asymptote: the parameter tends to 1 ", None, None,
     ),
     "an asymptote at zero": (
-        asymptotic, ([-0.5], 3.0 * -0.5 * 1.5 / (1.0 - np.exp(2.5))), 0.0,
+        # lam = 3 x (1 - x) / (1 - exp(-5 x)) tends to 0 as x falls, and never is 0.
+        lambda y, lam: 3.0 * y * (1.0 - y) - lam * (1.0 - np.exp(-5.0 * y)),
+        ([-0.5], 3.0 * -0.5 * 1.5 / (1.0 - np.exp(2.5))), 0.0,
         Status.DIVERGED, "An asymptote: the parameter tends to 0 ", None, None,
     ),
     "growth for ever": (
@@ -156,7 +145,11 @@ ENDS = {
         lambda y, lam: y**2 + lam - 1.0 + 1e-9, ([-1.0], 0.0), 1.0,
         Status.BUDGET_EXHAUSTED, "Reached: numbers of ", None, pytest.approx([1.0 - 1e-9], abs=1e-14),
     ),
-    "pascals": (gas, ([0.0], 0.0), 0.5, Status.REACHED_TARGET, "", pytest.approx(1e7, rel=1e-12), []),
+    # p V = p0 V0 from p0 = 1e7 Pa, in terms of p - p0.
+    "pascals": (
+        lambda y, lam: (y + 1e7) * (1.0 - lam) - 1e7, ([0.0], 0.0), 0.5,
+        Status.REACHED_TARGET, "", pytest.approx(1e7, rel=1e-12), [],
+    ),
     **{
         f"a slope of {slope}": (
             lambda y, lam, slope=slope: y - slope * lam, ([0.0], 0.0), 1.0,
@@ -184,8 +177,7 @@ ENDS = {
 @pytest.mark.parametrize("name", ENDS)
 def test_an_end_and_what_is_said_of_it(name, preset):
     residual, start, target, status, said, end, folds = ENDS[name]
-    path = trace(from_functions(residual, start=start, target=target), preset=preset)
-    assert path.status is status
+    path = path_of(from_functions(residual, start=start, target=target), preset=preset, status=status)
     assert said in path.message
     assert end is None or path.endpoint.y[0] == end
     assert folds is None or [event.lam for event in path.turning_points] == folds
@@ -197,8 +189,7 @@ def test_an_end_and_what_is_said_of_it(name, preset):
 def test_all_says_of_the_budget_what_is_in_sight():
     homotopy = from_functions(lambda y, lam: np.stack([y[0] * (1.0 - lam) - 1.0]), start=([1.0], 0.0), target=1.0)
     whole = trace(homotopy)
-    path = trace(homotopy, budget=Budget(steps=len(whole) - 2))
-    assert path.status is Status.BUDGET_EXHAUSTED
+    path = path_of(homotopy, budget=Budget(steps=len(whole) - 2), status=Status.BUDGET_EXHAUSTED)
     assert "In sight, and not followed to its end: a pole: " in path.message
     assert continuation.Status(path.status) is path.status
 
@@ -224,8 +215,11 @@ def test_samples_of_one_field_have_one_scale():
 def test_a_start_at_a_fold_to_round_off(preset, y, unit):
     """The circle from its top: where y = cos(pi / 2) the parameter's tangent is what the path has next to its fold."""
     start = (np.array([unit * y]), 1.0)
-    path = trace(from_functions(lambda x, lam: (x / unit) ** 2 + lam**2 - 1.0, start=start, target=None), preset=preset)
-    assert path.status is Status.CLOSED
+    path = path_of(
+        from_functions(lambda x, lam: (x / unit) ** 2 + lam**2 - 1.0, start=start, target=None),
+        preset=preset,
+        status=Status.CLOSED,
+    )
     assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
 
 
@@ -238,8 +232,7 @@ def test_a_start_at_a_fold_to_round_off(preset, y, unit):
     ],
 )
 def test_a_start_near_zero_where_no_derivative_is_at_zero(preset, residual, start):
-    path = trace(from_functions(residual, start=(start, 0.0), target=1.0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path_of(from_functions(residual, start=(start, 0.0), target=1.0), preset=preset)
 
 
 @every_preset
@@ -258,8 +251,9 @@ def test_a_path_begins_at_a_fold_of_a_polynomial(preset, folds, unit):
     homotopy = from_functions(
         lambda y, lam: p(y / unit[0]) - lam / unit[1], start=(np.array([folds[0] * unit[0]]), p(folds[0]) * unit[1])
     )
-    path = trace(homotopy, target=None, preset=preset, box={0: (-1.5 * unit[0], 1.5 * unit[0])})
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(
+        homotopy, target=None, preset=preset, box={0: (-1.5 * unit[0], 1.5 * unit[0])}, status=Status.STOPPED_AT_EVENT
+    )
     found = [fold.u[0] / unit[0] for fold in path.turning_points]
     beyond = [t for t in folds if folds[0] < t] if path.u[-1, 0] > path.u[0, 0] else []
     np.testing.assert_allclose([t for t in found if abs(t - folds[0]) > 1e-5], beyond, atol=1e-6)
@@ -274,8 +268,7 @@ def test_a_residual_in_single_precision(preset, tolerance):
         y = np.asarray(y, dtype=np.float32)
         return y**3 - np.float32(3.0) * y - np.float32(lam)
 
-    path = trace(from_functions(residual, start=([-2.5], -8.125), target=8.125), preset=preset, tolerance=tolerance)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(residual, start=([-2.5], -8.125), target=8.125), preset=preset, tolerance=tolerance)
     np.testing.assert_allclose([fold.lam for fold in path.turning_points], [2.0, -2.0], atol=1e-4)
     assert path.endpoint.y[0] == pytest.approx(2.5, abs=1e-4)
     assert ("noisy" in path.message) == (tolerance < 1e-5)

@@ -19,7 +19,7 @@ from continuation import (
 )
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine
 
-from ..util import benchmark, by_preset
+from ..util import benchmark, by_preset, path_of
 
 bends, run = benchmark("bends.py"), benchmark("units.py")
 
@@ -96,8 +96,7 @@ def test_turning_points_in_celsius_and_in_kelvin(preset, offset, a):
         start=([offset], 0.0),
         target=6.0 * np.pi,
     )
-    path = trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset)
     first = np.arccos(-1.0 / a)
     expected = [x + 2.0 * np.pi * k for k in range(3) for x in (first, 2.0 * np.pi - first)]
     found = [event.y[0] - offset for event in path.turning_points]
@@ -148,8 +147,7 @@ POLES = [
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e6])
 def test_a_pole_is_named_and_no_point_beside_the_path_counts(preset, y, slope, pole, order, unit):
     homotopy = from_functions(lambda u, lam: np.stack([u[0] - unit * y(lam)]), start=([unit * y(0.0)], 0.0), target=1.0)
-    path = trace(homotopy, preset=preset, budget=Budget(steps=500))
-    assert path.status is Status.DIVERGED
+    path = path_of(homotopy, preset=preset, budget=Budget(steps=500), status=Status.DIVERGED)
     assert f"A pole: the unknowns grow like |lam - {pole}|^-{order}." in path.message
     # The last place of lam, seen through the slope, is what a point can be known to.
     lam = path.lam
@@ -181,8 +179,12 @@ def test_a_component_that_is_zero_has_no_turning_points(preset):
         )
 
     events = [TurningPoint(1), TargetValue(4.0, component=0)]
-    path = trace(from_functions(residual, start=([0.0, 0.0], 0.0), target=None), preset=preset, events=events)
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(
+        from_functions(residual, start=([0.0, 0.0], 0.0), target=None),
+        preset=preset,
+        events=events,
+        status=Status.STOPPED_AT_EVENT,
+    )
     assert not [event for event in path.events if event.name == "turning point of component 1"]
 
 
@@ -198,6 +200,5 @@ def test_every_call_of_the_residual_is_counted(preset, n):
         calls.append(lam)
         return y - lam * np.exp(np.cos(y.sum() / n))
 
-    path = trace(from_functions(residual, start=(np.zeros(n), 0.0), target=1.0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(residual, start=(np.zeros(n), 0.0), target=1.0), preset=preset)
     assert path.counts.residuals == len(calls)

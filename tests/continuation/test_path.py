@@ -21,7 +21,7 @@ from continuation.archive import open_archive
 from problems import lcp
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
-from ..util import by_preset, every_preset
+from ..util import by_preset, every_preset, path_of
 
 HIGH = 4.0 * np.sin(np.pi * np.arange(1, 21) / 21.0)
 
@@ -117,11 +117,8 @@ def test_refined_until_it_is_as_accurate_as_asked():
     assert len(fine) > len(path)
 
 
-class Empty(Circle):
-    """No point solves it, and chord steps from the circle do not halve."""
-
-    def residual(self, y, lam):
-        return y**2 + lam**2 + 3.0
+# No point solves it, and chord steps from the circle do not halve.
+EMPTY = from_functions(lambda y, lam: y**2 + lam**2 + 3.0, Circle().jacobian, start=Circle().start())
 
 
 @every_preset
@@ -134,7 +131,7 @@ def test_dense_output_is_no_farther_off_than_its_bound(preset):
     assert (off <= size).all()
     assert (size <= 2.5 * off + 1e-12).all()
     np.testing.assert_array_equal(path.error_bound(Circle(), s[3]), bound[3])
-    assert not np.isfinite(path.error_bound(Empty(), s[3])).any()
+    assert not np.isfinite(path.error_bound(EMPTY, s[3])).any()
 
 
 def test_a_point_at_a_parameter_value():
@@ -166,8 +163,7 @@ def test_what_cannot_be_is_named(ahead, call, words):
 
 def test_a_start_that_newton_brings_to_the_path_is_a_start():
     """Newton's increments grow at first: x - arctan's inverse is far from linear."""
-    path = trace(from_functions(lambda y, lam: np.arctan(y) - 0.1 + lam, start=([1.38], 0.0), target=0.05))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(lambda y, lam: np.arctan(y) - 0.1 + lam, start=([1.38], 0.0), target=0.05))
     assert path.endpoint.y[0] == pytest.approx(np.tan(0.05), abs=1e-9)
 
 
@@ -188,7 +184,6 @@ def test_a_path_ends_on_the_face_of_its_box(box, value, end, name):
 
 
 def test_a_budget_of_arclength():
-    path = trace(FreudensteinRoth(), max_step=0.2, budget=Budget(arclength=2.0))
-    assert path.status is Status.BUDGET_EXHAUSTED
+    path = path_of(FreudensteinRoth(), max_step=0.2, budget=Budget(arclength=2.0), status=Status.BUDGET_EXHAUSTED)
     assert 2.0 <= path.arclength[-1] < 2.25
     assert path.message.endswith("Reached: 2 of arclength.")

@@ -9,6 +9,7 @@ from continuation import Budget, Kind, Monitor, Status, TargetValue, trace
 from problems.lcp.strategies import lcps
 from problems.nonlinear import NormalMap, bratu_under_obstacle
 
+from ..util import path_of
 from .util import kojima_shindo
 
 PSI = 2.0
@@ -19,8 +20,7 @@ OFF = Monitor(lambda u, v: float(np.abs(u).max()) - 100.0, "off", terminal=1)
 def test_bratu_under_an_obstacle_turns_in_a_kink():
     known, errors = {19: 2.969647, 39: 2.973134, 99: 2.974110}, {}
     for n in known:
-        path = trace(bratu_under_obstacle(n, PSI, target=6.0))
-        assert path.status is Status.REACHED_TARGET
+        path = path_of(bratu_under_obstacle(n, PSI, target=6.0))
         fold, kink = path.events[:2]
         assert (fold.name, fold.kind) == ("turning point", Kind.TURNING_POINT)
         assert (kink.name, kink.switches) == ("turning kink", (n // 2,))

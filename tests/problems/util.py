@@ -3,8 +3,9 @@
 import numpy as np
 import scipy.sparse as sp
 
-from continuation.linear import Banded
 from problems.lcp.homotopies.registry import HOMOTOPIES
+
+from ..util import tridiagonal
 
 BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
 """The homotopies for LCPs with bounds."""
@@ -15,12 +16,7 @@ def chain(n):
     return sp.diags_array([np.full(n - 1, -1.0), np.full(n, 2.5), np.full(n - 1, -1.0)], offsets=[-1, 0, 1])
 
 
-def banded(A):
-    """A tridiagonal matrix in bands."""
-    return Banded(np.array([[0.0, *A.diagonal(1)], A.diagonal(), [*A.diagonal(-1), 0.0]]), 1, 1)
-
-
-FORMS = {"dense": lambda A: A.toarray(), "csr": sp.csr_array, "csc": sp.csc_array, "banded": banded}
+FORMS = {"dense": lambda A: A.toarray(), "csr": sp.csr_array, "csc": sp.csc_array, "banded": tridiagonal}
 """Of the same tridiagonal matrix."""
 
 

@@ -13,7 +13,9 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from itertools import count
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +23,13 @@ import numpy as np
 from attrs import frozen
 
 from continuation import Budget, Tracer, from_functions, trace
-from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, trace_many
+from continuation.archive import ArchiveError, PathLog, open_archive, recover, resume, trace_many
 from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
 
-from ..util import benchmark, child, in_child
+from ..continuation.archive.util import child, killed, logged, outcome
+from ..util import benchmark
 
 HOMOTOPY = ExponentialCosine(3)
 OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
@@ -41,37 +44,25 @@ class Found:
     text: str
 
 
-def printed(run: Callable[[], Any]) -> tuple[Any, list[str]]:
-    """What a benchmark returns, and its lines."""
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        answer = run()
-    return answer, [" ".join(line.split()) for line in out.getvalue().splitlines() if line.strip()]
+def ran(file: str, make: Callable[[Any, Path], Any], *names: str) -> Callable[[Path, int], Found]:
+    """A benchmark's campaign, with as many cases as are asked for in all its families, or those of these names."""
+
+    def run(folder: Path, size: int) -> Found:
+        out, campaign = io.StringIO(), make(benchmark(file), folder)
+        with contextlib.redirect_stdout(out):
+            wrong = campaign.run(max(size // len(names or campaign.families), 1), 0, names)
+        return Found(size, wrong, ", ".join(" ".join(line.split()) for line in out.getvalue().splitlines()))
+
+    return run
 
 
-def kills(folder: Path, size: int) -> Found:
-    """kill -9 of whatever is at work with archives."""
-    campaign = benchmark("archive_kills.py").Kills(folder).campaign()
-    each = max(size // len(campaign.families), 1)
-    wrong, lines = printed(lambda: campaign.run(each))
-    text = "what was committed is there, and is gone on with to the same path"
-    return Found(size, wrong, "; ".join(lines) if wrong else f"{each} kills of each of seven works: {text}")
-
-
-def damage(folder: Path, size: int) -> Found:
-    """Damaged files: an error or the right data, soon, in little memory."""
-    wrong, lines = printed(lambda: benchmark("archive_damage.py").campaign(folder).run(size))
-    return Found(size, wrong, ", ".join(lines))
+kills = ran("archive_kills.py", lambda module, folder: module.Kills(folder).campaign())
+damage = ran("archive_damage.py", lambda module, folder: module.campaign(folder))
 
 
 def tally(mode: str) -> Callable[[Path, int], Found]:
     """A mode of the benchmark of units."""
-
-    def run(folder: Path, size: int) -> Found:
-        wrong, lines = printed(lambda: benchmark("claims.py").CAMPAIGN.run(size, 0, [mode]))
-        return Found(size, wrong, ", ".join(lines))
-
-    return run
+    return ran("claims.py", lambda module, folder: module.CAMPAIGN, mode)
 
 
 def memory(folder: Path, size: int) -> Found:
@@ -128,21 +119,21 @@ def bad_input(folder: Path, size: int) -> Iterator[str]:
 def full(folder: Path, size: int) -> Iterator[str]:
     """A quota that is reached while a path is traced: one line, and what was committed can be read."""
     whole_file = folder / "whole.h5"
-    whole = trace(HOMOTOPY, archive=PathLog(whole_file, limits=Limits(rows=5)), **OPTIONS)
+    whole = trace(HOMOTOPY, archive=logged(whole_file), **OPTIONS)
     needed = whole_file.stat().st_size
     for k in range(size):
         file, limit = folder / f"full{k}.h5", 1_000 + k * (needed - 1_000) // size
 
-        def work(file: Path = file, limit: int = limit) -> None:
+        def work(file: Path = file, limit: int = limit) -> str:
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-            trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=5)), **OPTIONS)
+            return outcome(lambda file: trace(HOMOTOPY, archive=logged(file), **OPTIONS), file)[0]
 
-        status = in_child(work)
-        if status == 0:
+        said = child(work).answer
+        if said == "":
             yield "there was room"
-        elif status >> 8 != 7:
-            yield "WRONG: no ArchiveError"
+        elif said is None or "\n" in said:
+            yield "WRONG: no ArchiveError of one line"
         elif not file.exists():
             yield "an ArchiveError, no file"
         else:
@@ -151,30 +142,14 @@ def full(folder: Path, size: int) -> Iterator[str]:
 
 
 @counted
-def truncation(folder: Path, size: int) -> Iterator[str]:
-    """Files cut off at every place: an error, or what was written."""
-    file, whole = folder / "whole.h5", trace(HOMOTOPY, **OPTIONS)
-    trace(HOMOTOPY, archive=file, **OPTIONS)
-    raw = file.read_bytes()
-    for k in range(size):
-        cut = folder / "cut.h5"
-        cut.write_bytes(raw[: len(raw) * k // size])
-        try:
-            yield "right" if _prefix(cut, whole) else "WRONG ROWS"
-        except ArchiveError as error:
-            yield "a clear error" if "\n" not in str(error) else "WRONG: an error of many lines"
-
-
-@counted
 def growing(folder: Path, size: int) -> Iterator[str]:
     """Opened while it is written: each time the first rows of the path, and never fewer than before."""
     whole, looks = trace(HOMOTOPY, **OPTIONS), count(1)
     for number in count():
         file = folder / f"growing{number}.h5"
-        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS):
+        for step in Tracer(HOMOTOPY, observers=(logged(file, 1),), **OPTIONS):
             # By another process, as a reader is; what is behind the step may not be committed yet.
-            status = in_child(lambda: None if _prefix(file, whole, step.index) else sys.exit("wrong"))  # noqa: B023
-            yield "right" if status == 0 else "WRONG"
+            yield "right" if child(lambda: _prefix(file, whole, step.index)).answer else "WRONG"  # noqa: B023
             if next(looks) == size:
                 return
 
@@ -182,22 +157,15 @@ def growing(folder: Path, size: int) -> Iterator[str]:
 @counted
 def resumes(folder: Path, size: int) -> Iterator[str]:
     """Two resumes of one file at once: one goes on, the other is refused, and the file is whole."""
-    whole, killed = trace(HOMOTOPY, **OPTIONS), folder / "killed.h5"
-
-    def dies() -> None:
-        for step in Tracer(HOMOTOPY, observers=(PathLog(killed, limits=Limits(rows=5)),), **OPTIONS):
-            if step.index == 20:
-                os.kill(os.getpid(), signal.SIGKILL)
-
-    in_child(dies)
+    whole, left = trace(HOMOTOPY, **OPTIONS), killed(folder / "killed.h5", HOMOTOPY, 20, 5, **OPTIONS)
     for k in range(size):
         file = folder / f"two{k}.h5"
-        shutil.copy(killed, file)
-        both = [child(lambda file=file: resume(file)) for _ in range(2)]
-        statuses = sorted(os.waitpid(one, 0)[1] >> 8 for one in both)
+        shutil.copy(left, file)
+        with ProcessPoolExecutor(2, mp_context=get_context("fork")) as pool:
+            errors = [future.exception() for future in [pool.submit(resume, file) for _ in range(2)]]
         # Whoever comes when the other is done finds a path that has ended.
         right = "one resumed, one was refused" if _prefix(file, whole, len(whole)) else "WRONG ROWS"
-        yield right if statuses == [0, 7] else f"WRONG: {statuses}"
+        yield right if {type(error) for error in errors} == {type(None), ArchiveError} else f"WRONG: {errors}"
 
 
 @counted

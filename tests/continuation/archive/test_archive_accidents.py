@@ -10,15 +10,15 @@ from continuation.archive import ArchiveError, export, merge, recover, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
-from ...util import in_child, refused
-from .util import killed, logged, read
+from ...util import refused
+from .util import child, killed, logged, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.02))}
 
 
 @pytest.fixture
 def file(tmp_path):
-    return killed(tmp_path / "run.h5", HOMOTOPY, 30, **OPTIONS)
+    return killed(tmp_path / "run.h5", HOMOTOPY, 30, 5, **OPTIONS)
 
 
 def observing(name):
@@ -51,7 +51,7 @@ def test_a_child_does_not_keep_the_lock(tmp_path):
             os._exit(0)
         os.kill(os.getpid(), signal.SIGKILL)
 
-    assert in_child(work) == signal.SIGKILL
+    assert child(work).status == signal.SIGKILL
     resume(file)
     os.close(writes)
     os.close(reads)
@@ -83,7 +83,7 @@ def test_a_kill_at_the_moment_of_naming(tmp_path, file, name, work):
         setattr(os, name, lambda *arguments: (real(*arguments), os.kill(os.getpid(), signal.SIGKILL)))
         work(file, target)
 
-    assert in_child(attempt) == signal.SIGKILL
+    assert child(attempt).status == signal.SIGKILL
     assert target.exists() == (name == "link")
     assert all(len(read(found)) >= 30 for found in (file, target) if found.exists())
 

@@ -30,10 +30,6 @@ def of_a_newer_version(file):
         opened.attrs.update({"schema": "continuation-path-3", "library_version": "3.1.4"})
 
 
-def without_a_state(file):
-    trace_many([Nowhere()], archive=file).close()
-
-
 class Nowhere(Circle):
     def start(self):
         raise RuntimeError("no")
@@ -59,7 +55,10 @@ FILES = {
         of_a_newer_version,
         "has the newer schema continuation-path-3, this library reads up to continuation-path-2; .*3.1.4.*xarray",
     ),
-    "no state": (without_a_state, "path 0 has no state to resume from; trace it again"),
+    "no state": (
+        lambda file: trace_many([Nowhere()], archive=file).close(),
+        "path 0 has no state to resume from; trace it again",
+    ),
 }
 
 

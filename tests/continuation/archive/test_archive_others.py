@@ -1,7 +1,6 @@
 """What others do to a file while it is written, or to one that was left: children, threads, observers, bits."""
 
 import gc
-import os
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from continuation.archive import ArchiveError, ArchiveExistsError, open_archive,
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
 
-from .util import logged, observer, read
+from .util import child, logged, observer, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.05))}
 
@@ -25,16 +24,16 @@ def tracer_to(file):
     return Tracer(HOMOTOPY, observers=(logged(file),), **OPTIONS)
 
 
-def ends(steps, tracer):
+def ends(steps):
     """As a process ends."""
 
 
-def collects(steps, tracer):
+def collects(steps):
     steps.close()
     gc.collect()
 
 
-def goes_on(steps, tracer):
+def goes_on(steps):
     with pytest.raises(ArchiveError, match="it was forked from the writer"):
         list(steps)
 
@@ -48,17 +47,8 @@ def test_a_child_never_writes(tmp_path, path, act):
     for step in steps:
         if step.index == 12:
             before = file.read_bytes()
-            process = os.fork()
-            if not process:
-                done = 1
-                try:
-                    act(steps, tracer)
-                    for log in tracer.observers:
-                        log.close()
-                    done = 0
-                finally:
-                    os._exit(done)
-            assert os.waitpid(process, 0)[1] == 0
+            done = child(lambda: act(steps) or tracer.observers[0].close())
+            assert done.status == 0, done.said
             assert file.read_bytes() == before
     with open_archive(file) as archive:
         assert archive.closed_by_writer

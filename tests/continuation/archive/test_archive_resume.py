@@ -14,6 +14,7 @@ from continuation.archive.provenance import Checkpoint, describe_run, pack, unpa
 from continuation.metric import Relative
 from problems.bifurcation import Circle, ExponentialCosine, FreudensteinRoth
 
+from ...util import path_of
 from .util import assert_same, interrupted, observer, read
 
 PROBLEMS = {"circle": Circle(), "freudenstein-roth": FreudensteinRoth(), "exponential cosine": ExponentialCosine(3)}
@@ -91,8 +92,7 @@ def test_events_and_options_come_from_the_file(tmp_path):
         "direction": 1,
         "target": 3.0,
     }
-    path = trace(FreudensteinRoth(), **options)
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(FreudensteinRoth(), **options, status=Status.STOPPED_AT_EVENT)
     interrupted(tmp_path / "run.h5", FreudensteinRoth(), len(path) - 3, **options)
     assert_same(resume(tmp_path / "run.h5"), path)
 

@@ -15,10 +15,11 @@ import pytest
 from continuation import Budget, trace
 from continuation.archive import ArchiveError, open_archive, resume
 from continuation.archive.codec import _registered
-from continuation.archive.hdf5 import Committed, digest
+from continuation.archive.hdf5 import digest
 from continuation.archive.provenance import HEAD, pack
 from problems.bifurcation import ExponentialCosine
 
+from .test_archive_hostile import claimed
 from .util import OPERATIONS, outcome
 
 FIRED = []
@@ -89,14 +90,6 @@ def half(tmp_path_factory):
     return file
 
 
-def unended(file):
-    """As if the writer had been killed: then opening alone reads the checkpoint."""
-    with h5py.File(file, "r+", libver="latest") as opened:
-        records = opened["checks"]["commits"]
-        numbers = max(np.frombuffer(record.tobytes()[:-4], "<u8").tolist() for record in records[:])
-        records[:] = [attrs.evolve(Committed(*numbers), paths=0, path_blocks=0).pack()] * 4
-
-
 def with_slot(file, raw):
     with h5py.File(file, "r+", libver="latest") as opened:
         slots = opened["resume"]["slots"]
@@ -148,7 +141,9 @@ def test_nothing_is_executed(tmp_path, half, place, tree):
     place(made, tree)
     for ended in (True, False):
         if not ended:
-            unended(made)
+            # As if the writer had been killed: then opening alone reads the checkpoint.
+            with h5py.File(made, "r+") as opened:
+                claimed(opened, paths=0, path_blocks=0)
         # Where opening alone reads the checkpoint, what begins by opening is refused there. What reads no checkpoint
         # meets each tree in the problem, and one of them in each place of a checkpoint.
         whole = place is in_problem or tree is TREES["a function"]

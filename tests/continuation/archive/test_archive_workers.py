@@ -72,10 +72,6 @@ def raises(kind, *arguments):
     raise kind(*arguments)
 
 
-def dies():
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
 def same(found, path):
     return np.array_equal(found.u, path.u) and (found.status, found.counts) == (path.status, path.counts)
 
@@ -125,7 +121,7 @@ ANYWHERE = {
 IN_PROCESSES = {
     **ANYWHERE,
     "ends its process": (Bad(1.0, act=partial(os._exit, 3)), "BrokenProcessPool: "),
-    "kills its process": (Bad(1.0, act=dies), "BrokenProcessPool: "),
+    "kills its process": (Bad(1.0, act=partial(signal.raise_signal, signal.SIGKILL)), "BrokenProcessPool: "),
     "hangs": (Bad(1.0, act=partial(time.sleep, 1000.0)), "TimeoutError: took longer than 6 s"),
     "cannot be sent": (Unsendable(1.0), "TypeError: it holds a socket"),
 }

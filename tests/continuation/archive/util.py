@@ -1,7 +1,5 @@
 """What tests of archives have in common."""
 
-import os
-import signal
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,7 +18,9 @@ from continuation.archive import (
     resume,
 )
 
-from ...util import in_child
+from ...util import benchmark
+
+child, killed = (getattr(benchmark("archive_kills.py"), name) for name in ("child", "left_by_a_kill"))
 
 OPERATIONS = {
     "open": lambda file: repr(open_archive(file)),
@@ -70,18 +70,6 @@ def interrupted(file, homotopy, index, rows=5, **options):
     steps = iter(Tracer(homotopy, observers=(logged(file, rows),), **options))
     next(step for step in steps if step.index == index)
     steps.close()
-
-
-def killed(file, homotopy, index, rows=5, **options):
-    """The file of a process that was killed at a step."""
-
-    def work():
-        for step in Tracer(homotopy, observers=(logged(file, rows),), **options):
-            if step.index == index:
-                os.kill(os.getpid(), signal.SIGKILL)
-
-    assert in_child(work) == signal.SIGKILL
-    return file
 
 
 def assert_same(found, path):

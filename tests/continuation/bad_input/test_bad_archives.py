@@ -1,6 +1,7 @@
 """What cannot be meant of the functions of archives is refused in one line that names the argument or the file."""
 
 import os
+from functools import partial
 
 import numpy as np
 import pytest
@@ -32,47 +33,35 @@ def folder(tmp_path_factory):
 
 NO_NAMES = (None, 5, 1.5, b"good.h5", ["good.h5"])
 NO_FILES = ("gone.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5", "", "a" * 300, "no/where.h5")
+NO_PLACES = ("good.h5", "folder.h5", "no/where.h5", "a" * 300, "pipe.h5")
 READERS = {
     "open_archive": open_archive,
     "recover": recover,
     "resume": resume,
     "export": lambda file: export(file, "new.csv"),
 }
-
-
-@pytest.mark.parametrize("value", NO_NAMES, ids=repr)
-@pytest.mark.parametrize("reader", READERS)
-def test_no_name_of_a_file(folder, reader, value):
-    refused("file", lambda: READERS[reader](value))
-
-
-@pytest.mark.parametrize("name", NO_FILES)
-@pytest.mark.parametrize("reader", [*READERS, "merge"])
-def test_no_archive(folder, reader, name):
-    call = READERS.get(reader, lambda file: merge([file], "new.h5"))
-    refused(name or ".", lambda: call(name))
-
-
-@pytest.mark.parametrize("value", NO_NAMES, ids=repr)
-def test_no_name_of_a_new_file(folder, value):
-    refused("file", lambda: PathLog(value))
-    refused("target", lambda: merge(["good.h5"], value))
-    refused("target", lambda: export("good.h5", value))
-    if value is not None:
-        refused("archive", lambda: resume("half.h5", budget=Budget(), archive=value))
-
-
-@pytest.mark.parametrize("name", ["good.h5", "folder.h5", "no/where.h5", "a" * 300, "pipe.h5"])
-def test_no_place_for_a_new_file(folder, name):
-    for call in (
-        lambda: trace(CUSP, archive=name),
-        lambda: merge(["good.h5"], name),
-        lambda: resume("half.h5", budget=Budget(), archive=name),
-    ):
-        refused(name, call)
-
-
-OTHERS = {
+WRITERS = {
+    "PathLog": ("file", PathLog),
+    "trace": ("archive", lambda file: trace(CUSP, archive=file)),
+    "merge": ("target", lambda file: merge(["good.h5"], file)),
+    "export": ("target", lambda file: export("good.h5", file)),
+    "resume": ("archive", lambda file: resume("half.h5", budget=Budget(), archive=file)),
+}
+REFUSED = {
+    **{f"{name} {value!r}": ("file", partial(call, value)) for name, call in READERS.items() for value in NO_NAMES},
+    **{
+        f"{name} {file!r}": (file or ".", partial(call, file))
+        for name, call in {**READERS, "merge": lambda file: merge([file], "new.h5")}.items() for file in NO_FILES
+    },
+    # None is no archive.
+    **{
+        f"{name} to {value!r}": (argument, partial(call, value))
+        for name, (argument, call) in WRITERS.items() for value in NO_NAMES[argument == "archive" :]
+    },
+    **{
+        f"{name} to {file!r}": (file, partial(WRITERS[name][1], file))
+        for name in ("trace", "merge", "resume") for file in NO_PLACES
+    },
     "files, none": ("files", lambda: merge([], "m.h5")),
     "files, one": ("files", lambda: merge("good.h5", "m.h5")),
     "files, a number": ("files", lambda: merge(5, "m.h5")),
@@ -108,28 +97,17 @@ OTHERS = {
     "a word of no encoding": (
         "name", lambda: trace(CUSP, events=[Monitor(lambda u, v: u[0], name=5)], archive="w.h5"),
     ),
+    "path 5": ("index", lambda: open_archive("good.h5").path(5)),
+    "path 'a'": ("index", lambda: open_archive("good.h5").path("a")),
+    "path 0.5": ("index", lambda: open_archive("good.h5")[0.5]),
+    "a path that keeps some": ("keep", lambda: open_archive("good.h5").path(0, keep="some")),
+    "a column": ("column", lambda: open_archive("good.h5").points["color"]),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", OTHERS)
-def test_another_argument(folder, case):
-    refused(*OTHERS[case])
-
-
-VIEWS = {
-    "index 5": ("index", lambda archive: archive.path(5)),
-    "index 'a'": ("index", lambda archive: archive.path("a")),
-    "index 0.5": ("index", lambda archive: archive[0.5]),
-    "keep": ("keep", lambda archive: archive.path(0, keep="some")),
-    "column": ("column", lambda archive: archive.points["color"]),
-}
-
-
-@pytest.mark.parametrize("case", VIEWS)
-def test_a_view(folder, case):
-    argument, call = VIEWS[case]
-    with open_archive("good.h5") as archive:
-        refused(argument, lambda: call(archive))
+@pytest.mark.parametrize(("argument", "call"), REFUSED.values(), ids=REFUSED)
+def test_one_line(folder, argument, call):
+    refused(argument, call)
 
 
 def test_what_was_refused_has_left_nothing(folder):

@@ -91,23 +91,21 @@ ANSWERS = [
 ]
 
 
-@pytest.mark.parametrize(("method", "value"), [(m, v) for m, _, v in ANSWERS], ids=[f"{m}: {n}" for m, n, _ in ANSWERS])
-def test_what_a_homotopy_has_or_answers(method, value):
-    refused(method, lambda: trace(with_methods(**{method: value})))
+NAMED = "jacobian", "bordered", "differential", "start", "residual"
+REFUSED = {
+    **{f"{name}: {what}": (name, with_methods(**{name: value}), {}) for name, what, value in ANSWERS},
+    **{
+        f"jacobian, checked: {what}": ("jacobian", with_methods(jacobian=returning(value)), {"check_jacobian": True})
+        for what, value in JACOBIANS.items()
+    },
+    **{f"no method {name}": ("homotopy", with_methods(**{name: 5}), {}) for name in NAMED},
+    "a class": ("homotopy", Line, {}),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", JACOBIANS)
-def test_a_jacobian_that_is_to_be_checked(name):
-    homotopy = with_methods(jacobian=returning(JACOBIANS[name]))
-    refused("jacobian", lambda: trace(homotopy, check_jacobian=True))
-
-
-METHODS = "jacobian", "bordered", "differential", "start", "residual"
-
-
-@pytest.mark.parametrize("homotopy", [Line, *(with_methods(**{name: 5}) for name in METHODS)], ids=["class", *METHODS])
-def test_what_is_no_homotopy(homotopy):
-    refused("homotopy", lambda: trace(homotopy))
+@pytest.mark.parametrize(("argument", "homotopy", "options"), REFUSED.values(), ids=REFUSED)
+def test_what_is_no_homotopy_or_answers_what_it_should_not(argument, homotopy, options):
+    refused(argument, lambda: trace(homotopy, **options))
 
 
 class Renaming(Line):

@@ -12,6 +12,7 @@ from continuation.cli import main
 from problems.bifurcation import FreudensteinRoth
 
 from ..archive.util import read
+from .util import proved
 
 
 def test_a_certified_trace_is_the_same_trace_where_that_is_proved(tmp_path, capsys):
@@ -35,8 +36,7 @@ def test_a_certified_trace_is_the_same_trace_where_that_is_proved(tmp_path, caps
 
 def test_a_changed_certificate_proves_nothing(tmp_path):
     homotopy = FreudensteinRoth()
-    path = trace(homotopy)
-    proof = certify(path, homotopy)
+    path, proof = proved(homotopy)
     assert checked_again(proof.cells, path, homotopy).complete
     cells, count = proof.cells, np.arange(len(proof.cells))
     for changed in (

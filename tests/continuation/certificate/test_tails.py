@@ -10,6 +10,8 @@ from continuation import CONSERVATIVE, certify, trace
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
 
+from .util import proved
+
 
 def degenerate(n, seed):
     """In a third of the indices x and w are both zero at the solution; data of few digits, so that it is exact."""
@@ -24,9 +26,7 @@ def degenerate(n, seed):
 @pytest.mark.parametrize(("n", "seed"), [(3, 0), (3, 1), (6, 0), (6, 1), (9, 0), (9, 1), (15, 0), (15, 1)])
 def test_a_singular_end_takes_few_boxes(n, seed):
     homotopy = KKTHomotopy(degenerate(n, seed))
-    path = trace(homotopy)
-    proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
+    path, proof = proved(homotopy)
     tail = proof.cells.take(proof.cells.place[:, 0] >= path.arclength[-2])
     assert len(tail) <= 10  # of 16 seeds, n = 10 and 15, 4 to 10 under either of two rules for steps
     assert 0.0 < tail.end[-1, -1] <= 1e-6
@@ -40,8 +40,7 @@ def test_nodes_that_tubes_tell_too_wide_are_tested_on_their_own():
     kind = rng.integers(0, 3, size=8)
     A = B @ B.T / 8
     homotopy = KKTHomotopy(LCP(A, np.where(kind == 1, w, 0.0) - A @ np.where(kind == 0, x, 0.0)))
-    proof = certify(trace(homotopy), homotopy)
-    assert proof.complete, str(proof)
+    proved(homotopy)
 
 
 @pytest.mark.parametrize(("n", "seed"), [(4, 46), (6, 45), (8, 35)])

@@ -12,6 +12,8 @@ from continuation.certificate.certifying import recheck
 from continuation.status import Status
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
+from .util import proved
+
 
 def test_a_turning_point_that_is_listed_elsewhere_on_the_curve_is_a_gap():
     # A range of two cells holds it: at any point of the path in there it was taken for the one that is listed.
@@ -31,11 +33,9 @@ def test_two_turning_points_next_to_each_other_are_told_apart(e):
     homotopy = from_functions(
         lambda y, lam: np.stack([y[0] ** 3 - 3.0 * e * e * y[0] - lam]), start=([-1.0], 3.0 * e * e - 1.0), target=1.0
     )
-    path = continuation.trace(homotopy)
+    path, proof = proved(homotopy)
     first, second = path.turning_points
     assert first.step == second.step
-    proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
     assert len(proof.turning_points) == 2
     assert recheck(proof.cells, path, homotopy).turning_points == proof.turning_points
 

@@ -8,8 +8,6 @@ from continuation.counts import Counts
 from continuation.predictors import Hermite
 from problems.charts.subjects import cosine
 
-from .util import boom
-
 
 def jump(problem, rung):
     """Arrives, with two turning points unseen: what a tracer says that has left out a loop."""
@@ -28,7 +26,7 @@ def study():
             chart.traced("Hermite", predictor=Hermite()),
             chart.Method("jumps", jump),
             chart.traced("broke", budget=continuation.Budget(steps=3)),
-            chart.Method("raises", boom),
+            chart.Method("raises", lambda problem, rung: 1 // 0),
             chart.Method(
                 "lies",
                 lambda problem, rung: chart.Answer(Counts(factorizations=1), end=problem.truth.end + 0.1),

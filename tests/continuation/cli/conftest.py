@@ -4,20 +4,20 @@ import sys
 
 import pytest
 
-from continuation.cli import BAD_INPUT, main
+from continuation.cli import BAD_INPUT, SUCCESS, main
 
 
 @pytest.fixture
 def run(capsys):
-    """main(argv) -> (status, stdout, stderr); bad input is always exactly one line on stderr."""
+    """main(argv) -> (stdout, stderr), with the status expected; bad input is always exactly one line on stderr."""
 
-    def call(*argv):
-        status = main([str(argument) for argument in argv])
-        captured = capsys.readouterr()
+    def call(*argv, status=SUCCESS):
+        found, captured = main([str(argument) for argument in argv]), capsys.readouterr()
+        assert found == status, captured.err
         if status == BAD_INPUT:
             assert captured.out == ""
             assert captured.err.count("\n") == 1
-        return status, captured.out, captured.err
+        return captured
 
     return call
 

@@ -190,8 +190,7 @@ ARCHIVES = [
 
 @pytest.mark.parametrize(("line", "argument"), SOLVE + OTHERS + TRACE + ARCHIVES)
 def test_one_line_that_names_the_argument(run, place, line, argument):
-    status, _, err = run(*line.split())
-    assert status == BAD_INPUT, err
+    err = run(*line.split(), status=BAD_INPUT).err
     start, _, more = argument.partition(" ... ")
     said = err.partition(": ")[2]
     assert said.startswith(start), err

@@ -1,5 +1,7 @@
 """The command `chart`: what it writes, lists and refuses."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from continuation import chart
@@ -8,8 +10,6 @@ from continuation.cli import charts
 from continuation.cli.parser import Parser
 from problems.charts.subjects import cosine
 
-from ..chart.util import boom
-
 
 @pytest.fixture
 def installed(monkeypatch):
@@ -17,21 +17,14 @@ def installed(monkeypatch):
     small = chart.Study(
         name="closed",
         problems=[cosine(2)],
-        methods=[chart.traced("Hermite"), chart.Method("raises", boom)],
+        methods=[chart.traced("Hermite"), chart.Method("raises", lambda problem, rung: 1 // 0)],
         ladder=(1e-6,),
         figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
         repeats=0,
     )
 
-    class Point:
-        name, value, dist = "closed", "package:studies", None
-
-        def load(self):
-            return lambda size, compare: [small]
-
-    points = [Point()]
-    monkeypatch.setattr(plugins, "entry_points", lambda group: points)
-    return points
+    point = SimpleNamespace(name="closed", value="package:studies", dist=None, load=lambda: lambda *_: [small])
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [point])
 
 
 def command(*arguments):

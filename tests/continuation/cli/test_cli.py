@@ -9,7 +9,7 @@ import pytest
 import continuation
 from continuation.archive import open_archive
 from continuation.arguments import plugins
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
+from continuation.cli import BAD_INPUT, FAILURE
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
 
@@ -53,8 +53,8 @@ def trace_fold(file, **options):
 
 
 def test_solve_prints_the_solution(run, second):
-    status, out, err = run("solve", second)
-    assert (status, err) == (SUCCESS, "")
+    out, err = run("solve", second)
+    assert err == ""
     assert dict(line.split(maxsplit=1) for line in out.splitlines() if line[:1].isalpha())["outcome"] == "SOLVED"
     rows = [line.split() for line in out.splitlines() if line.startswith("  ") and line.strip()[:1] in "01"]
     assert [row[0] for row in rows] == ["0", "1"]
@@ -62,19 +62,17 @@ def test_solve_prints_the_solution(run, second):
 
 
 def test_solve_without_a_solution_exits_with_one(run, tmp_path):
-    status, out, _ = run("solve", save(tmp_path, COUNTEREXAMPLES[0].problem), "--json")
-    assert status == FAILURE
-    assert json.loads(out)["outcome"] in ("STATIONARY", "UNSOLVABLE", "NOT_FOUND")
+    answer = json.loads(run("solve", save(tmp_path, COUNTEREXAMPLES[0].problem), "--json", status=FAILURE).out)
+    assert answer["outcome"] in ("STATIONARY", "UNSOLVABLE", "NOT_FOUND")
 
 
 def test_solve_with_everything(run, second, tmp_path):
     np.save(tmp_path / "x0.npy", [2.0, 1.0])
     archive, picture = tmp_path / "run.h5", tmp_path / "path.png"
-    status, _, err = run(
+    err = run(
         "solve", second, "--homotopy", "kkt", "--x0", tmp_path / "x0.npy", "--archive", archive, "--plot", picture,
         "--progress",
-    )  # fmt: skip
-    assert status == SUCCESS
+    ).err  # fmt: skip
     assert "lam =" in err
     assert picture.read_bytes().startswith(b"\x89PNG")
     with open_archive(archive) as stored:
@@ -83,7 +81,7 @@ def test_solve_with_everything(run, second, tmp_path):
 
 def test_solve_traces_a_path_for_an_archive_and_for_a_picture(run, second, tmp_path):
     def paths(*options):
-        return json.loads(run("solve", second, "--json", *options)[1])["paths"]
+        return json.loads(run("solve", second, "--json", *options).out)["paths"]
 
     assert paths() == 0
     assert paths("--archive", tmp_path / "path.h5") == paths("--plot", tmp_path / "path.png") == 1
@@ -95,8 +93,7 @@ def test_solve_traces_a_path_for_an_archive_and_for_a_picture(run, second, tmp_p
 def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
     np.savetxt(tmp_path / "a.txt", [[1.0, 0.0], [0.0, 1.0]])
     for file, answer in ((second, " no "), (tmp_path / "a.txt", " yes ")):
-        status, out, _ = run("classify", file)
-        assert status == SUCCESS
+        out = run("classify", file).out
         lines = {line[:40].split("  ")[0].strip(): line for line in out.splitlines()}
         assert " yes " in lines["PSD"]
         assert answer in lines["P"]
@@ -109,8 +106,7 @@ def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
     "options", [(), ("--against", "arclength"), ("--diagram",), ("--diagram", "--components", "0")]
 )
 def test_plot_writes_a_picture(run, archive, tmp_path, options):
-    status, out, _ = run("plot", archive, "--output", tmp_path / "p.png", *options)
-    assert status == SUCCESS
+    out = run("plot", archive, "--output", tmp_path / "p.png", *options).out
     assert out.strip() == str(tmp_path / "p.png")
     assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
 
@@ -118,24 +114,17 @@ def test_plot_writes_a_picture(run, archive, tmp_path, options):
 def test_resume_goes_on(run, tmp_path):
     file, trust = tmp_path / "run.h5", ("--trust", f"{__name__}:Fold")
     trace_fold(file, budget=continuation.Budget(steps=3))
-    status, _, err = run("resume", file, "--steps", 100)
-    assert status == BAD_INPUT
-    assert "Fold is not registered: pass it in trust=[...]" in err
-    status, out, _ = run("resume", file, "--steps", 4, *trust)
-    assert status == FAILURE
-    assert out.startswith("BUDGET_EXHAUSTED")
-    status, out, _ = run("resume", file, "--steps", 100, *trust)
-    assert status == SUCCESS
-    assert out.startswith("STOPPED_AT_EVENT")
+    assert "Fold is not registered: pass it in trust=[...]" in run("resume", file, "--steps", 9, status=BAD_INPUT).err
+    assert run("resume", file, "--steps", 4, *trust, status=FAILURE).out.startswith("BUDGET_EXHAUSTED")
+    assert run("resume", file, "--steps", 100, *trust).out.startswith("STOPPED_AT_EVENT")
     with open_archive(file) as stored:
         assert stored.path(0).endpoint.y[0] == 0.9
 
 
 def test_export_and_merge(run, archive, tmp_path):
-    status, out, _ = run("export", archive, tmp_path / "run.csv")
-    assert status == SUCCESS
+    out = run("export", archive, tmp_path / "run.csv").out
     assert out.splitlines() == [str(tmp_path / "run.csv"), str(tmp_path / "run.paths.csv")]
-    assert run("merge", tmp_path / "one.h5", archive)[0] == SUCCESS
+    run("merge", tmp_path / "one.h5", archive)
 
 
 # -- the program itself ---------------------------------------------------------------------------------------
@@ -147,7 +136,6 @@ def points(*pairs):
 
 def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatch):
     monkeypatch.setattr(plugins, "entry_points", points(("broken", "no.such.module:register")))
-    assert run("inspect", archive)[0] == SUCCESS
-    status, _, err = run("broken", "--anything", "file")
-    assert status == BAD_INPUT
+    run("inspect", archive)
+    err = run("broken", "--anything", "file", status=BAD_INPUT).err
     assert "broken: no.such.module:register (no.such.module:register) cannot be loaded: ModuleNotFoundError" in err

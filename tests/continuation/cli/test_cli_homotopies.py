@@ -3,17 +3,16 @@
 import pytest
 
 from continuation.archive import open_archive
-from continuation.cli import FAILURE, SUCCESS
+from continuation.cli import FAILURE
 from tests.truth import bratu
 
 
 def test_trace_by_name_with_archive_and_plot(run, tmp_path):
     archive, picture = tmp_path / "run.h5", tmp_path / "run.png"
-    status, out, _ = run(
+    out = run(
         "trace", "bratu-1d", "n=100", "--turning-points", 1, "--archive", archive, "--plot", picture, "--progress",
         "--preset", "series",
-    )  # fmt: skip
-    assert status == SUCCESS
+    ).out  # fmt: skip
     assert "STOPPED_AT_EVENT" in out
     assert picture.read_bytes().startswith(b"\x89PNG")
     with open_archive(archive) as stored:
@@ -22,16 +21,14 @@ def test_trace_by_name_with_archive_and_plot(run, tmp_path):
 
 
 def test_a_homotopy_without_target_is_asked_for_none(run):
-    status, out, _ = run("trace", "pitchfork", "--target", "none", "--budget-steps", 5, "--direction", "-1")
-    assert status == FAILURE
+    out = run("trace", "pitchfork", "--target", "none", "--budget-steps", 5, "--direction", "-1", status=FAILURE).out
     end = next(line for line in out.splitlines() if line.startswith("end"))
     assert float(end.split("=")[1]) < -1.0
 
 
 def test_check_says_what_is_wrong_with_a_homotopy_of_the_working_directory(run, own):
-    assert run("check", f"{own}:Own", "--steps", 4)[0] == SUCCESS
-    status, out, _ = run("check", f"{own}:Wrong", "--steps", 4)
-    assert status == FAILURE
+    run("check", f"{own}:Own", "--steps", 4)
+    out = run("check", f"{own}:Wrong", "--steps", 4, status=FAILURE).out
     assert "failed   jacobian\n" in out
     assert "H_y[0, 0] is 2, expected 1 (by jets), at the start" in out
     assert out.strip().endswith("checks passed.")

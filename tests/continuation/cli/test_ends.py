@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from continuation import Budget, trace
+from continuation.cli import BAD_INPUT
 from problems.bifurcation import ExponentialCosine
 
 from .util import forked
@@ -75,8 +76,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("command", REFUSED)
 def test_one_line(run, command):
-    status, _, said = run(*REFUSED[command])
-    assert status == 2
+    said = run(*REFUSED[command], status=BAD_INPUT).err
     assert "Traceback" not in said
     if "leaves" in " ".join(REFUSED[command]):
         assert "SystemExit: 3" in said
@@ -93,7 +93,7 @@ def test_a_disk_that_fails(folder, command, reads):
             raise OSError(errno.EIO, os.strerror(errno.EIO))
         return real(*arguments)
 
-    status, said = forked(folder, WITH_ARCHIVES[command], lambda: setattr(os, "pread", pread))
+    status, said = forked(WITH_ARCHIVES[command], lambda: setattr(os, "pread", pread))
     assert (status, said.count("\n")) == (2, 1), said
     assert "Input/output error" in said
     # What the disk does not read is not what the file lacks: nothing is taken for damaged.

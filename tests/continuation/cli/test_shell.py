@@ -7,24 +7,21 @@ import numpy as np
 import pytest
 
 from continuation.archive import open_archive
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
+from continuation.cli import BAD_INPUT, FAILURE
 from continuation.cli.parser import paint
 
 from ...util import Terminal
 
 
 def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
-    assert run("trace", f"{own}:Own", "slope=3", "n=2", "--archive", "run.h5", "--budget-steps", 2)[0] == FAILURE
-    _, page, _ = run("inspect", "run.h5")
+    run("trace", f"{own}:Own", "slope=3", "n=2", "--archive", "run.h5", "--budget-steps", 2, status=FAILURE)
+    page = run("inspect", "run.h5").out
     command = page.splitlines()[-1].partition("`")[2].strip("`.")
     assert command == f"continuation resume run.h5 --homotopy {own}:Own --steps N"
-    status, out, _ = run(*command.replace("N", "50").split()[1:])
-    assert status == SUCCESS
-    assert out.startswith("REACHED_TARGET")
+    assert run(*command.replace("N", "50").split()[1:]).out.startswith("REACHED_TARGET")
     with open_archive("run.h5") as archive:
         assert archive.paths["homotopy_slope"].tolist() == [3.0]
-    _, page, _ = run("inspect", "run.h5")
-    assert "can be resumed" not in page
+    assert "can be resumed" not in run("inspect", "run.h5").out
 
 
 @pytest.mark.parametrize(
@@ -37,8 +34,7 @@ def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
     ],
 )
 def test_what_is_wrong_with_a_plug_in_is_one_line(run, own, name, line):
-    status, _, err = run("trace", f"{own}:{name}")
-    assert status == (FAILURE if "line" in line else BAD_INPUT)
+    err = run("trace", f"{own}:{name}", status=FAILURE if "line" in line else BAD_INPUT).err
     assert line in err
     assert err.count("\n") == 1
     assert err.startswith(f"continuation: {own}:{name}: ")
@@ -49,23 +45,19 @@ def test_a_picture_that_cannot_be_written_is_told_before_the_work(run, tmp_path,
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("continuation.cli.figures.TemporaryFile", refused)
-    status, out, err = run("trace", "circle", "--plot", tmp_path / "p.png")
-    assert (status, out) == (BAD_INPUT, "")
+    err = run("trace", "circle", "--plot", tmp_path / "p.png", status=BAD_INPUT).err
     assert "--plot: expected a place to write to" in err
 
 
 @pytest.mark.parametrize("form", ["json", "npz"])
 def test_a_problem_comes_on_stdin(run, monkeypatch, form):
-    data = io.BytesIO()
-    if form == "json":
-        data.write(json.dumps({"A": [[1, -1], [-1, 1]], "q": [-0.5, 2]}).encode())
-    else:
+    data = io.BytesIO(json.dumps({"A": [[1, -1], [-1, 1]], "q": [-0.5, 2]}).encode())
+    if form == "npz":
         np.savez(data, A=[[1.0, -1.0], [-1.0, 1.0]], q=[-0.5, 2.0])
-    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(data.getvalue())))
+        data.seek(0)
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(data))
     options = ("--tolerance", "1e-9", "--seed", 3, "--restarts", 2, "--seconds", 60, "--json")
-    status, out, _ = run("solve", "-", *options)
-    assert status == SUCCESS
-    assert json.loads(out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
+    assert json.loads(run("solve", "-", *options).out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize(

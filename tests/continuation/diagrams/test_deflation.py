@@ -84,24 +84,19 @@ def test_where_every_root_is_known_no_guess_finds_another(function, known):
             solve_at(deflated, 0.5, guess)
 
 
-class Wrong:
-    """y = 1, by factors that solve nothing."""
-
-    def start(self):
-        return np.zeros(1), 0.0
-
-    def residual(self, y, lam):
-        return y - 1.0
-
-    def bordered(self, y, lam, border):
-        return SimpleNamespace(sign=1, solve=lambda r, rho: np.array([0.0, rho]))
+WRONG = SimpleNamespace(
+    start=lambda: (np.zeros(1), 0.0),
+    residual=lambda y, lam: y - 1.0,
+    bordered=lambda y, lam, border: SimpleNamespace(sign=1, solve=lambda r, rho: np.array([0.0, rho])),
+)
+"""y = 1, by factors that solve nothing."""
 
 
 @pytest.mark.parametrize(
     ("homotopy", "guess", "words"),
     [
         (from_functions(lambda y, lam: y * y + 1.0 + lam, start=([0.0], -2.0)), 0.7, "method at lam = 0 says"),
-        (Wrong(), 3.0, "no round-off"),
+        (WRONG, 3.0, "no round-off"),
     ],
     ids=["no solution", "factors that solve nothing"],
 )

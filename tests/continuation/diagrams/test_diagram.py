@@ -11,7 +11,7 @@ from continuation.archive import open_archive
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
 
-from .util import CROSSED, ChafeeInfante, Forks
+from .util import CROSSED, Forks, chafee_infante
 
 IMPERFECT, WIDE = Pitchfork(imperfection=0.01), {"lam": (-2.0, 2.0)}
 THREE, FIVE = Forks((1.0, 2.0, 3.0)), {"lam": (0.0, 5.0)}
@@ -60,12 +60,12 @@ def test_the_solutions_at_a_value_are_those_of_all_branches():
 def test_the_diagram_of_a_cubic_equation_has_its_five_branch_points_to_second_order():
     errors = []
     for n in (19, 39):
-        homotopy = ChafeeInfante(n)
+        homotopy, crossings = chafee_infante(n)
         found = diagram(homotopy, box={"lam": (0.0, 30.0)}, stability=Stability())
         assert found.complete
         assert labels(found) == [(f"BP{k}", (0, k)) for k in range(1, 6)]
         places = np.array([point.event.lam for point in found.points])
-        np.testing.assert_allclose(places, homotopy.crossings(), rtol=0, atol=1e-10)
+        np.testing.assert_allclose(places, crossings, rtol=0, atol=1e-10)
         errors.append(np.abs(places - np.arange(1, 6) ** 2))
         assert [branch.path.endpoint.observed["unstable"] for branch in found.branches] == [5, 0, 1, 2, 3, 4]
     np.testing.assert_allclose(errors[0] / errors[1], 4.0, rtol=0.05)

@@ -21,24 +21,19 @@ BOX = {"lam": (0.0, 5.0)}
 
 
 @define(eq=False)
-class Stopping:
+class Stopping(Forks):
     """Three pitchforks, and something that happens at the n-th residual."""
 
+    places: tuple[float, ...] = (1.0, 2.0, 3.0)
     at: float = np.inf
     deed: object = None
     calls: int = 0
-
-    def start(self):
-        return np.zeros(3), 0.5
 
     def residual(self, y, lam):
         self.calls += 1
         if self.calls == self.at:
             self.deed()
-        return Forks((1.0, 2.0, 3.0)).residual(y, lam)
-
-    def jacobian(self, y, lam):
-        return Forks((1.0, 2.0, 3.0)).jacobian(y, lam)
+        return super().residual(y, lam)
 
 
 def outline(found):
@@ -58,7 +53,7 @@ def whole():
 def test_ctrl_c_gives_what_was_found_and_the_diagram_goes_on(tmp_path, whole, share, keep):
     (found, calls), file, again = whole, tmp_path / "d.h5", Stopping()
     with pytest.raises(Interrupted) as stopped:
-        diagram(Stopping(int(share * calls), interrupt), box=BOX, archive=file, keep=keep)
+        diagram(Stopping(at=int(share * calls), deed=interrupt), box=BOX, archive=file, keep=keep)
     part = stopped.value.diagram
     assert not part.complete
     assert "interrupted" in part.message
@@ -78,7 +73,7 @@ from tests.continuation.diagrams.test_resumed import BOX, Stopping
 import os, signal, sys
 from continuation import diagram
 kill = lambda: os.kill(os.getpid(), signal.SIGKILL)
-diagram(Stopping(int(sys.argv[2]), kill), box=BOX, archive=sys.argv[1])
+diagram(Stopping(at=int(sys.argv[2]), deed=kill), box=BOX, archive=sys.argv[1])
 """
 
 
@@ -100,7 +95,7 @@ def test_threads_are_interrupted_and_go_on_too(tmp_path, whole):
     options = {"box": BOX, "archive": tmp_path / "d.h5"}
     with ThreadPoolExecutor(2) as workers:
         with pytest.raises(Interrupted):
-            diagram(Stopping(int(0.5 * whole[1]), interrupt), executor=workers, **options)
+            diagram(Stopping(at=int(0.5 * whole[1]), deed=interrupt), executor=workers, **options)
         again = diagram(Stopping(), executor=workers, resume=True, **options)
     assert outline(again) == outline(whole[0])
 
@@ -126,6 +121,7 @@ def test_a_diagram_that_was_finished_is_the_same_again(tmp_path, homotopy, optio
 @pytest.mark.parametrize(
     ("homotopy", "resume", "error", "words"),
     [
+        (Forks((1.0, 2.0)), None, ValueError, "resume: expected True with an archive"),
         (Forks((1.0, 2.0)), False, ArchiveError, r"d\.h5"),
         (Forks((1.0,)), True, ValueError, "homotopy: expected 2 unknowns, as in the archive, found 1"),
         (Forks((1.0, 3.0)), True, ValueError, "homotopy: expected the archive's residual"),
@@ -134,11 +130,6 @@ def test_a_diagram_that_was_finished_is_the_same_again(tmp_path, homotopy, optio
 def test_another_diagram_is_not_gone_on_with(tmp_path, homotopy, resume, error, words):
     diagram(Forks((1.0, 2.0)), box=BOX, archive=tmp_path / "d.h5")
     with pytest.raises(error, match=words):
-        diagram(homotopy, box=BOX, archive=tmp_path / "d.h5", resume=resume)
+        diagram(homotopy, box=BOX, archive=None if resume is None else tmp_path / "d.h5", resume=resume is not False)
     with open_archive(tmp_path / "d.h5") as archive:
         assert len(archive) == 5
-
-
-def test_resuming_needs_an_archive():
-    with pytest.raises(ValueError, match="resume: expected True with an archive"):
-        diagram(Forks((1.0, 2.0)), box=BOX, resume=True)

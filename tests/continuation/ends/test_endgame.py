@@ -1,18 +1,16 @@
 """Ends at which the path is not a function of the parameter that Newton's method could find."""
 
 from types import SimpleNamespace
-from typing import ClassVar
 
 import numpy as np
 import pytest
-from attrs import frozen
 
 import continuation
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import KKTHomotopy, WangHomotopy
 
-from ...util import by_preset
+from ...util import by_preset, path_of
 from ..util import scalar
 from .test_ends import power
 
@@ -62,8 +60,7 @@ def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_th
         lambda y, lam: (np.array([[lam**2]]), np.array([2.0 * lam * (y[0] - np.exp(lam)) - lam**2 * np.exp(lam)])),
         start=([np.e], 1.0),
     )
-    path = continuation.trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset)
     assert path.end_error < 1e-8
     assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
 
@@ -74,9 +71,8 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     homotopy = scalar(
         lambda y, lam: y - lam if lam > 0.0 else y - 1.0, lambda y, lam: (1.0, -1.0), start=(1.0, 1.0), target=0.0
     )
-    path = continuation.trace(homotopy, preset=preset)
+    path = path_of(homotopy, preset=preset, status=Status.STEP_TOO_SMALL)
     # It is followed to the jump and no farther, and nothing is claimed of an end.
-    assert path.status is Status.STEP_TOO_SMALL
     np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-9)
     assert (path.end_error, path.winding_number) == (None, None)
 
@@ -84,36 +80,23 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
 # -- ends behind a place where two branches nearly meet ------------------------------------------------------------
 
 
-@frozen
-class NearlyMeeting:
+def nearly_meeting(c, d):
     """(y - c)^2 = (lam - c)^2 + d^2 from the upper branch at lam = 1: it turns off at lam = c, d from the other one."""
-
-    c: float
-    d: float
-    target: ClassVar[float] = 0.0
-
-    def upper(self, lam):
-        return self.c + np.hypot(lam - self.c, self.d)
-
-    def start(self):
-        return np.array([self.upper(1.0)]), 1.0
-
-    def residual(self, y, lam):
-        return (y - self.c) ** 2 - (lam - self.c) ** 2 - self.d**2
-
-    def max_step(self, u, v):
-        return u[-1] / -v[-1] if v[-1] < 0.0 else np.inf
+    return SimpleNamespace(
+        target=0.0,
+        start=lambda: (np.array([c + np.hypot(1.0 - c, d)]), 1.0),
+        residual=lambda y, lam: (y - c) ** 2 - (lam - c) ** 2 - d**2,
+        max_step=lambda u, v: u[-1] / -v[-1] if v[-1] < 0.0 else np.inf,
+    )
 
 
 @every_preset
 @pytest.mark.parametrize(("c", "ratio"), [(3e-3, 0.1), (1e-4, 0.3), (1e-5, 0.1), (1e-6, 0.3), (1e-6, 0.1)])
 def test_a_path_that_turns_off_next_to_the_end_is_followed(c, ratio, preset):
     """The other branch is ten tolerances away, or more: nearer ones count as a branch point, which is passed."""
-    homotopy = NearlyMeeting(c, c * ratio)
-    path = continuation.trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(nearly_meeting(c, c * ratio), preset=preset)
     # Straight on it would be 0, about.
-    np.testing.assert_allclose(path.endpoint.y, homotopy.upper(0.0), rtol=1e-6)
+    np.testing.assert_allclose(path.endpoint.y, c + np.hypot(c, c * ratio), rtol=1e-6)
 
 
 class Unoriented(KKTHomotopy):
@@ -148,6 +131,5 @@ def test_the_path_of_a_random_problem_is_followed_to_its_own_end(make, n, seed, 
     Where no orientation is known, the path between samples is looked at.
     """
     rng = np.random.default_rng([seed, n])
-    path = continuation.trace(make(LCP(rng.normal(size=(n, n)), rng.normal(size=n))), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(make(LCP(rng.normal(size=(n, n)), rng.normal(size=n))), preset=preset)
     np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)

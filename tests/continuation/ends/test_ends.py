@@ -8,7 +8,7 @@ import pytest
 from continuation import Budget, Kind, Status, from_functions, trace
 from problems.bifurcation import Circle
 
-from ...util import every_preset
+from ...util import every_preset, path_of
 from ..util import scalar
 
 EPS = np.finfo(float).eps
@@ -17,11 +17,6 @@ EPS = np.finfo(float).eps
 def power(p, start=(1.0, 1.0), target=0.0):
     """y^p = lam."""
     return scalar(lambda y, lam: y**p - lam, lambda y, lam: (p * y ** (p - 1), -1.0), start=start, target=target)
-
-
-def grown(n):
-    """y_k = k lam^2, far away."""
-    return from_functions(lambda y, lam: y - lam**2 * np.arange(1.0, n + 1), start=(np.zeros(n), 0.0), target=1e5)
 
 
 @every_preset
@@ -34,7 +29,11 @@ def grown(n):
         # Of multiplicity p: an error of round-off in lam is one of its p-th root in y.
         *((power(p), 0.0, 10.0 * EPS ** (1.0 / p)) for p in (3, 5)),
         (power(3, target=-1.0), -1.0, 1e-9),
-        *((grown(n), 1e10, 1.0) for n in (1, 3)),
+        # y_k = k lam^2, far away.
+        *(
+            (from_functions(lambda y, lam, k=k: y - lam**2 * k, start=(0.0 * k, 0.0), target=1e5), 1e10, 1.0)
+            for k in (np.array([1.0]), np.array([1.0, 2.0, 3.0]))
+        ),
         # A start near the path is brought on it; one unknown may be a number; and overflow makes no noise.
         (scalar(lambda y, lam: y * y - 1.0 - lam, lambda y, lam: (2.0 * y, -1.0), (1.2, 0.0)), math.sqrt(2.0), 1e-10),
         (from_functions(lambda y, lam: y**3 + y - lam, start=(0.0, 0.0), target=2.0), 1.0, 1e-10),
@@ -47,8 +46,7 @@ def grown(n):
     ],
 )  # fmt: skip
 def test_a_target_is_reached_exactly(homotopy, y, within, preset):
-    path = trace(homotopy, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset)
     assert path.endpoint.lam == homotopy.target
     assert abs(path.endpoint.y[0] - y) <= within
     assert path.steps[0].residual_norm <= 1e-8
@@ -62,9 +60,8 @@ def test_a_start_in_a_fold_is_regular():
 
 
 def test_a_fold_just_before_the_target_is_no_end():
-    path = trace(power(2, target=-1e-3), budget=Budget(steps=50))
+    path = path_of(power(2, target=-1e-3), budget=Budget(steps=50), status=Status.BUDGET_EXHAUSTED)
     # It turns in the fold, a thousandth before the target, and goes on on the other side: the parameter never stalls.
-    assert path.status is Status.BUDGET_EXHAUSTED
     (fold,) = path.turning_points
     np.testing.assert_allclose(fold.u, 0.0, rtol=0, atol=1e-12)
     assert path.lam.min() >= 0.0
@@ -84,8 +81,7 @@ def test_a_fold_just_before_the_target_is_no_end():
     ids=["1/lam", "tan", "arctan"],
 )  # fmt: skip
 def test_divergence(residual, slope, start, target):
-    path = trace(scalar(residual, slope, start, target))
-    assert path.status is Status.DIVERGED
+    path = path_of(scalar(residual, slope, start, target), status=Status.DIVERGED)
     assert abs(path.endpoint.y[0]) > 1e3
     assert len(path) < 200
 
@@ -104,8 +100,7 @@ def test_a_figure_of_eight_closes_after_both_loops():
     homotopy = scalar(
         lambda y, lam: lam**4 - lam**2 + y * y, lambda y, lam: (2.0 * y, 4.0 * lam**3 - 2.0 * lam), (0.0, 1.0), None
     )
-    path = trace(homotopy)
-    assert path.status is Status.CLOSED
+    path = path_of(homotopy, status=Status.CLOSED)
     np.testing.assert_allclose(path.endpoint.u, (0.0, 1.0), rtol=0, atol=1e-9)
     assert [event.kind for event in path.events].count(Kind.BRANCH_POINT) == 2
     assert path.lam.min() < -0.9
@@ -121,6 +116,5 @@ class Inside(Circle):
 
 
 def test_an_interior_path_that_comes_back_to_its_start_value():
-    path = trace(Inside())
-    assert path.status is Status.TURNED_BACK
+    path = path_of(Inside(), status=Status.TURNED_BACK)
     np.testing.assert_allclose(path.endpoint.u, (-1.0, 0.0), rtol=0, atol=1e-9)

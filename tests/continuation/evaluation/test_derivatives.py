@@ -11,6 +11,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.products import BY_JETS, by_differences, exact
 from problems.bifurcation import Bratu1D, Bratu2D, Circle, ExponentialCosine, FreudensteinRoth
 
+from ...util import path_of
 from ..util import scalar
 
 
@@ -53,8 +54,7 @@ def test_derivatives_from_any_residual_are_paid_for_in_residuals(function):
         calls.append(lam)
         return function(y, lam)
 
-    path = trace(from_functions(residual, start=([0.0, 1.0], 0.0), target=1.0))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(residual, start=([0.0, 1.0], 0.0), target=1.0))
     np.testing.assert_allclose(path.endpoint.u, (1.0, np.e, 1.0), rtol=0, atol=1e-9)
     # Choosing the way costs a few residuals more, once.
     assert path.counts.residuals <= len(calls) <= path.counts.residuals + 20
@@ -96,36 +96,26 @@ def test_a_component_that_begins_at_almost_zero_is_followed_far_from_it(small):
         a, b = (float(part) for part in y)
         return np.array([a - lam, b - 1.0 - np.sin(3.0 * a)])
 
-    path = trace(from_functions(residual, start=([small, 1.0], 0.0), target=1.0), budget=Budget(steps=40))
-    assert path.status is Status.REACHED_TARGET
+    path_of(from_functions(residual, start=([small, 1.0], 0.0), target=1.0), budget=Budget(steps=40))
 
 
-class Spoiled(ExponentialCosine):
-    """One entry of [H_y, H_lam] is wrong."""
+def spoiled(homotopy, row, column, by):
+    """The same with one entry of [H_y, H_lam] wrong."""
 
-    def __init__(self, row, column, by):
-        super().__init__(6)
-        object.__setattr__(self, "spoil", (row, column, by))
+    def jacobian(y, lam):
+        parts = homotopy.jacobian(y, lam)
+        place = (row,) if column == y.size else (row, column)
+        parts[column == y.size][place] += by
+        return parts
 
-    def jacobian(self, y, lam):
-        row, column, by = self.spoil
-        whole = np.column_stack(super().jacobian(y, lam))
-        whole[row, column] += by
-        return whole[:, :-1], whole[:, -1]
-
-
-class SpoiledSparse(Bratu2D):
-    def jacobian(self, y, lam):
-        H_y, H_lam = super().jacobian(y, lam)
-        H_y[1234, 1235] = 1.5
-        return H_y, H_lam
+    return from_functions(homotopy.residual, jacobian, start=homotopy.start(), target=homotopy.target)
 
 
 @pytest.mark.parametrize("by", [1.0, -1e-4, np.nan])
 @pytest.mark.parametrize("row", [0, 3, 5])
 @pytest.mark.parametrize("column", [0, 4, 6])
 def test_a_wrong_entry_is_found(row, column, by):
-    report = check_jacobian(Spoiled(row, column, by))
+    report = check_jacobian(spoiled(ExponentialCosine(6), row, column, by))
     assert not report.correct
     assert report.row == row
     # A NaN leaves no entry of its row.
@@ -135,7 +125,7 @@ def test_a_wrong_entry_is_found(row, column, by):
 
 
 def test_a_wrong_entry_of_a_sparse_jacobian_is_found():
-    report = check_jacobian(SpoiledSparse(70))
+    report = check_jacobian(spoiled(Bratu2D(70), 1234, 1235, 0.5))
     assert (report.row, report.column) == (1234, 1235)
     assert (report.found, report.expected) == pytest.approx((1.5, 1.0))
 
@@ -180,4 +170,4 @@ def test_what_cannot_be_checked_is_refused(homotopy, u, words):
 def test_the_check_on_request_refuses_a_wrong_jacobian():
     assert trace(ExponentialCosine(3), check_jacobian=True).status is Status.REACHED_TARGET
     with pytest.raises(ValueError, match=r"H_y\[0, 1\]"):
-        trace(Spoiled(0, 1, 1.0), check_jacobian=True)
+        trace(spoiled(ExponentialCosine(6), 0, 1, 1.0), check_jacobian=True)

@@ -1,6 +1,7 @@
 """Sparse derivatives of a residual: the pattern is found, coloured, checked at each evaluation, and grows."""
 
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -74,9 +75,9 @@ WHOLE = np.random.default_rng(1).random((N, N)) + N * np.eye(N)
 @pytest.mark.parametrize(
     ("homotopy", "kind"),
     [
-        (alone.Plain(alone.Bratu1D(64)), Banded),
-        (alone.Plain(alone.Bratu1D(63)), np.ndarray),
-        (alone.Plain(alone.Bratu2D(10)), sp.sparray),
+        (alone.plain(alone.Bratu1D(64)), Banded),
+        (alone.plain(alone.Bratu1D(63)), np.ndarray),
+        (alone.plain(alone.Bratu2D(10)), sp.sparray),
         (from_functions(lambda y, lam: WHOLE @ y - lam, start=(np.zeros(N), 0.0)), np.ndarray),
         # One equation with all unknowns makes groups of one column each.
         (from_functions(lambda y, lam: np.append(y[1:] ** 3 - lam, y.sum()), start=(np.zeros(N), 0.0)), np.ndarray),
@@ -105,7 +106,7 @@ def test_a_pattern_that_changes_is_noticed(far, compiled):
         near = y + 0.3 * np.sin(np.concatenate((y[1:], y[:1]))) - lam
         return near + (far * (y[0] - 0.2 * y) * (lam - 0.5) if lam > 0.5 else 0.0 * y)
 
-    homotopy = alone.Plain(from_functions(residual, start=(np.zeros(90), 0.0), target=1.0), compiled=compiled)
+    homotopy = alone.plain(from_functions(residual, start=(np.zeros(90), 0.0), target=1.0), compiled=compiled)
     derivative = from_residual(homotopy.residual, homotopy.start())
     before, after = (derivative(np.linspace(0.0, 1.0, 90), lam)[0].toarray() for lam in (0.25, 0.75))
     assert before[5, 0] == 0.0
@@ -119,7 +120,7 @@ def test_a_pattern_that_changes_is_noticed(far, compiled):
 @pytest.mark.parametrize("sparsity", [np.eye(3), np.ones(80), "tridiagonal", sp.eye_array(81)])
 def test_a_sparsity_of_another_shape_is_refused(sparsity):
     with pytest.raises((TypeError, ValueError), match=r"sparsity: expected a matrix of shape \(80, 80\)"):
-        trace(alone.Plain(alone.Bratu1D(80), sparsity=sparsity))
+        trace(alone.plain(alone.Bratu1D(80), sparsity=sparsity))
 
 
 @pytest.mark.parametrize("compiled", [False, True])
@@ -130,38 +131,41 @@ def test_units_of_unknowns_and_equations_do_not_matter(unit, compiled):
     y = 0.5 * np.sin(np.arange(n) + 1.0)
     scaled = from_functions(lambda y, lam: bratu.residual(y / units, lam) * units[::-1], start=(y * units, 1.0))
     exact = bratu.jacobian(y, 1.0)[0].toarray() * units[::-1, None] / units
-    np.testing.assert_allclose(structure(alone.Plain(scaled, compiled=compiled)).toarray(), exact, rtol=1e-7, atol=0)
+    np.testing.assert_allclose(structure(alone.plain(scaled, compiled=compiled)).toarray(), exact, rtol=1e-7, atol=0)
 
 
-class Products(alone.Plain):
-    """Products with H' of its own."""
+def with_products(differential, one):
+    """A residual alone, with products with H' of its own."""
+    residual = alone.plain(one, compiled=True).residual
+    return SimpleNamespace(
+        start=one.start, residual=residual, target=one.target, differential=partial(differential, one)
+    )
 
-    def differential(self, y, lam, v):
-        H_y, H_lam = self.of.jacobian(y, lam)
-        return H_y @ v[:-1] + H_lam * v[-1]
+
+def exactly(one, y, lam, v):
+    H_y, H_lam = one.jacobian(y, lam)
+    return H_y @ v[:-1] + H_lam * v[-1]
 
 
-class Differenced(alone.Plain):
-    """Products that are no better than differences."""
-
-    def differential(self, y, lam, v):
-        ahead, behind = (self.residual(y + h * v[:-1], lam + h * v[-1]) for h in (1e-6, -1e-6))
-        return (ahead - behind) / 2e-6
+def differenced(one, y, lam, v):
+    """No better than differences."""
+    ahead, behind = (one.residual(y + h * v[:-1], lam + h * v[-1]) for h in (1e-6, -1e-6))
+    return (ahead - behind) / 2e-6
 
 
 @pytest.mark.parametrize(
     ("one", "make", "apart", "more", "mended"),
     [
-        *((kind, lambda one: Products(one, compiled=True), 1e-13, 150, False)
+        *((kind, partial(with_products, exactly), 1e-13, 150, False)
           for kind in (alone.Bratu1D(80), alone.Bratu1D(10), alone.Bratu2D(9))),
-        (alone.Bratu1D(80), Differenced, 1e-9, np.inf, False),
+        (alone.Bratu1D(80), partial(with_products, differenced), 1e-9, np.inf, False),
         # A wrong sparsity is mended.
-        (alone.Bratu1D(80), lambda one: alone.Plain(one, sparsity=np.eye(80)), 1e-13, np.inf, True),
+        (alone.Bratu1D(80), lambda one: alone.plain(one, sparsity=np.eye(80)), 1e-13, np.inf, True),
     ],
     ids=["band", "dense", "sparse", "differences", "wrong sparsity"],
 )  # fmt: skip
 def test_products_of_ones_own_and_a_wrong_sparsity_give_the_same_path(one, make, apart, more, mended):
-    path, own = (trace(each, **alone.options(one, "FAST")) for each in (make(one), one))
+    path, own = (trace(each, **alone.options(type(one), "FAST")) for each in (make(one), one))
     assert alone.folds_apart(path, own) <= apart
     assert path.counts.residuals <= own.counts.residuals + more
     assert path.counts.residuals < 40 * path.counts.jacobians

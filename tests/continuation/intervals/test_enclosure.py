@@ -66,11 +66,6 @@ EXPRESSIONS = {
 }
 
 
-def with_entries(f, x):
-    """f of an object array of numbers of 120 digits, as a list."""
-    return np.asarray(f(np.array(x, dtype=object)), dtype=object).ravel().tolist()
-
-
 @pytest.mark.parametrize("name", EXPRESSIONS)
 @settings(max_examples=15, deadline=None)
 @given(x=st.lists(st.floats(0.25, 2.5), min_size=4, max_size=4), width=WIDTHS, part=PARTS, v=st.floats(-1.0, 1.0))
@@ -85,7 +80,8 @@ def test_the_slopes_of_an_expression_are_enclosed(name, x, width, part, v):
         v = [mp.mpf(entry) for entry in directions.tolist()]
 
         def moved(*steps):
-            return with_entries(f, [a + sum(h * s[k] for s in steps) for k, a in enumerate(at)])
+            entries = np.array([a + sum(h * s[k] for s in steps) for k, a in enumerate(at)], dtype=object)
+            return np.asarray(f(entries), dtype=object).ravel().tolist()
 
         kinks = [abs(a - b) for a in at for b in (*at[::-1], mp.mpf(1.5), mp.mpf(3)) if a is not b]
         if name == "larger" and min(kinks) < 1e-3:

@@ -11,6 +11,7 @@ from continuation import jets
 from continuation.intervals import Interval, UndecidedError, enclose, jacobian
 from continuation.numbers.ends import Ends, thin
 
+from ..util import assigned
 from .against_mpmath import DIGITS, ONE, TWO, drawn, inside
 
 RNG = np.random.default_rng(5)
@@ -51,20 +52,12 @@ RESIDUALS = {
     "sparse": lambda y: sp.csr_array(M) @ y - y @ sp.csr_array(M),
     "list": lambda y: [y[0] * y[1], np.sum(y), y[2:4] @ y[4:], np.prod(y[:3]), y.sum() ** 2, np.mean(y)],
     "assembly": lambda y: np.concatenate([np.roll(y, 1)[:3], np.append(y[1:3], 0.5)]) * np.diff(np.append(y, 1.0)),
-    "assigned": lambda y: _assigned(y),
+    "assigned": assigned,
     "einsum": lambda y: np.einsum("ij,j->i", np.outer(y, y), y),
     "where": lambda y: np.where(y > 0.0, y, 2.0 * y) + np.maximum(y, 5.0) + np.minimum(y * y, y - 9.0) + np.abs(y),
     "norm": lambda y: y / np.linalg.norm(y) + np.dot(np.outer(y, y), y),
     "powers": lambda y: (y**2) ** 1.5 + (1.0 + y**2) ** -2.0 + 2.0**y + (y**2) ** np.array([1.0, 2, 3, 0.5, -1, 0]),
 }
-
-
-def _assigned(y):
-    out = np.zeros_like(y)
-    out[1:] = y[:-1] ** 2
-    out[0] += y[5]
-    out[np.array([0, 2])] -= 1.0
-    return out
 
 
 @pytest.mark.parametrize("radius", [0.0, 1e-9, 1e-3, 1e-2])

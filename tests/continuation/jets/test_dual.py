@@ -9,6 +9,8 @@ from continuation.intervals import Interval
 from continuation.jets import derivative_along
 from continuation.numbers.series import ELEMENTARY
 
+from ..util import assigned
+
 X, V = np.array([0.3, 0.7, 0.45, 0.6]), np.array([1.0, -0.4, 0.25, 2.0])
 MATRIX = np.arange(16.0).reshape(4, 4) - 5.0
 
@@ -25,19 +27,11 @@ FUNCTIONS = {
     "sparse": lambda y: sp.csr_array(MATRIX) @ y,
     "sums": lambda y: y + y.mean() + np.prod(y) + np.linalg.norm(y) + np.sum(np.diff(y)),
     "assembly": lambda y: np.concatenate([y[:1], np.append(y[1:3], y[3])]) + np.hstack([y[2:], [1.0, 2.0]]),
-    "assignment": lambda y: assigned(y),
+    "assignment": assigned,
     "a list of entries": lambda y: np.array([y[0] * y[1], np.sin(y[2]), 1.0, y[3]]) * 2.0,
     "shape": lambda y: np.roll(y, 1).reshape(2, 2).T.ravel() + np.pad(y[1:3], 1) + np.where(X > 0.5, y, -y),
     "others": lambda y: np.clip(y, 0.4, 0.65) + np.split(y, 2)[0][0] + np.take(y, [3, 3, 0, 1]),
 }
-
-
-def assigned(y):
-    out = np.zeros_like(y)
-    out[0] = y[1] * y[1]
-    out[1:] = y[:-1]
-    out[2] += 3.0 * y[3]
-    return out
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

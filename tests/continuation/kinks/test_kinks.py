@@ -12,6 +12,7 @@ from continuation.archive import resume
 from continuation.evaluation.pieces import Pieces
 from continuation.testing import check_homotopy
 
+from ...util import path_of
 from ..archive.test_archive_resume import OPTIONS, name
 from .util import Joined
 
@@ -79,8 +80,7 @@ ROUND = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)]
     ],
 )  # fmt: skip
 def test_kinks_are_where_they_are_and_the_path_goes_on_behind(homotopy, options, status, names, places, end):
-    path = trace(homotopy, **options)
-    assert path.status is status
+    path = path_of(homotopy, **options, status=status)
     assert [event.name for event in path.events] == names
     # Of GRAZED the switch hardly slopes.
     for kink, at in zip(path.kinks, places, strict=True):
@@ -111,8 +111,7 @@ def test_what_a_kink_holds():
     ],
 )
 def test_where_no_branch_leaves_it_is_said(homotopy, direction, status, words):
-    path = trace(homotopy, direction=direction)
-    assert path.status is status
+    path = path_of(homotopy, direction=direction, status=status)
     assert words in path.message
 
 

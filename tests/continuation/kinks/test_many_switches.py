@@ -4,10 +4,11 @@ import attrs
 import numpy as np
 import pytest
 
-from continuation import Status, solve_at, trace
+from continuation import Status, solve_at
 from problems.bifurcation import Bratu1D
 from problems.nonlinear import bratu_under_obstacle
 
+from ...util import path_of
 from .util import Joined
 
 
@@ -35,15 +36,13 @@ WEIGHTS = np.linspace(0.1, 1.0, 10)
     ids=["all pieces", "pivots", "many pivots"],
 )
 def test_switches_that_vanish_together_are_passed(many):
-    path = trace(many)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(many)
     assert [(kink.switches, len(kink.rays)) for kink in path.kinks] == [(tuple(range(many.count)), 2)]
     assert abs(path.endpoint.y[0] - 1.0) < 1e-14
 
 
 def test_too_many_switches_end_the_path_honestly():
-    path = trace(together(12, lambda signs: 20.0 + abs(signs.sum())))
-    assert path.status is Status.UNRESOLVED_KINK
+    path = path_of(together(12, lambda signs: 20.0 + abs(signs.sum())), status=Status.UNRESOLVED_KINK)
     assert "Their number is 12" in path.message
     assert "do not add up" in path.message
 
@@ -55,8 +54,7 @@ def test_an_obstacle_that_is_touched_everywhere_at_once(n, every):
     u = solve_at(Bratu1D(n), 2.0)
     upper = np.where(np.arange(1, n + 1) % every, np.inf, u)
     lid = attrs.evolve(bratu_under_obstacle(n, target=3.0), upper=upper)
-    path = trace(lid)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(lid)
     assert [kink.switches for kink in path.kinks] == [tuple(range(n // every))]
     assert abs(path.kinks[0].lam - 2.0) < 1e-11
     np.testing.assert_array_equal(lid.x(path.endpoint.y)[upper == u], u[upper == u])

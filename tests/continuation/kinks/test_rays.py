@@ -1,42 +1,24 @@
 """All rays of degenerate kinks, against enumeration of all pieces in whole numbers; straight, and of curved maps."""
 
-import attrs
 import numpy as np
 import pytest
 
-from continuation import Monitor, Status, from_functions, trace
+from continuation import Monitor, Status
 from continuation import kink_rays as rays
 
-from .util import Folded
+from ...util import path_of
+from .util import Folded, Joined
 
 NEAR = Monitor(lambda u, v: float(np.abs(u).max()) - 0.3, "near", terminal=1)
 
 
-@attrs.frozen
-class Bent:
-    """A piecewise linear cone in other coordinates: u + `bend` times a quadratic."""
+def straight(u):
+    """Coordinates in which a bent map is a cone."""
+    return u + 0.2 * (np.roll(u, 1) ** 2 - u * np.roll(u, -1))
 
-    cone: object
-    bend: float
-    target: float | None = None
 
-    def straight(self, u):
-        return u + self.bend * (np.roll(u, 1) ** 2 - u * np.roll(u, -1))
-
-    def bent(self, function):
-        return lambda y, lam: function(*np.split(self.straight(np.append(y, lam)), [-1]))
-
-    def start(self):
-        return self.cone.start()
-
-    def residual(self, y, lam):
-        return self.bent(self.cone.residual)(y, lam)
-
-    def switches(self, y, lam):
-        return self.bent(self.cone.switches)(y, lam)
-
-    def piece(self, signs):
-        return from_functions(self.bent(self.cone.piece(signs).residual), start=self.start())
+def bent(function):
+    return lambda y, lam: function(*np.split(straight(np.append(y, lam)), [-1]))
 
 
 def unit(vectors):
@@ -72,15 +54,14 @@ def test_every_ray_of_a_degenerate_kink_is_found(n, m):
 def test_every_branch_of_a_curved_map_is_found_and_followed(n, m):
     followed = 0
     for cone, wanted in cones(n, m, 7 * n + m):
-        bent = Bent(cone, 0.2)
+        curved = Joined(lambda *signs: bent(cone.piece(signs).residual), bent(cone.switches), cone.start())  # noqa: B023
         if followed >= 12 or not len(wanted) or any(np.abs(cone.switches(v[:-1], v[-1])).min() < 1e-9 for v in wanted):
             # A border along which a branch leaves bends, and first order does not tell on which side.
             continue
-        np.testing.assert_allclose(unit(rays(bent, np.zeros(n + 1))), wanted, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(unit(rays(curved, np.zeros(n + 1))), wanted, rtol=0, atol=1e-6)
         for v in wanted:
-            path = trace(bent, start=(np.zeros(n + 1), v), events=[NEAR])
-            assert path.status is Status.STOPPED_AT_EVENT, cone
+            path = path_of(curved, start=(np.zeros(n + 1), v), events=[NEAR], status=Status.STOPPED_AT_EVENT)
             for step in path.steps[1:]:
-                np.testing.assert_allclose(unit([bent.straight(step.u)])[0], v, rtol=0, atol=1e-6)
+                np.testing.assert_allclose(unit([straight(step.u)])[0], v, rtol=0, atol=1e-6)
             followed += 1
     assert followed >= 12

@@ -6,7 +6,9 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse import csc_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import aslinearoperator
 
-from continuation.linear import Banded, SingularError, factor_bordered
+from continuation.linear import SingularError, factor_bordered
+
+from ...util import tridiagonal
 
 
 def at_fold(dimensions, n):
@@ -33,12 +35,6 @@ def in_long_double(matrix, rhs):
     for _ in range(6):
         z = z + lu_solve(factors, (rhs - wide @ z).astype(float))
     return z.astype(float)
-
-
-def tridiagonal(matrix):
-    ab = np.zeros((3, matrix.shape[0]))
-    ab[0, 1:], ab[1], ab[2, :-1] = matrix.diagonal(1), matrix.diagonal(), matrix.diagonal(-1)
-    return Banded(ab, 1, 1)
 
 
 SHIFTS = [0.0] + [sign * size for size in (1e-15, 1e-12, 1e-9, 1e-6, 1e-3) for sign in (-1, 1)]

@@ -27,11 +27,11 @@ def banded(matrix, lower, upper):
     return Banded(ab, lower, upper)
 
 
-def full_band(matrix):
-    return banded(matrix, len(matrix) - 1, len(matrix) - 1)
-
-
-GENERAL = {"dense": np.array, "banded": full_band, "sparse": csc_array}
+GENERAL = {
+    "dense": np.array,
+    "banded": lambda matrix: banded(matrix, len(matrix) - 1, len(matrix) - 1),
+    "sparse": csc_array,
+}
 EVERY = GENERAL | {"operator": aslinearoperator}
 
 

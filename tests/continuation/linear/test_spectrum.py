@@ -5,15 +5,9 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from continuation.linear import Banded
 from continuation.linear.spectrum import spectrum
 
-
-def banded(matrix):
-    ab = np.zeros((3, len(matrix)))
-    ab[0, 1:], ab[1], ab[2, :-1] = matrix.diagonal(1), matrix.diagonal(), matrix.diagonal(-1)
-    return Banded(ab, 1, 1)
-
+from ...util import tridiagonal
 
 # Unknowns that decay alike, coupled by four vectors: one eigenvalue 146 times, and two pairs, which it does not hide.
 TURN = la.block_diag([[0.0, 3.0], [-3.0, 0.0]], [[0.0, 1.0], [-1.0, 0.0]])
@@ -23,28 +17,29 @@ LONG = np.diag(np.linspace(0.3, -40.0, 150))
 LONG += np.diag(np.linspace(1.0, 2.0, 149), -1) - np.diag(np.linspace(2.0, 1.0, 149), 1)
 # All that are asked for are unstable, so more are computed.
 TWENTY = np.diag(np.concatenate([np.linspace(1.0, 2.0, 20), np.linspace(-9.0, -1.0, 200)]))
-# Swift and Hohenberg's operator: the bound on real parts is 1e5 times the largest eigenvalue.
-BENDING = np.diff(np.pad(np.eye(300), 1, mode="edge")[:, 1:-1], 2, axis=0) * (300 / 40.0) ** 2 + np.eye(300)
-BENDING = 0.14 * np.eye(300) - BENDING @ BENDING
+# Swift and Hohenberg's: Gershgorin's discs end at 12,655, beyond the rightmost eigenvalue.
+ONCE = np.eye(300) + (300 / 40.0) ** 2 * (np.eye(300, k=1) - 2.0 * np.eye(300) + np.eye(300, k=-1))
+BENDING = [growth * np.eye(300) - ONCE @ ONCE for growth in (-0.3, 0.05, 0.14)]
 
 
 @pytest.mark.parametrize(
     ("matrix", "make", "k"),
     [
-        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, banded)),
+        *((LONG, make, 10) for make in (np.asarray, sp.csc_array, tridiagonal)),
         *((ALIKE, make, None) for make in (np.asarray, sp.csc_array)),
         (TWENTY, sp.csc_array, None),
-        (BENDING, sp.csc_array, None),
+        *((matrix, make, None) for matrix in BENDING for make in (np.asarray, sp.csc_array)),
     ],
-    ids=["dense", "sparse", "banded", "alike, dense", "alike, sparse", "twenty", "bending"],
 )
 def test_the_rightmost_of_a_large_matrix_are_found_whatever_its_structure(matrix, make, k):
     exact = np.linalg.eigvals(matrix)
     found = [spectrum(make(matrix), 1, k) for _ in range(2)]
     np.testing.assert_array_equal(found[0].values, found[1].values)
     assert found[0].unstable == np.count_nonzero(exact.real > 1e-9)
-    assert found[0].rightmost == pytest.approx(exact.real.max(), rel=1e-3, abs=1e-6)
-    assert found[0].covered or matrix is not TWENTY
+    assert found[0].rightmost == pytest.approx(exact.real.max(), rel=1e-6 if len(matrix) == 300 else 1e-3, abs=1e-6)
+    assert found[0].covered or len(matrix) == 150
+    # The disc's shift took 300 and more, and left eigenvalues that may have been overlooked.
+    assert found[0].solves < 150 or len(matrix) != 300
     if matrix is ALIKE:
         np.testing.assert_allclose(sorted(found[0].pairs.imag), [1.0, 3.0], rtol=1e-6)
 
@@ -60,18 +55,3 @@ def test_eigenvalues_that_may_have_been_overlooked_are_said(k, known, unstable):
 def test_an_operator_has_no_eigenvalues_that_are_known():
     with pytest.raises(TypeError, match="stability: expected H_y as a matrix, found MatrixLinearOperator"):
         spectrum(sp.linalg.aslinearoperator(np.eye(3)))
-
-
-@pytest.mark.parametrize("make", [sp.csc_array, lambda matrix: matrix.toarray()], ids=["sparse", "dense"])
-@pytest.mark.parametrize("growth", [-0.3, 0.05])
-def test_all_unstable_eigenvalues_of_fourth_differences_are_counted(make, growth):
-    """Swift and Hohenberg's operator: Gershgorin's discs end at 12,655, beyond the rightmost eigenvalue of 0.05."""
-    n = 300
-    second = (n / 40.0) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n))
-    once = sp.eye_array(n) + second
-    matrix = growth * sp.eye_array(n) - once @ once
-    found, exact = spectrum(make(matrix)), la.eigvalsh(matrix.toarray())
-    assert found.covered
-    assert found.unstable == np.count_nonzero(exact > 0.0)
-    assert found.rightmost == pytest.approx(exact[-1], rel=1e-6)
-    assert found.solves < 150  # the disc's shift took 300 and more, and left eigenvalues that may have been overlooked

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from continuation import Kind, Status, trace
+from continuation import Kind, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, solve
 
-from ...util import for_interior_paths
+from ...util import for_interior_paths, path_of
 
 HILL = LCP([[-1]], [2])
 """min x (2 - x): its solutions are 0 and 2, and between them, at x = 1, a maximum, which is stationary too."""
@@ -32,8 +32,7 @@ def test_the_start_in_the_middle_meets_a_branch_point_and_ends_on_the_top(preset
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side):
     """The pitchfork unfolded: a turn of width offset^(1/3) towards the solution on its side, followed, not leapt."""
-    path = trace(KKTHomotopy(HILL, [1.0 + side * offset]), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(HILL, [1.0 + side * offset]), preset=preset)
     assert not path.events
     assert path.endpoint.y[0] == pytest.approx(1.0 + side, abs=1e-8)
     assert (np.sign(path.y[:, 0] - 1.0) == side).all()

@@ -13,7 +13,7 @@ from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve
 from problems.lcp.strategies import badly_scaled_lcps, near_singular_lcps, planted_lcps
 from problems.paper import COUNTEREXAMPLES
 
-from ...util import for_interior_paths, share
+from ...util import for_interior_paths, path_of, share
 from .util import x_at_end
 
 MERGE = 3.9121535
@@ -44,10 +44,9 @@ def test_two_close_turning_points_are_found_and_are_folds(preset, a):
 @pytest.mark.parametrize("d", [-1e-2, -1e-3, -1e-6, 1e-6, 1e-4])
 def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(preset, d):
     """A pair inside one step may be missed, never one of the two: the orientation goes on as it was."""
-    path = trace(folding(MERGE + d), preset=preset)
+    path = path_of(folding(MERGE + d), preset=preset)
     assert len(path.turning_points) in ((0,) if d < -1e-4 else (0, 2))
     assert {step.orientation for step in path.steps[1:]} == {-1}
-    assert path.status is Status.REACHED_TARGET
     np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
 
 
@@ -89,8 +88,7 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
     them all, by way of samples at larger values. `end_error` holds: presets, which sample elsewhere, differ by less.
     """
     problem = LCP(A, q)
-    path = trace(KKTHomotopy(problem, x0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(problem, x0), preset=preset)
     assert certify(problem, x_at_end(problem, path), 1e-8).solves(1e-8)
     assert path.endpoint.residual_norm < 1e-12
     assert 0.0 < path.end_error < 1e-8
@@ -104,8 +102,7 @@ def test_an_end_inside_a_face_of_solutions(A, q, x0, preset):
 def test_degenerate_vertices_of_p_matrices(pair):
     """Some x_i = w_i = 0, which only the half power reaches: the solution to ten digits, from an infeasible start."""
     problem, x = pair
-    path = trace(KKTHomotopy(problem))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(KKTHomotopy(problem))
     assert path.winding_number == 2
     np.testing.assert_allclose(x_at_end(problem, path), x, rtol=1e-9, atol=1e-9)
 
@@ -122,8 +119,7 @@ def test_two_solutions_within_the_tolerance(q):
 
 @pytest.mark.parametrize("case", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_path_of_wang_runs_off_where_there_is_nothing_to_find(case):
-    path = trace(WangHomotopy(case.problem))
-    assert path.status is Status.DIVERGED
+    path = path_of(WangHomotopy(case.problem), status=Status.DIVERGED)
     assert "runs off to infinity" in path.message
     assert path.endpoint.lam > 1e-3
     assert np.abs(path.endpoint.y).max() > 1e3

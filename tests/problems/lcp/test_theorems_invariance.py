@@ -10,7 +10,7 @@ from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, rando
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.strategies import feasible_lcps, lcps
 
-from ...util import share
+from ...util import path_of, share
 from .util import x_at_end
 
 SMALL_ORDERS = st.integers(1, 3)
@@ -18,8 +18,7 @@ TWO_VECTOR = [homotopy.make for name, homotopy in HOMOTOPIES.items() if name != 
 
 
 def end(homotopy):
-    path = trace(homotopy)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy)
     return path.endpoint.y[: homotopy.problem.n]
 
 

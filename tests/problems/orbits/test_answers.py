@@ -5,10 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import continuation
-from continuation import Status, TargetValue
+from continuation import TargetValue
 from problems.orbits import PeriodicOrbit
 from problems.orbits.models import brusselator, normal_form, roessler, van_der_pol
 
+from ...util import path_of
 from .util import bent, by_hand, of_sizes, one_by_one, simulated, two_circles
 
 
@@ -119,8 +120,7 @@ def test_the_first_orbit_does_not_depend_on_units_or_origin(seed):
     rest = continuation.from_functions(f, start=(S * off, -L), target=L)
     (hopf,) = (event for event in continuation.trace(rest, observers=[continuation.Stability()]).events)
     orbit = PeriodicOrbit.from_hopf(f, hopf, intervals=10)
-    path = continuation.trace(orbit, start=orbit.leaving, target=L)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(orbit, start=orbit.leaving, target=L)
     for step in path.steps:
         seen = step.observed
         amplitude = 0.5 * (seen["max 0"] - seen["min 0"]) / S[0]

@@ -7,6 +7,8 @@ import continuation
 from continuation import Status, TargetValue
 from problems.orbits import PeriodicOrbit
 
+from ...util import path_of
+
 TURN = {"branch point": 0.0, "period doubling": 0.5, "torus": 0.35}
 """How often what is beside the circle turns while that is passed once."""
 
@@ -61,7 +63,6 @@ def test_an_orbit_loses_stability_where_no_parameter_moves_it(name, kind):
     else:
         starts = continuation.switch_branch(orbit, lost)
     for start in starts:
-        branch = continuation.trace(orbit, start=start, events=[TargetValue(0.3)])
-        assert branch.status is Status.STOPPED_AT_EVENT
+        branch = path_of(orbit, start=start, events=[TargetValue(0.3)], status=Status.STOPPED_AT_EVENT)
         x = orbit.at(branch.endpoint.y, np.linspace(0.0, 1.0, 201)) / units - middle
         assert np.hypot(*(x @ Q).T[2:]).max() == pytest.approx(np.sqrt(0.3), rel=1e-4)

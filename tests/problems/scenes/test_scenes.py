@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from functools import cache
 from inspect import signature
 from pathlib import Path
 
@@ -34,13 +33,6 @@ def test_every_scene_is_registered_and_installed():
     assert set(NAMES) >= set(MINIMAL) == set(written)
 
 
-@cache
-def solved(name):
-    """A scene at a small size, solved once."""
-    scene = small(name)
-    return scene, solve(scene)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_a_scene_is_a_frozen_value_with_defaults(name):
     factory = find(name)
@@ -53,13 +45,17 @@ def test_a_scene_is_a_frozen_value_with_defaults(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_answer_has_units_and_is_the_exact_one(name):
-    scene, solution = solved(name)
+def test_the_answer_has_units_and_is_the_exact_one_and_it_is_drawn(name):
+    scene = small(name)
+    solution = solve(scene)
     answer = scene.answer(solution)
     assert set(answer) == set(scene.units)
     assert all(np.isfinite(np.asarray(value, dtype=float)).all() for value in answer.values()), answer
     assert set(scene.exact()) <= set(answer)
     assert not scene.exact() or error(answer, scene.exact()) <= EXACT_TO[name]
+    axes = Figure().subplots()
+    scene.draw(solution, axes)
+    assert axes.has_data()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -71,14 +67,6 @@ def test_no_scene_has_an_unknown_that_its_answer_does_not_need(name):
     if isinstance(problem, MixedLCP):
         free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
         assert int(free.sum()) == FREE.get(name, (0, ""))[0]
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_it_is_drawn_with_axes_that_say_what_they_are(name):
-    scene, solution = solved(name)
-    axes = Figure().subplots()
-    scene.draw(solution, axes)
-    assert axes.has_data()
 
 
 @pytest.mark.parametrize("name", NAMES)

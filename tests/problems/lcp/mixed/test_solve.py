@@ -13,6 +13,7 @@ from problems.lcp import Outcome
 from problems.lcp.mixed_strategies import mixed_lcps, programs
 from problems.lcp.proof.farkas import farkas
 
+from ...util import BOUNDED
 from ..util import drawn
 
 
@@ -38,21 +39,17 @@ def test_the_example_of_pathsolver():
     assert lcp.certify_exactly(solution.problem, solution.x).solves
 
 
-@pytest.mark.parametrize("homotopy", ["wang", "kmm", "yu", "kkt"])
-@pytest.mark.parametrize("seed", range(3))
-def test_a_path_alone_solves_every_mixture_of_bounds(homotopy, seed):
-    problem = drawn(np.random.default_rng(seed), 20)
+# Of free unknowns alone there is no w, so that its start y0 is empty.
+FREE = lcp.MixedLCP([[2.0, 1.0], [0.0, 1.0]], [1.0, -1.0])
+
+
+@pytest.mark.parametrize("homotopy", BOUNDED)
+@pytest.mark.parametrize("problem", [FREE, *(drawn(np.random.default_rng(seed), 20) for seed in range(3))])
+def test_a_path_alone_solves_every_mixture_of_bounds_and_none(homotopy, problem):
     solution = lcp.solve(problem, homotopy, finish=False)
     assert solution.success, solution.message
     np.testing.assert_allclose(solution.x, lcp.solve(problem).x, atol=1e-8)
     assert len(solution.paths) == 1
-
-
-@pytest.mark.parametrize("homotopy", ["wang", "yu", "kmm", "kkt"])
-def test_free_unknowns_alone_are_traced_by_each_homotopy(homotopy):
-    """Without a bound there is no w, so its start y0 is empty: `wang` and `yu` refused it."""
-    solution = lcp.solve(lcp.MixedLCP([[2.0, 1.0], [0.0, 1.0]], [1.0, -1.0]), homotopy, finish=False)
-    np.testing.assert_allclose(solution.x, [-1.0, 1.0], atol=1e-8)
 
 
 @pytest.mark.parametrize("stored", list(itertools.product((np.asarray, sp.csr_array), repeat=3)))

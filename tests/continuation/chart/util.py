@@ -1,5 +1,0 @@
-"""A method that fails."""
-
-
-def boom(problem, rung):
-    raise ArithmeticError("on purpose")
