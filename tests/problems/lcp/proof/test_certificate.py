@@ -147,6 +147,8 @@ def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
     assert found.outcome is Outcome.SOLVED
     # What is small because everything is is judged as before.
     assert certify(LCP(A, 1e-300 * q), np.zeros(n)).relative_residual == 1.0
+    # x1 = x0 / 1000 rounds to zero, where w1 = 0 presses nothing.
+    assert certify(LCP([[1.0, -1000.0], [0.0, 0.0]], [0.0, 0.0]), np.array([100 * 5e-324, 0.0])).solves()
     off = found.x.copy()
     off[5] *= 1.001
     assert not certify(LCP(A, q), off).solves()
