@@ -56,6 +56,15 @@ def test_feasible_starts(make):
         make(lcp.LCP([[-1.0]], [-1.0]))
 
 
+@pytest.mark.parametrize(
+    ("make", "y0"),
+    [(lcp.YuHomotopy, [2.0, 0.25]), (lcp.WangHomotopy, [5.0, 1.0]), (lcp.KojimaMegiddoMizunoHomotopy, [8.5, 1.0])],
+)
+def test_defaults_of_y_for_a_given_x(make, y0):
+    homotopy = make(lcp.LCP([[1.0, 2.0], [0.0, -1.0]], [-5.0, 0.5]), [0.5, 4.0])
+    np.testing.assert_array_equal(homotopy.start()[0], [0.5, 4.0, *y0])
+
+
 @every
 @pytest.mark.parametrize(
     ("argument", "value", "found"),

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from continuation.archive import open_archive
 from problems import lcp
 from problems.lcp import Outcome
+from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.mixed_strategies import mixed_lcps, programs
 from problems.lcp.proof.farkas import farkas
 
@@ -46,6 +47,10 @@ def test_a_path_alone_solves_every_mixture_of_bounds(homotopy, seed):
     assert solution.success, solution.message
     np.testing.assert_allclose(solution.x, lcp.solve(problem).x, atol=1e-8)
     assert len(solution.paths) == 1
+    made = HOMOTOPIES[homotopy].make(problem)
+    end = made.at_solution(lcp.solve(problem).x)
+    np.testing.assert_allclose(made.residual(end, 0.0), 0.0, atol=1e-10)
+    assert (made.split(end)[1] if homotopy == "kkt" else end[problem.n :]).min() >= 0.0
 
 
 @pytest.mark.parametrize("homotopy", ["wang", "yu", "kmm", "kkt"])
