@@ -119,3 +119,10 @@ def test_an_archive_of_a_problem_with_bounds(tmp_path):
 def test_of_a_fixed_unknown_no_start_is_asked_for():
     problem = lcp.MixedLCP(np.eye(2) + 1.0, [-2.0, -2.0], [0.0, 3.0], [1.0, 3.0])
     assert lcp.solve(problem, x0=[0.5, 7.0]).solved
+
+
+def test_a_minimum_is_not_claimed_of_a_program_that_is_not_convex():
+    for P, said in ((-1.0, True), (1.0, False)):
+        solution = lcp.solve(lcp.from_qp([[P]], [0.25], lower=0, upper=1))
+        assert solution.solved
+        assert ("need not be a minimum" in solution.message) is said

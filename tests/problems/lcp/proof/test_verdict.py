@@ -25,10 +25,13 @@ def test_what_the_last_digit_decides_is_solved_to_precision_alone():
     assert off.relative_residual <= LAST
     assert "in exact arithmetic" in off.message
     # Beyond order 12 exact arithmetic is not asked.
-    for n, outcome in ((12, Outcome.SOLVED_TO_PRECISION), (13, Outcome.SOLVED)):
+    for n, digits, outcome in (
+        (12, 1, Outcome.SOLVED_TO_PRECISION), (12, 8, Outcome.UNSOLVABLE), (13, 1, Outcome.SOLVED),
+        (13, 8, Outcome.SOLVED),
+    ):  # fmt: skip
         wide = np.eye(n)
         wide[:2, :2] = A
-        assert lcp.solve(LCP(wide, [-1.0, 1.0 - LAST, *[-1.0] * (n - 2)])).outcome is outcome
+        assert lcp.solve(LCP(wide, [-1.0, 1.0 - digits * LAST, *[-1.0] * (n - 2)])).outcome is outcome
 
 
 @pytest.mark.parametrize(
