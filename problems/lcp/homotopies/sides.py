@@ -77,8 +77,8 @@ class Sides:
             np.maximum.at(steepest, self.index, ratio)
             main = (ratio > 1.0) & (ratio == steepest[self.index]) & larger
             first = main & (self.sign > 0.0)
-            main &= first | ~(self._summed(first * 1.0) > 0.0)[self.index]
-            swapped = self._summed(main * 1.0)
+            main &= first | ~(self._summed(first) > 0.0)[self.index]
+            swapped = self._summed(main)
             slope, inverse = np.where(main, 0.0, y / gap), np.where(main, 0.0, 1.0 / gap)
             a = np.where(swapped > 0.0, self._summed(np.where(main, -gap / y, 0.0)), 1.0)
             into_v = np.where(main, self.sign / y, 0.0)

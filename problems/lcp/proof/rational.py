@@ -62,13 +62,11 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 
 def block_of(rows: Sequence[IntegerRow], columns: NDArray[np.intp], n: int) -> Integers:
     """Selected columns of rows."""
-    place = np.full(n, -1)
-    place[columns] = np.arange(columns.size)
     block = np.zeros((len(rows), columns.size), dtype=object)
     for i, row in enumerate(rows):
-        for column, value in zip(place[row.columns], row.values):
-            if column >= 0:
-                block[i, column] = value
+        whole: Integers = np.zeros(n, dtype=object)
+        whole[row.columns] = np.array(row.values, dtype=object)
+        block[i] = whole[columns]
     return block
 
 

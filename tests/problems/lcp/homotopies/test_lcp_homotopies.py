@@ -1,11 +1,14 @@
 """The LCP homotopies: their equations, by hand, and how far they go."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from problems import lcp
+from problems.lcp.homotopies.quadratics import form
 from problems.lcp.strategies import lcps
 
 from .util import every, made
@@ -32,6 +35,16 @@ def test_two_vector_equations_by_hand(make, first):
     homotopy = make(lcp.LCP([[2.0]], [-3.0]), [1.0], [4.0])
     # x = 2, y = 6, lambda = 1/4: A x + q = 1.
     assert homotopy.residual(np.array([2.0, 6.0]), 0.25) == pytest.approx([first, 2 * 6 - 0.25 * 4], rel=1e-15)
+
+
+def test_the_rounded_sums_of_a_proof_are_within_their_bounds():
+    """Of A + A', whose entries differ by many orders of magnitude, in exact arithmetic."""
+    rng = np.random.default_rng(0)
+    A = rng.standard_normal((5, 5)) * 10.0 ** rng.uniform(-8, 8, (5, 5))
+    second = form(lcp.KKTHomotopy(lcp.LCP(A, np.ones(5)))).second
+    for i, j in np.ndindex(5, 5):
+        exact = Fraction(i == j) - Fraction(A[i, j]) - Fraction(A[j, i])
+        assert abs(Fraction(second.matrix[i, j]) - exact) <= Fraction(second.error[i, j])
 
 
 def positives(homotopy, u):

@@ -56,6 +56,15 @@ def test_feasible_starts(make):
         make(lcp.LCP([[-1.0]], [-1.0]))
 
 
+@pytest.mark.parametrize(
+    ("make", "y0"),
+    [(lcp.YuHomotopy, [2.0, 0.25]), (lcp.WangHomotopy, [5.0, 1.0]), (lcp.KojimaMegiddoMizunoHomotopy, [8.5, 1.0])],
+)
+def test_defaults_of_y_for_a_given_x(make, y0):
+    homotopy = make(lcp.LCP([[1.0, 2.0], [0.0, -1.0]], [-5.0, 0.5]), [0.5, 4.0])
+    np.testing.assert_array_equal(homotopy.start()[0], [0.5, 4.0, *y0])
+
+
 @every
 @pytest.mark.parametrize(
     ("argument", "value", "found"),
@@ -103,3 +112,7 @@ def test_a_random_start_between_bounds_has_a_w_for_each_and_equal_products():
     x0, x1, x2 = start.x0
     products = start.z1 * [x1, x2 + 1.0, -x0, 1.0 - x2]
     np.testing.assert_allclose(products, products[0], rtol=1e-12)
+    # Likewise of z2; in the box it is between 0 and 2, the multiplier of t what is left of that.
+    s1, s2, t0, t2 = start.w0
+    z0, z1, z2 = start.z2
+    np.testing.assert_allclose([z1 * s1, -z0 * t0, z2 * s2], [products[0], products[0], (2.0 - z2) * t2], rtol=1e-12)

@@ -41,6 +41,17 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
     np.testing.assert_array_equal(homotopy.residual(y, lam), 0.0)
 
 
+@pytest.mark.parametrize("lam", [1.0, 0.5, 0.01])
+def test_the_core_of_the_kkt_homotopy_that_is_not_corrected(lam):
+    homotopy, rng = lcp.KKTHomotopy(EVERY_KIND, refine=False), np.random.default_rng(0)
+    y, _ = homotopy.start()
+    border, rhs = rng.standard_normal((2, y.size + 1))
+    whole = np.vstack([np.column_stack(homotopy.jacobian(y, lam)), border])
+    system = homotopy.bordered(y, lam, border)
+    np.testing.assert_allclose(system.solve(rhs[:-1], rhs[-1]), np.linalg.solve(whole, rhs), rtol=1e-8, atol=1e-9)
+    assert system.sign == np.linalg.slogdet(whole)[0]
+
+
 def test_the_kkt_equations_of_a_box_by_hand():
     """A = 2, q = -3 on [1, 4], x0 = 2, z1 = (5, 6), z2 = 1, (s0, t0) = (7, 8); rho = 7 - 8 - 1."""
     homotopy = lcp.KKTHomotopy(lcp.MixedLCP([[2.0]], [-3.0], 1, 4), [2.0], [5.0, 6.0], [1.0], [7.0, 8.0])

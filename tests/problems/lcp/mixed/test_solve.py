@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from continuation.archive import open_archive
 from problems import lcp
 from problems.lcp import Outcome
+from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.mixed_strategies import mixed_lcps, programs
 from problems.lcp.proof.farkas import farkas
 
@@ -50,6 +51,10 @@ def test_a_path_alone_solves_every_mixture_of_bounds_and_none(homotopy, problem)
     assert solution.success, solution.message
     np.testing.assert_allclose(solution.x, lcp.solve(problem).x, atol=1e-8)
     assert len(solution.paths) == 1
+    made = HOMOTOPIES[homotopy].make(problem)
+    end = made.at_solution(lcp.solve(problem).x)
+    np.testing.assert_allclose(made.residual(end, 0.0), 0.0, atol=1e-10)
+    assert (made.split(end)[1] if homotopy == "kkt" else end[problem.n :]).min() >= 0.0
 
 
 @pytest.mark.parametrize("stored", list(itertools.product((np.asarray, sp.csr_array), repeat=3)))
@@ -111,3 +116,10 @@ def test_an_archive_of_a_problem_with_bounds(tmp_path):
 def test_of_a_fixed_unknown_no_start_is_asked_for():
     problem = lcp.MixedLCP(np.eye(2) + 1.0, [-2.0, -2.0], [0.0, 3.0], [1.0, 3.0])
     assert lcp.solve(problem, x0=[0.5, 7.0]).solved
+
+
+def test_a_minimum_is_not_claimed_of_a_program_that_is_not_convex():
+    for P, said in ((-1.0, True), (1.0, False)):
+        solution = lcp.solve(lcp.from_qp([[P]], [0.25], lower=0, upper=1))
+        assert solution.solved
+        assert ("need not be a minimum" in solution.message) is said

@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 from problems.lcp import LCP, MixedLCP, Outcome, solve
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.proof.certificate import certify, certify_exactly, farkas
+from problems.lcp.proof.farkas import infeasibility
 
 from ....exact import check_farkas, exact_w, solves
 
@@ -136,6 +137,10 @@ def test_farkas_whose_columns_are_all_tight(sparse):
     proof = farkas(problem)
     check_farkas(problem, proof)
     assert proof.y == (b, a)
+    # A ray of pivots that is off in its last digits leads there in any units.
+    for rows in 2.0 ** np.array([[-30, 30], [0, 0], [30, -30]]):
+        scaled = LCP(rows[:, None] * [[a, -a], [-b, b]], rows * problem.q)
+        assert infeasibility(scaled, guess=np.array([b, (1.0 + 1e-9) * a]) / rows).holds(scaled)
 
 
 def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
@@ -147,6 +152,8 @@ def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
     assert found.outcome is Outcome.SOLVED
     # What is small because everything is is judged as before.
     assert certify(LCP(A, 1e-300 * q), np.zeros(n)).relative_residual == 1.0
+    # x1 = x0 / 1000 rounds to zero, where w1 = 0 presses nothing.
+    assert certify(LCP([[1.0, -1000.0], [0.0, 0.0]], [0.0, 0.0]), np.array([100 * 5e-324, 0.0])).solves()
     off = found.x.copy()
     off[5] *= 1.001
     assert not certify(LCP(A, q), off).solves()

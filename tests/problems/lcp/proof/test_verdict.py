@@ -7,6 +7,7 @@ import scipy.sparse as sp
 from problems import lcp
 from problems.lcp import LCP
 from problems.lcp.proof.certificate import certify
+from problems.lcp.proof.verdict import stationary
 from problems.lcp.reference.enumeration import solve_by_enumeration
 
 Outcome = lcp.Outcome
@@ -24,9 +25,28 @@ def test_what_the_last_digit_decides_is_solved_to_precision_alone():
     assert off.relative_residual <= LAST
     assert "in exact arithmetic" in off.message
     # Beyond order 12 exact arithmetic is not asked.
-    wide = np.eye(13)
-    wide[:2, :2] = A
-    assert lcp.solve(LCP(wide, [-1.0, 1.0 - LAST, *[-1.0] * 11])).outcome is Outcome.SOLVED
+    for n, digits, outcome in (
+        (12, 1, Outcome.SOLVED_TO_PRECISION), (12, 8, Outcome.UNSOLVABLE), (13, 1, Outcome.SOLVED),
+        (13, 8, Outcome.SOLVED),
+    ):  # fmt: skip
+        wide = np.eye(n)
+        wide[:2, :2] = A
+        assert lcp.solve(LCP(wide, [-1.0, 1.0 - digits * LAST, *[-1.0] * (n - 2)])).outcome is outcome
+
+
+@pytest.mark.parametrize(
+    ("q", "y", "expected"),
+    [
+        (-1.0, [1.0 - 1e-9, -1e-9, 1.0], True),
+        (1.0, [-1.0, 0.0, -1.0], False),  # all but x >= 0 and z2 >= 0
+        (-1.0, [0.0, -1.0, 0.0], False),  # all but w >= 0 and z1 >= 0
+        (-1.0, [1.0, 1.0, 0.0], False),  # all but x z1 = 0
+        (-1.0, [1.0 + 1e-3, 0.0, 1.0], False),  # all but the first equation
+    ],
+)
+@pytest.mark.parametrize(("of_x", "of_w"), [(1.0, 1.0), (2.0**-40, 2.0**30), (2.0**40, 2.0**-30)])
+def test_what_is_stationary_is_so_in_any_units(q, y, expected, of_x, of_w):
+    assert stationary(LCP([[of_w / of_x]], [of_w * q]), np.array(y) * [of_x, of_w, of_x]) is expected
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,8 @@ def test_a_first_active_set_that_is_right_is_all(made):
     assert found.message.endswith(SETTLED)
     assert (made, found.counts.factorizations, found.best) == ([], 1, -1)
     assert lcp.certify(found.problem, found.x).relative_residual == found.relative_residual
+    # A common factor scales nothing else.
+    assert lcp.solve(LCP(2.0**400 * found.problem.A, 2.0**400 * found.problem.q)).message == found.message
 
 
 def test_a_first_active_set_that_is_wrong_is_factored_once(made):

@@ -66,6 +66,8 @@ def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
     endless = lcp.solve(problem, budget=continuation.Budget(steps=math.inf))
     assert "Restarts from random starts: 3" in endless.message
     assert not endless.solved
+    # Active sets come first, and are no part of a path.
+    assert 0 < sum(path.counts.factorizations for path in endless.paths) < endless.counts.factorizations
     limit = endless.counts.factorizations + 300
     found = lcp.solve(problem, restarts=1000, budget=continuation.Budget(steps=math.inf, factorizations=limit))
     assert f"The budget is used up: {limit} factorisations." in found.message

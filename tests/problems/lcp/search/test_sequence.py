@@ -59,7 +59,7 @@ def test_a_problem_without_unknowns():
     sparse = lcp.LCP(sp.csr_array((0, 0)), [])
     for found in (lcp.solve(nothing), lcp.Solver(nothing.A).solve([]), lcp.solve(sparse)):
         assert found.outcome is lcp.Outcome.SOLVED
-        assert (found.x.shape, found.residual) == ((0,), 0.0)
+        assert (found.x.shape, found.residual, found.best) == ((0,), 0.0, -1)
     assert nothing.natural_residual(np.zeros(0)) == 0.0
     with pytest.raises(ValueError, match="A: expected a square matrix"):
         lcp.LCP([], [])

@@ -12,6 +12,8 @@ from problems import lcp
 from problems.lcp.data.scaling import balanced
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
+from .test_at_once import SINGULAR
+
 Outcome = lcp.Outcome
 PD = lcp.LCP([[4.0, -1.0, 0.5], [1.0, 3.0, -1.0], [0.0, 1.0, 2.0]], [-1.0, 1.0, -2.0])
 
@@ -109,6 +111,9 @@ def test_the_budget_ends_the_search():
     assert solution.outcome is Outcome.NOT_FOUND
     assert "budget" in solution.message.lower()
     assert len(solution.paths) == 1
+    # Lemke's method solves it, after the first active sets.
+    solution = lcp.solve(SINGULAR, budget=continuation.Budget(factorizations=1))
+    assert (solution.outcome, solution.counts.factorizations) == (Outcome.NOT_FOUND, 1)
 
 
 @pytest.mark.parametrize("family", ["murty", "fathi"])
