@@ -48,10 +48,12 @@ def monitor(*places):
         (LINE, monitor(0.2, 0.55, 0.8), ONE, [0.2, 0.55, 0.8]),
         (LINE, monitor(0.4, 0.6), ONE, [0.4, 0.6]),
         (LINE, monitor(0.5, 0.5001), ONE, [0.5, 0.5001]),
+        (LINE, monitor(0.92, 0.955), ONE, [0.92, 0.955]),
         (LINE, values(1.0), ONE, [1.0]),
         (LINE, [TargetValue(0.6, terminal=0), TargetValue(0.4), TargetValue(0.3, terminal=0)], ONE, [0.3, 0.4]),
         (FLAT, [*values(0.5), *monitor(0.75)], QUARTERS, [0.5, 0.75]),
         (FLAT, monitor(0.25, 0.4), QUARTERS, [0.25, 0.4]),
+        (FLAT, monitor(0.08, 0.15, 0.25), QUARTERS, [0.08, 0.15, 0.25]),
         (FLAT, values(0.5, direction=1), QUARTERS, [0.5]),
         (FLAT, values(0.5, direction=-1), QUARTERS, []),
         # The end stands for a crossing that cannot be looked at.
@@ -62,8 +64,8 @@ def monitor(*places):
         (LINE, [Monitor(lambda u, v: 0.3 - u[-1], direction=-1)], ONE, [0.3]),
     ],
     ids=[
-        "several in order", "three zeros of one", "a pair", "a narrow pair", "the target",
-        "behind a terminal one", "knots", "behind a knot", "rising in a knot", "falling in a knot",
+        "several in order", "three zeros of one", "a pair", "a narrow pair", "a pair near the end", "the target",
+        "behind a terminal one", "knots", "behind a knot", "a pair before a knot", "rising in a knot", "falling in a knot",
         "hidden", "hidden, rising", "hidden, falling",
         "rising only", "falling only",
     ],

@@ -42,6 +42,13 @@ def test_a_start_from_which_no_path_leaves(homotopy, status, words):
         _ = path.endpoint
 
 
+def test_a_start_far_off_the_path_is_put_on_it():
+    """Newton's first increment is 33; each of the next takes back a third of what is left."""
+    path = trace(scalar(lambda y, lam: y**3 - 1.0 - lam, start=(0.1, 0.0)))
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.u[[0, -1], 0], (1.0, 2.0 ** (1.0 / 3.0)), rtol=1e-8)
+
+
 @pytest.mark.parametrize(
     ("homotopy", "kink"),
     [
