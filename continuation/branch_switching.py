@@ -22,8 +22,7 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 TRIALS = 32
-"""Number of trial steps, each half of the last: an unknown that stands still along the path has no known size on the
-other branch."""
+"""Trial steps, each half of the last: the size of an unknown that stands still along the path is not known."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""
@@ -67,7 +66,8 @@ def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> 
     """All branches at a multiple branch point, first the path's, back and onward.
 
     `step`: distance of the points. Raises `ArithmeticError` if the kernel of H' has more than four dimensions, or
-    branches form a continuum.
+    branches
+    form a continuum.
     """
     return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 

@@ -15,7 +15,7 @@ from continuation.arrays import Array, dot
 
 
 class Metric(Protocol):
-    """Weights of the inner product at a point."""
+    """Gives the weights of the inner product at a point."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """Return positive weights, shape (N + 1,).
@@ -56,7 +56,7 @@ class Euclidean:
 
 @frozen
 class Weighted:
-    """Given weights of y (one, or one a component) and of the parameter."""
+    """Given weights, one or one each for y, and one for the parameter."""
 
     y: float | Array = 1.0
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -181,7 +181,7 @@ class Inherited(Automatic):
 
 
 INVERTIBLE = 1e-150
-"""Least distance whose square has an inverse."""
+"""Least distance whose square has a finite inverse."""
 
 
 @runtime_checkable

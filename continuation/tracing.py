@@ -1,6 +1,6 @@
 """Ways to trace: one way, both ways, in unknowns that are renewed along the path; and to solve at one parameter.
 
-All make a `Tracer` of checked options; what differs is where paths start and how they are put together.
+All make a `Tracer` of checked options; they differ in starts, and in how paths are joined.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ class Gap:
 
 
 def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
-    """Gaps in order; touching ones with one reason are merged."""
+    """Gaps in order; touching gaps with one reason become one."""
     out: list[Gap] = []
     for gap in sorted(gaps, key=lambda gap: (gap.reason, gap.begin, gap.end)):
         if out and out[-1].reason == gap.reason and gap.begin <= out[-1].end:

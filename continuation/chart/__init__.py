@@ -1,4 +1,4 @@
-"""Speed against accuracy: studies of problems x methods x a ladder, with tables and pictures.
+"""Speed against accuracy: studies of problems x methods x tolerances, with tables and pictures.
 
 A study of a homotopy in ten lines::
 

@@ -91,7 +91,6 @@ class Lines:
             for name, look, points in lines
             if points or "failed" in name
         ]
-        # The key has the order of the curves' ends.
         key = [line for _, line in sorted(drawn, key=lambda pair: -pair[0])]
         axes.legend(handles=key, loc="upper left", bbox_to_anchor=(1.0, 1.03), frameon=False, fontsize="small")
         axes.set_xscale("log")

@@ -31,7 +31,8 @@ class Calculus:
     """How a family is differentiated, decided at a point.
 
     `derivative`: of members without one. `jets`: whether jets give second derivatives and those by mu. `u0`: (y, lam,
-    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
+    mu).
+    `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
     """
 
     family: Member

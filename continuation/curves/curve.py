@@ -26,7 +26,7 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Cached points and members, which are needed repeatedly."""
+"""Points and members kept: they are needed again."""
 
 
 @frozen(eq=False, slots=False, init=False)

@@ -144,7 +144,7 @@ class BranchSearch:
         return self._polished(lam, list(Diagram(self.branches).at(lam)))
 
     def _polished(self, lam: float, guesses: list[Array]) -> list[Array]:
-        """Solve from each guess; keep it if Newton's method fails, as beside a fold."""
+        """Solve from each guess; keep a guess if Newton's method fails, as beside a fold."""
         found = []
         for guess in guesses:
             try:
@@ -219,7 +219,7 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """Trace rays, those of one smooth branch one after the other, and add the branches."""
+        """Trace rays, those of one smooth branch in turn, and add the branches."""
         lines: list[tuple[Junction, list[int]]] = []
         left = {(j.number, ray): j for j, ray in rays}
         while left:

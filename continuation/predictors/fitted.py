@@ -19,7 +19,7 @@ FITTED_ORDER = 11
 """Largest order: powers of s magnify round-off by 1e4, by 1e8 at twice the order."""
 
 CHORD = Contraction()
-"""The current factorisation serves; divergence shortens the range."""
+"""Chord steps by the current factorisation; divergence shortens the range."""
 
 ROUNDS = 40
 """Limit of range changes."""
@@ -36,8 +36,10 @@ def fitted(
     """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
     The polynomial has the point's tangent and interpolates points of the path, found by chord steps. `first`: range
-    tried first. `reach`: where a series is accurate. `accuracy`: in the metric; noise, doubled by each power, lowers
-    the order. `EvaluationError` if no range works.
+    tried
+    first. `reach`: where a series is accurate. `accuracy`: in the metric; noise, doubled by each power, lowers the
+    order.
+    `EvaluationError` if no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)
