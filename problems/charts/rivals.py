@@ -162,7 +162,6 @@ FOLLOWERS: dict[str, tuple[str, Follow]] = {
     "PITCON (dense)": ("pysces", _pitcon),
     "bice": ("bice", _bice),
 }
-"""Module and adapter."""
 
 
 def curve_followers(compare: bool) -> list[Method]:

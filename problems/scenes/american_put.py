@@ -72,7 +72,6 @@ def AmericanPut(
     and Schwartz, Rev. Financial Studies 14 (2001).
     """
     reach = width * volatility * sqrt(maturity)
-    # log(price / strike)
     x = np.linspace(-reach, reach, n + 2)
     payoff = strike * np.maximum(1.0 - np.exp(x), 0.0)
     h = 2.0 * reach / (n + 1)

@@ -113,11 +113,11 @@ def matrix_class(name: str, cited: str) -> Callable[[Callable[[ExactMatrix], Mem
 
 
 MOST_CASES = 4096
-"""Most minors or linear programs of a test: some 0.1 s, order 12 where there is one for each index set."""
+"""Most minors or linear programs of a test: some 0.1 s; order 12 with one for each index set."""
 
 
 def undecided(cases: int) -> Membership:
-    """The answer of a test that has too many cases."""
+    """The answer of a test with too many cases."""
     return Membership(
         None, Evidence(f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}")
     )

@@ -23,10 +23,7 @@ ALONE = ""
 BOUNDS = ("lower", "upper")
 
 PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *BOUNDS, "rows_lower")
-"""The arguments of `from_qp`."""
-
 WANTED = ("A", "q", "x0", *PROGRAM)
-"""Names read from an HDF5 file."""
 
 
 def _numpy(file: str) -> Mapping[str, Any]:
@@ -34,7 +31,7 @@ def _numpy(file: str) -> Mapping[str, Any]:
         with zipfile.ZipFile(file) as archive:
             unfolded = sum(part.file_size for part in archive.infolist())
         Allowance(Path(file).stat().st_size).take("it", unfolded)
-    # A map is no larger than the file.
+    # A memory map takes no more than the file.
     stored = np.load(file, mmap_mode="r", allow_pickle=False)
     if not isinstance(stored, np.lib.npyio.NpzFile):
         return {ALONE: np.array(stored)}

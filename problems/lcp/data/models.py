@@ -13,7 +13,6 @@ import scipy.sparse as sp
 from problems.lcp.data.program import Program, from_qp
 
 MODEL_FORMATS = (".qps", ".mps", ".lp")
-"""Formats of `read_model`."""
 
 
 def read_model(file: str) -> Program:

@@ -17,12 +17,12 @@ from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import check_finite, finite_vector, real_array, sound_sparse
 
 State = NDArray[np.int8]
-"""`LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER` for each index."""
+"""For each index `LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER`."""
 
 LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
 OF_MATRIX = ("units", "range", "symmetric")
-"""Cached results that another q keeps."""
+"""Cached results that hold for any q."""
 
 _ANOTHER_ORDER = "q: expected {} numbers, one a row of A, found {}"
 
@@ -167,7 +167,6 @@ class MixedLCP:
         if self.standard:
             return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
-        # Fixed unknowns stay at the bound.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 

@@ -26,16 +26,17 @@ Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 """(goal, origin, p, q, plain) at a point; without constants for a direction."""
 
 LARGEST_FALL = 1e-3
-"""Largest fall of a scale per step: ends at zero need a metric."""
+"""Largest fall of a scale per step, as ends at zero need a metric."""
 
 
 @frozen
 class RelativeMetric:
     """The mean square of relative changes, plus the parameter's.
 
-    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n. The scale of the
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``; the mean makes step lengths independent of n. The scale of the
     first n unknowns is the distance from the nearer bound (`lower`, `upper`, default zero), or without bounds their
-    size, at least `unit`.
+    size,
+    at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -64,7 +65,7 @@ class RelativeMetric:
 
 
 class OwnMetric:
-    """A homotopy's metric; on its class, an LCP's."""
+    """A homotopy's metric; of its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
         return RelativeMetric() if homotopy is None else homotopy.own_metric

@@ -25,10 +25,11 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 
 @frozen
 class Registered:
-    """One homotopy.
+    """A homotopy.
 
     `feasible`: whether its default start is strictly feasible. `example`: a paper example it solves. `bounds`: whether
-    it takes bounds.
+    it
+    takes bounds.
     """
 
     name: str

@@ -95,7 +95,7 @@ class Rows:
 
 @frozen(eq=False, slots=False)
 class RowPairs:
-    """The linearised rows, ``factor dw + rest k = r``, after elimination in boxes.
+    """The linearised rows, ``factor dw + rest k = r``, with boxes eliminated.
 
     In a box ``(u-l-z) dt - t dz = r3`` gives `inner`, and r loses `taken` r3; elsewhere k = dz.
     """

@@ -14,7 +14,7 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
-"""Most switches for which all 2^m pieces are tried (30 ms), and largest order for all faces (0.1 s)."""
+"""Most switches with which all 2^m pieces are tried (30 ms), and largest order for all faces (0.1 s)."""
 
 
 def rays(S: Array, r: Array) -> list[Ray]:

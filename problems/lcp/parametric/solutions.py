@@ -27,7 +27,7 @@ from problems.lcp.search.solver import solve
 from problems.options import check_budget, check_seed, check_tolerance
 
 IN_VAIN = 30
-"""Directions in a row without a new solution, at least twice the number found, that end the search."""
+"""The search ends after so many directions in a row without a new solution, and twice the number found."""
 
 CORNERS_A_PATH = 50
 """Longest path, in kinks per unknown."""
@@ -141,11 +141,9 @@ class _Search:
 
     @property
     def problem(self) -> MixedLCP:
-        """The problem."""
         return self.structure.problem
 
     def take(self, x: Array) -> bool:
-        """Add a point if it is a new solution."""
         if self._known(x):
             return False
         # Its piece's equations are more accurate than interpolation.

@@ -23,8 +23,7 @@ from problems.lcp.parametric.walk import FLAT, Walk
 class Trail:
     """A path in the making.
 
-    `units` are scales of x and t, `tangents` directions of arrival; `kinks` maps a point's number to name, pairs and
-    rays.
+    `units`: scales of x and t. `tangents`: directions of arrival. `kinks`: name, pairs and rays by a point's number.
     """
 
     units: Array
@@ -139,7 +138,6 @@ class Trail:
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path returns to its first point before the next corner."""
         first, last = self.points[0], self.points[-1]
-        # Mostly t alone rules this out.
         if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
             return False
         gap = first - last

@@ -311,6 +311,5 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _right_signs(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> bool:
-    # Python compares fractions with floats exactly.
     rows = zip(x, w, state.tolist(), problem.lower.tolist(), problem.upper.tolist())
     return all(low <= v <= high and (low == high or s == BETWEEN or -s * r >= 0) for v, r, s, low, high in rows)
