@@ -99,8 +99,9 @@ class Evaluator:
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
         for name in ("jacobian", "bordered", "differential"):
-            if not callable(getattr(homotopy, name, len)):
-                raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
+            found = getattr(homotopy, name, None)
+            if not (found is None or callable(found)):
+                raise TypeError(f"homotopy: expected `{name}` to be a method, found {found!r}")
         self.homotopy = homotopy
         self.bindings += 1
         self.followed = True  # by jets
