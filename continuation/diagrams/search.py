@@ -20,7 +20,7 @@ from continuation.diagrams.deflation import others, same_solution
 from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import PointIndex
 from continuation.events.box import is_inside
-from continuation.metric import Inherited
+from continuation.metric import Automatic
 from continuation.path import LocatedEvent, Path
 from continuation.status import Status
 from continuation.step.options import Options
@@ -54,7 +54,7 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
     if start is not None:
         asked["start"] = start
     if before is not None and options.get("metric") is None and getattr(homotopy, "metric", None) is None:
-        asked["metric"] = Inherited(before=before)
+        asked["metric"] = Automatic(before=before)
     return trace(homotopy, **asked)
 
 
