@@ -42,6 +42,7 @@ from continuation.archive.schema import (
     PARAMETER,
     RESUME,
     SCHEMA,
+    TABLES,
     Column,
     Layout,
     check_names,
@@ -55,8 +56,6 @@ FAULTS = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeEr
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
-
-TABLES = ("point", "path")
 
 Problem = tuple[str, Mapping[str, Any]]
 """JSON and arrays."""
@@ -150,7 +149,7 @@ class Contents:
         unknowns, cells = (int(found.shape[1]) for found in self._datasets.values())
         self.layout = Layout(unknowns, cells, _known(self._present))
         for table in TABLES:
-            self.allowance.take(f"a row of {table}s", self.layout.row_bytes(table))
+            self.allowance.take(f"a row of {table}s", self.layout.row_bytes[table])
         records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD.size), self.allowance)
         self.committed = self.stated = latest(records[()])
         if self._salvage:
@@ -184,7 +183,7 @@ class Contents:
             ledger = Ledger(sums, [column.name for column in columns], rows)
             if ledger.rows != rows:
                 self._flaw(f"the checksums are damaged: those of {rows - ledger.rows} {table}s are missing")
-            self.allowance.take(f"the table of {table}s", ledger.rows * self.layout.row_bytes(table))
+            self.allowance.take(f"the table of {table}s", ledger.rows * self.layout.row_bytes[table])
             self._ledgers[table] = ledger
         return self._ledgers[table]
 

@@ -210,7 +210,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
     def __init__(self, layout: Layout, table: str, rows: int, fetch: Fetch) -> None:
         self.columns = {column.name: column for column in layout.columns(table)}
         self.size, self._fetch = rows, fetch
-        self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes(table), 1), ROWS_AT_ONCE)
+        self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes[table], 1), ROWS_AT_ONCE)
         self._read: dict[str, tuple[int, np.ndarray[Any, Any]]] = {}
 
     @classmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from io import BytesIO
 from typing import Any
 
@@ -19,6 +19,7 @@ from continuation.status import Kind, Status
 SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
+TABLES = ("point", "path")
 ROLES = ("accepted_step", "located_event", "kink_part")
 ACCEPTED, LOCATED, KINK_PART = range(len(ROLES))
 
@@ -161,10 +162,13 @@ class Layout:
         """The column's dimensions beyond the first."""
         return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
-    @lru_cache(maxsize=64)  # noqa: B019
-    def row_bytes(self, table: str) -> int:
-        """Bytes of a row."""
-        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+    @cached_property
+    def row_bytes(self) -> dict[str, int]:
+        """Bytes of a row, by table."""
+        return {
+            table: sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+            for table in TABLES
+        }
 
     def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
         """All columns of a table; missing columns and cells are filled."""

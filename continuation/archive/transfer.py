@@ -19,13 +19,13 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
-from continuation.archive.contents import TABLES, Contents
+from continuation.archive.contents import Contents
 from continuation.archive.growing import Share, copy, leading, share_of
 from continuation.archive.provenance import pack, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.rows import ROWS_AT_ONCE, Table, flat, record_of, row_columns
-from continuation.archive.schema import COUNT_NAMES, KINK_PART, MESSAGE, text
+from continuation.archive.schema import COUNT_NAMES, KINK_PART, MESSAGE, TABLES, text
 from continuation.arguments.checks import expect
 from continuation.path import Path
 from continuation.status import Kind, Status
