@@ -110,8 +110,8 @@ class Automatic:
     blocks : ndarray of int, shape (N,), optional
         Labels; a label's unknowns get its largest scale.
     before : ndarray, shape (N + 1,), optional
-        On a branch: the weights where it leaves another one, a tenth of whose scales bounds the branch's from below.
-        Otherwise scales of components that stand still would shrink from branch to branch.
+        On a branch: the weights where it leaves another, whose scales bound its own from below. Otherwise those of
+        components that stand still would shrink from branch to branch.
     """
 
     share: float = field(default=0.2, validator=FRACTION)

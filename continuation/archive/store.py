@@ -1,8 +1,4 @@
-"""The file being written.
-
-A commit writes data and intent, flushes, then writes its record: a kill leaves complete rows. SWMR keeps files
-readable.
-"""
+"""The file being written: data and intent, a flush, then the commit's record (see `hdf5`). SWMR keeps it readable."""
 
 from __future__ import annotations
 

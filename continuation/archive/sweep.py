@@ -169,7 +169,6 @@ class _Kept:
     parts: dict[Layout, Store] = field(factory=dict)
 
     def add(self, number: int, found: Result) -> None:
-        """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
         if isinstance(found, Path):
             self.paths[number] = found
         else:

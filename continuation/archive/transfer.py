@@ -278,7 +278,6 @@ def _lines(archive: Archive) -> Iterator[str]:
 
 
 def _fields(trees: Mapping[str, Any]) -> str:
-    """Numbers, texts, and the names of classes."""
     plain = {name: tree.get("class", "...") if isinstance(tree, dict) else tree for name, tree in trees.items()}
     return ", ".join(f"{name}={str(value).rpartition(':')[2]}" for name, value in plain.items())
 

@@ -1,4 +1,4 @@
-"""Cells: pieces of a path with a cubic, a chart, and a tube."""
+"""Cells of a proof."""
 
 from __future__ import annotations
 
@@ -135,7 +135,6 @@ class Slabs:
         third = bend + by_last
         second = third + by_last + by_last
         parts = base + t * (slope + t * third), slope + t * (second + bend), second, last
-        # Undo the reversal of t.
         lo, hi = (np.stack([getattr(part, end) for part in parts], axis=1) for end in ("lo", "hi"))
         turned = later[:, :, None] & np.array([False, True, False, True])[:, None]
         return Ends(np.where(turned, -hi, lo), np.where(turned, -lo, hi))

@@ -94,7 +94,6 @@ def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, al
         near: Linearization = linearize(solver.evaluator, guess, weights, border)
         point = solver.project_and_linearize(near, guess, border)
     except EvaluationError:
-        # An arc without a correction stays.
         return []
     if (np.abs(point.u - guess) <= allowed).all():
         return []

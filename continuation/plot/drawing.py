@@ -151,7 +151,6 @@ def draw(axes: Axes | None, paths: Sequence[Sequence[Drawing]], against: str, le
 
 
 def _mark(axes: Axes, paths: Sequence[Sequence[Drawing]], lam: bool, named: bool) -> None:
-    """Mark events; name the first of each name."""
     from matplotlib.lines import Line2D
 
     said = set()

@@ -3,7 +3,7 @@
 Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at parameter t. The
 arc is *regular*, crossed by no branch, if no real z changes by more than SPAN between samples, and no outer of three
 samples add up to more than SPAN times the middle one. It *crosses* a branch if one z vanishes like 1 - t / s at a
-branch point s (a power of it at a degenerate one) and no other z is near zero. Other arcs are too long or off the path.
+branch point s and no other z is near zero. Other arcs are too long, off the path, or have a `degenerate` point.
 """
 
 from __future__ import annotations
@@ -175,7 +175,6 @@ class _Looks:
                 t = near[0]
                 return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
-                # A series has enough samples.
                 onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return self.rejected(Rejection.ORIENTATION, 0.5)

@@ -1,4 +1,4 @@
-"""Other ways to follow a curve: a plain loop, and packages where they are installed."""
+"""Other ways to follow a curve: a plain loop, and installed packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Periodic orbits of x' = f(x, p) by orthogonal collocation."""
+"""Periodic orbits by orthogonal collocation."""
 
 from __future__ import annotations
 

@@ -90,7 +90,6 @@ def AmericanPut(
 
     def march(solver: Callable[[LCP, Any], Any]) -> Exercise:
         times = maturity * (np.arange(steps + 1) / steps) ** 2
-        # Crank-Nicolson alone oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
         values, edges = payoff.copy(), [strike]
         found: Any = None

@@ -129,7 +129,7 @@ class Trail:
         return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
-        """Whether the path left this kink in this direction before."""
+        """Whether the path left this kink in this direction before; remember that it does."""
         size = ZERO_COMPONENT * (1.0 + largest(u))
         been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
         self._left.append((u, unit))

@@ -107,7 +107,6 @@ class Certificate:
 
     @property
     def _room(self) -> Array:
-        """Distances from the nearer bounds."""
         x, problem = self.x, self.problem
         return x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
 
