@@ -66,8 +66,7 @@ def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> 
     """All branches at a multiple branch point, first the path's, back and onward.
 
     `step`: distance of the points. Raises `ArithmeticError` if the kernel of H' has more than four dimensions, or
-    branches
-    form a continuum.
+    branches form a continuum.
     """
     return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 

@@ -97,9 +97,8 @@ def updated(increments: list[tuple[Array, Array]], z: Array, weights: Array) -> 
     """The chord increment z after Broyden's good update, which all `increments` since the factorisation define.
 
     It is appended to `increments`, with its dual; they are emptied first if they are round-off (Kelley, Iterative
-    Methods
-    for Linear and Nonlinear Equations, Section 7.3). An update multiplies the determinant by `left`; none turns its
-    sign.
+    Methods for Linear and Nonlinear Equations, Section 7.3). An update multiplies the determinant by `left`; none turns
+    its sign.
     """
     for (_, dual), (after, _) in pairwise(increments):
         z = z + dot(dual, z) * after

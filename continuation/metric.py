@@ -158,8 +158,8 @@ class Automatic:
 
 
 OF_BEFORE = 0.1
-"""Part of the scales before: on four successive pitchforks 0.01 starts the third a thousandth as far away as the first.
-"""
+"""Least scale on a branch, over the scale before: on four successive pitchforks 0.01 starts the third a thousandth as
+far away as the first."""
 
 INVERTIBLE = 1e-150
 """Least distance whose square has a finite inverse."""

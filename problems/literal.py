@@ -27,8 +27,8 @@ class LiteralSettings:
     """Step 0: the algorithm's numbers.
 
     Steps are a = l0^l. The run stops at lambda <= eps1; Step 4 compares lambda and its change with eps2; Steps 3 and 2
-    shorten a to eps3 and a0. The paper gives no a0; 1e-6 ends seven examples early, by Step 4 at a negative lambda. Nor
-    does it give `max_iterations`; example 8 needs 3,289.
+    shorten a to eps3 and a0. The paper gives no a0; 1e-6 ends seven examples early, by Step 4 at a negative lambda. It
+    gives no `max_iterations`; example 8 needs 3,289.
     """
 
     l0: float = field(default=0.5, validator=FRACTION)

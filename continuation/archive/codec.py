@@ -190,8 +190,7 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
     """The value described by `encode`.
 
     `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
-    are
-    trusted. Raises `UnknownError` if a class is not trusted or a value has another type.
+    are trusted. Raises `UnknownError` if a class is not trusted or a value has another type.
     """
     try:
         return _decode(tree, fetch, known or {}, hint, "")

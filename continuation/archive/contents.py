@@ -65,8 +65,7 @@ class Contents:
     """An open file; any fault raises `ArchiveError`.
 
     `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `stated`: the last
-    commit,
-    `committed`: what of it has checksums.
+    commit, `committed`: what of it has checksums.
     """
 
     root: Any = None

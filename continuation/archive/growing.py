@@ -228,7 +228,7 @@ class Growing:
     _store: Store | None = None
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
-        """The paths of an existing file, whole and as kept; a copy that grows then replaces it."""
+        """Yield the paths of an existing file, whole and as kept; a growing copy then replaces the file."""
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))

@@ -59,7 +59,7 @@ class Archive(Sequence[Path]):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Origin of the file."""
+        """Root attributes: the file's origin."""
         return self.contents.attributes
 
     @property

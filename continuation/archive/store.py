@@ -108,7 +108,7 @@ class Store:
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
 
     def commit(self, points: Block | None = None, paths: Block | None = None, checkpoint: bytes | None = None) -> None:
-        """Write rows and a checkpoint, then make them valid. After a failure the next commit repeats it."""
+        """Write rows and a checkpoint, then make them valid; an interrupted commit may be repeated."""
         if self.abandoned:
             raise ArchiveError(f"{self.file}: is not this process's to write: it was forked from the writer")
         before = self.committed

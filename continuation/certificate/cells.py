@@ -28,9 +28,8 @@ class Cells:
     """Consecutive pieces of a path; arrays of shape (cells, N + 1) unless stated.
 
     `begin`, `end`: nodes p(0), p(1) of the Hermite cubic p. `slope_begin`, `slope_end`: p'(0), p'(1). `chart`: the
-    vector
-    c; u has the parameter s with c . (u - p(s)) = 0. `radius`: the tube is |u - p(s)| <= radius by component. `slabs`,
-    shape (cells,): number of equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
+    vector c; u has the parameter s with c . (u - p(s)) = 0. `radius`: the tube is |u - p(s)| <= radius by component.
+    `slabs`, shape (cells,): number of equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
     """
 
     begin: Array

@@ -178,8 +178,7 @@ def _between(solver: PathSolver, a: PathNode, b: PathNode, share: float) -> Path
     """A point of the path between two nodes, at the part `share` of their distance from b, or why there is none.
 
     The midpoint guess uses slopes as long as the chord: those in the chart may be huge. Next to a singular end a
-    parabola
-    gives the guess.
+    parabola gives the guess.
     """
     cell, x = _cell(a, b), 1.0 - share
     first, last = (v[0] / (norm(a.weights, v[0]) or 1.0) for v in (cell.slope_begin, cell.slope_end))

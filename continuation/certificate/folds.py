@@ -39,8 +39,7 @@ class Piece:
 @frozen(eq=False)
 class Turn:
     """A range, in cells, with exactly one zero, where the derivative has the sign `bend`; not `certain` if the zero may
-    lie
-    beyond the path's end.
+    lie beyond the path's end.
     """
 
     lo: float

@@ -111,7 +111,7 @@ class Proof:
 
     @property
     def shadow(self) -> Cells:
-        """Cells in the path's unknowns."""
+        """Cells, reduced to the path's unknowns."""
         rows = {name: getattr(self.cells, name)[:, -self.width :] for name in COLUMNS if name not in ("slabs", "place")}
         return evolve(self.cells, **rows)
 

@@ -1,7 +1,7 @@
 """A command: a function, its arguments, and the names of these in complaints.
 
-Whatever is raised, `main` prints one line, beginning with the argument as typed. A complaint names a Python argument;
-a command's `names` say what was typed for it, and what for the archive that is read ("old") or written ("new").
+Whatever is raised, `main` prints one line, beginning with the argument as typed. A complaint names a Python argument; a
+command's `names` say what was typed for it, and what for the archive that is read ("old") or written ("new").
 """
 
 from __future__ import annotations

@@ -109,8 +109,7 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
     """Whether H vanishes at a point where Newton's increment is small: the residual is round-off, or noise that the
-    increment
-    halves.
+    increment halves.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -164,8 +163,7 @@ def iterate(
     """Add increments until one is small and the residual agrees, or they stop shrinking.
 
     A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
-    where
-    round-off spoils ratios, only the limit of iterations counts. `direction` appends factorisations to `anchors`.
+    where round-off spoils ratios, only the limit of iterations counts. `direction` appends factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False

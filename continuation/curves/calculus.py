@@ -31,8 +31,7 @@ class Calculus:
     """How a family is differentiated, decided at a point.
 
     `derivative`: of members without one. `jets`: whether jets give second derivatives and those by mu. `u0`: (y, lam,
-    mu).
-    `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
+    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
     """
 
     family: Member
@@ -51,7 +50,7 @@ class Calculus:
         return DifferentiableHomotopy(homotopy, evolve(self.derivative, residual=homotopy.residual))
 
     def evaluator(self, mu: float) -> Evaluator:
-        """Its evaluator."""
+        """The evaluator of the homotopy at mu."""
         return Evaluator(self.member(mu), Counts())
 
     @cached_property

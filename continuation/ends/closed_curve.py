@@ -28,8 +28,7 @@ def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes the start in the start's direction.
 
     It must cross the plane orthogonal to the start's tangent from behind, at the start once corrected. In the start's
-    own
-    metric a path would cross once more near a turning point.
+    own metric a path would cross once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

@@ -50,8 +50,7 @@ def divergence(
 
     `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
     parameter and slope at up to three marks. `stops`: pairs (component, value) that end the path; one on the way
-    excludes
-    infinity.
+    excludes infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)

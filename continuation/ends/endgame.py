@@ -120,8 +120,7 @@ class Endgame:
         """Whether two samples lie on one branch, as far as known.
 
         A path keeps its orientation, which differs on the other of two branches that nearly meet (Allgower and Georg,
-        Section
-        8.1). If it is unknown, the arc between is compared with the path, which detects five of six such ends.
+        Section 8.1). If it is unknown, the arc between is compared with the path, which detects five of six such ends.
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation

@@ -179,8 +179,7 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
     """How far each component of an end can move before H exceeds round-off, shape (N + 1,).
 
     The end moves along the tangent, and along solutions of `near` for two samples of round-off with random signs, until
-    H
-    is twice its allowed size.
+    H is twice its allowed size.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

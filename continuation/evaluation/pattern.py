@@ -126,8 +126,7 @@ def found(touched: Touched, n: int) -> Pattern | None:
     """A matrix' pattern, or None if it is full or costs too much.
 
     Blocks of columns are halved, those without common equations together (Griewank and Mitev, Mathematical Programming
-    93,
-    2002).
+    93, 2002).
     """
     # 8 blocks cost as much as their 16 halves.
     shift = max(int(n - 1).bit_length() - 3, 0)

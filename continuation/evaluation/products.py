@@ -25,8 +25,7 @@ class Exact:
     """Products to round-off.
 
     `function` maps residual, u and directions (k, N + 1) to (N, k). `entire`: all of H', if faster. `agreement`:
-    tolerance
-    of a check, relative to terms. `scale`, `even`: see `ByDifferences`.
+    tolerance of a check, relative to terms. `scale`, `even`: see `ByDifferences`.
     """
 
     name: str
@@ -84,7 +83,7 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
         y, lam = u[:-1], float(u[-1])
         return np.stack([np.asarray(differential(y, lam, w), dtype=float) for w in directions], axis=1)
 
-    # They may be differences.
+    # The homotopy's products may be differences.
     return Exact("differential", function, agreement=AGREEMENT)
 
 
@@ -152,8 +151,7 @@ class ByDifferences:
     """Central differences, eight to ten digits.
 
     `steps`, relative to the larger of `unit` and component, of shape (N + 1,). `usual`, shape (N,): each equation's
-    change
-    as all components move by their sizes.
+    change as all components move by their sizes.
     """
 
     unit: Array

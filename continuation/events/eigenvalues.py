@@ -48,10 +48,8 @@ def changes(
     """Return the real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors, as columns.
 
     `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent there in the dual metric,
-    so
-    that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to it
-    are
-    not found. `accuracy`: relative.
+    so that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to
+    it are not found. `accuracy`: relative.
     """
     values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy, passed=True)
     order = np.argsort(values)

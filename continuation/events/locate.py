@@ -132,8 +132,7 @@ def zeros(
     """Zeros of a function on the arc, in order, to round-off.
 
     `ga`, `gb`: values at the ends; ga is not zero. `noise`: round-off of values. `direction`: +1 rising only, -1
-    falling
-    only.
+    falling only.
     """
 
     def along(part: _Part, t: float) -> float:

@@ -66,7 +66,7 @@ class Reduced:
 
     @classmethod
     def beside(cls, evaluator: Evaluator, u: Array, extent: Array, heading: Array) -> Reduced:
-        """In units of the path, by two factorisations."""
+        """The equations in units of the path, by two factorisations."""
         _, sizes = scales(evaluator, extent, (u, u + 0.1 * heading))
         matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
         kernel, left = kernels(matrix)

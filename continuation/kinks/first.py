@@ -39,8 +39,7 @@ def first_zero(
     """The first point of an arc where a switch vanishes, with all switches that vanish there, or None.
 
     A switch that vanishes at the beginning counts once it has left zero. `signs`: of the arc's piece. `EvaluationError`
-    if
-    the path cannot be evaluated.
+    if the path cannot be evaluated.
     """
     s = np.array(signs)
     try:

@@ -112,8 +112,7 @@ class _Family:
     """Derivatives of the corner's pieces, as low-rank changes of one.
 
     `sizes`: of the switches' derivatives `GR` along `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad s_j.
-    `Z`:
-    M^{-1} of these; `GZ`: the switches' derivatives along them.
+    `Z`: M^{-1} of these; `GZ`: the switches' derivatives along them.
     """
 
     corner: Corner

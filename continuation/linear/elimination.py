@@ -86,8 +86,8 @@ def eliminate(
 ) -> BorderedSystem:
     """Factor H_y and border it; near a fold factor the bordered matrix. `SingularError` if singular or not finite.
 
-    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED the signs in
-    ``det M = det H_y * schur`` are certain (Govaerts, Numerical Methods for Bifurcations, SIAM 2000, section 3).
+    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED the signs in ``det
+    M = det H_y * schur`` are certain (Govaerts, Numerical Methods for Bifurcations, SIAM 2000, section 3).
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     factors = factor(matrix)

@@ -36,8 +36,7 @@ class Factoring:
     """Factors sparse matrices; `used` counts them by method.
 
     `method`: "auto", "superlu", or "cholmod" for definite matrices. `weak_pivots`: SuperLU keeps weak diagonal pivots
-    of
-    symmetric patterns, to save fill; refinement corrects.
+    of symmetric patterns, to save fill; refinement corrects.
     """
 
     method: str = "auto"

@@ -80,9 +80,8 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide stability.
 
     Small matrices: all, by QR. Others: the k (default 6) nearest to a shift, by Arnoldi's method on the inverse
-    (Govaerts,
-    Numerical Methods for Bifurcations, Section 5.3); the count is complete if their disc covers the right part of the
-    rectangle from `bounds`. Raises `TypeError` for an operator, `ArithmeticError` without convergence.
+    (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count is complete if their disc covers the right
+    part of the rectangle from `bounds`. Raises `TypeError` for an operator, `ArithmeticError` without convergence.
     """
     matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
@@ -123,8 +122,7 @@ def _counted(values: Any, covered: bool = True) -> Spectrum:
 
 def bounds(matrix: Matrix) -> tuple[float, float]:
     """Bounds of eigenvalues' real and imaginary parts: those of the symmetric and the skew part (Bendixson's theorem),
-    by
-    Gershgorin's discs.
+    by Gershgorin's discs.
     """
     rows = abs(matrix + _transposed(matrix)).sum(axis=1)
     diagonal = matrix.diagonal()

@@ -32,8 +32,7 @@ def up_sum(x: Array) -> Array:
     """A number above every real sum that rounds to x, by at most two ulps; x if zero.
 
     EPS |x| is at least the distance to the next number; zero and subnormal sums are exact. `nextafter` takes several
-    times
-    as long.
+    times as long.
     """
     return x + EPS * np.abs(x)
 

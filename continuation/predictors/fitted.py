@@ -36,10 +36,8 @@ def fitted(
     """Return coefficients of the path, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
     The polynomial has the point's tangent and interpolates points of the path, found by chord steps. `first`: range
-    tried
-    first. `reach`: where a series is accurate. `accuracy`: in the metric; noise, doubled by each power, lowers the
-    order.
-    `EvaluationError` if no range works.
+    tried first. `reach`: where a series is accurate. `accuracy`: in the metric; noise, doubled by each power, lowers
+    the order. `EvaluationError` if no range works.
     """
     r, barrier, last, blur = first, np.inf, None, 0.0
     order = min(order, FITTED_ORDER)

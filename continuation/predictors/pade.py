@@ -62,8 +62,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
     """The approximant of degrees (K - K // 2, K // 2) of a series of order K.
 
     Coefficients K - m + 1..K of denominator times series vanish in least squares (simultaneous, or type II,
-    approximation;
-    Baker and Graves-Morris, Section 8.1).
+    approximation; Baker and Graves-Morris, Section 8.1).
     """
     order = len(coefficients) - 1
     m = order // 2

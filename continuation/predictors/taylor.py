@@ -83,7 +83,7 @@ class Taylor:
     rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
-    """Its error is far below the remaining distance."""
+    """The prediction's error is far below the remaining distance."""
 
     @property
     def references(self) -> tuple[str, ...]:

@@ -95,8 +95,7 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
     """Return the end (y, lam) found by a `finish`; ValueError unless H vanishes there.
 
     Each equation must be small relative to its terms, or no larger than at the last point with the end's parameter:
-    terms
-    such as x_i w_i may vanish.
+    terms such as x_i w_i may vanish.
     """
     end = np.append(y, here[-1] if target is None else target)
     try:

@@ -72,8 +72,7 @@ def initial_extent(
     """Return how far each component goes until the path turns or reaches the target, and its noise, shape (N + 1,).
 
     Components that stand still get the median. `residual`: H at the point. `room`: distance to a terminal value.
-    `sizes`:
-    of the components.
+    `sizes`: of the components.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam

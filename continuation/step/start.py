@@ -51,8 +51,7 @@ def first_point(
     """Return the corrected start with tangent, and a first step length.
 
     `direction`: sign of the tangent's parameter component; 0: towards the target, else +1. Raises `StartError` if no
-    path
-    is near, SingularStartError if H' loses rank.
+    path is near, SingularStartError if H' loses rank.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.append(np.zeros(u.size - 1), 1.0)

@@ -23,8 +23,7 @@ class Verdict:
     """How a path ended.
 
     `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: the last failures. `error`: bound at
-    a
-    regular end.
+    a regular end.
     """
 
     status: Status

@@ -28,8 +28,7 @@ class Finish:
     """Tries active sets of one problem, each once, for all its paths.
 
     `nearest`: the judged point of least residual that is no solution. `ended`, `following`: why the last iteration
-    ended,
-    and its next state. `solved_on`: the face of the solution.
+    ended, and its next state. `solved_on`: the face of the solution.
     """
 
     faces: Faces

@@ -40,8 +40,7 @@ class Policy:
     """How long the iteration goes on.
 
     `steps`: most corrections. `patience`: as `PATIENCE`. `singular`: so many singular faces are not counted as steps
-    (None:
-    all are); 0 ends at the first one.
+    (None: all are); 0 ends at the first one.
     """
 
     steps: int

@@ -15,7 +15,7 @@ SPACING = 0.4
 6,099, 5,567 and 5,844 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""Of 25 stacks (n = 40 to 496) 21 are solved in 3 s if singular faces count as steps, 23 if not."""
+"""21 of 25 stacks (n = 40 to 496) are solved in 3 s if singular faces count as steps, 23 if not."""
 
 
 @define(eq=False)

@@ -25,10 +25,8 @@ def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
     Z and row sufficient matrices are Q0. Other A of order up to `LARGEST_COVER` are Q0 exactly if the full
-    complementary
-    cones cover pos[I, -A]; exact linear programs subtract the cones. A remaining q has a neighbourhood that only cones
-    of
-    lower dimension meet: almost no right-hand side in it has a solution.
+    complementary cones cover pos[I, -A]; exact linear programs subtract the cones. A remaining q has a neighbourhood
+    that only cones of lower dimension meet: almost no right-hand side in it has a solution.
     """
     for name, test in _SUFFICIENT_FOR_Q0.items():
         if test(matrix).holds:

@@ -15,8 +15,7 @@ def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     """Bounds as a vector of shape (size,); the only infinity allowed is `default`.
 
     `value` may be one number, or None for `default`. `ValueError` if it is sparse, not real, of another length, NaN, or
-    the
-    wrong infinity.
+    the wrong infinity.
     """
     if value is None:
         return np.full(size, default)

@@ -99,7 +99,7 @@ class MixedLCP:
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:
-        """Where lower = upper, shape (n,)."""
+        """Whether lower_i = upper_i, shape (n,)."""
         same: NDArray[np.bool_] = self.lower == self.upper
         return same
 

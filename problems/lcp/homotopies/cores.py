@@ -43,7 +43,7 @@ class Pairs:
     """Sign of the eliminated determinant."""
 
     def known(self, r: Array) -> tuple[Array, Array, Array]:
-        """The part of r in v, in p of other rows, and in p."""
+        """The solution for k = 0: v, what p adds to the rows, and p."""
         p = self.f * r
         return self.e * r, p, p
 

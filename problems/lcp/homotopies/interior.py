@@ -35,8 +35,7 @@ class RelativeMetric:
 
     ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``; the mean makes step lengths independent of n. The scale of the
     first n unknowns is the distance from the nearer bound (`lower`, `upper`, default zero), or without bounds their
-    size,
-    at least `unit`.
+    size, at least `unit`.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)

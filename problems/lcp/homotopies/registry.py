@@ -28,8 +28,7 @@ class Registered:
     """A homotopy.
 
     `feasible`: whether its default start is strictly feasible. `example`: a paper example it solves. `bounds`: whether
-    it
-    takes bounds.
+    it takes bounds.
     """
 
     name: str

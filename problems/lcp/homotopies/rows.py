@@ -75,7 +75,7 @@ class Rows:
 
     @cached_property
     def ends(self) -> tuple[int, int, int]:
-        """Where the blocks x, z1 and z2 of y end."""
+        """The places where the blocks x, z1 and z2 of y end."""
         n, m = self.problem.n, self.sides.index.size
         return n, n + m, n + m + n
 

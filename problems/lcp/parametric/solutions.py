@@ -146,7 +146,7 @@ class _Search:
     def take(self, x: Array) -> bool:
         if self._known(x):
             return False
-        # Its piece's equations are more accurate than interpolation.
+        # A piece's equations are more accurate than interpolation.
         finish = Finish(Faces(self.structure), self.tolerance)
         piece = Stairs.of(self.problem, np.zeros(x.size)).states(self.problem, x)
         solved = finish.settle(piece, Policy(steps=0), x)

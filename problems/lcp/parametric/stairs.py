@@ -19,9 +19,8 @@ class Stairs:
     """Fixed values and limits, by state (row state + 1) and index.
 
     `moves_x`: whether x_i moves and w_i is fixed, or vice versa. The fixed value is ``values[0] + t values[1]``, the
-    limits
-    are ``values[2] + t values[4]`` and ``values[3] + t values[5]``. `levels`: whether outer pieces fix w_i. Corners,
-    infinite if absent, have w_i = ``t corner_slope``.
+    limits are ``values[2] + t values[4]`` and ``values[3] + t values[5]``. `levels`: whether outer pieces fix w_i.
+    Corners, infinite if absent, have w_i = ``t corner_slope``.
     """
 
     moves_x: Mask

@@ -72,7 +72,7 @@ class Walk:
         rows = np.flatnonzero(self.moves_x)
         columns = np.append(rows[rows != j], np.full(int(j != n), n))
         if not by_x:
-            # Its w is the driver's distance from its corner.
+            # The driver's w is its distance from the corner.
             rows = np.append(rows, j)
             self.shares[j] -= self.slopes[0 if self.sign > 0.0 else 1, j]
         block = np.empty((n, columns.size), order="F")
@@ -101,7 +101,7 @@ class Walk:
         self.noise = np.array([[place], [motion]]) * self.terms
         self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
         self.still = False
-        # The rounding of a slow t is estimated.
+        # Rounding may be all that moves a slow t.
         if j != n and abs(self.dt) <= SIX_DIGITS * motion:
             of_t = np.abs(self.basis.row_of_inverse(n)) @ self.sizes[self.basis.rows]
             self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)

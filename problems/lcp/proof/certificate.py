@@ -173,7 +173,7 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     """
     terms = row_terms(problem, x)
     relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
-    # What shares in rows of a positive x are is asked only where w is off.
+    # The shares of x in rows matter only where w is off.
     off = np.abs(np.where(x == 0.0, np.minimum(relative, 0.0), relative))
     worst = largest(off)
     if not (problem.standard and worst <= ROUND_OFF and least(x) >= 0.0):
