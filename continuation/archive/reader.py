@@ -90,7 +90,6 @@ class Archive(Sequence[Path]):
         return len(self._first_rows) - 1
 
     def __getitem__(self, index: Any) -> Any:
-        """A path, or the list of a slice."""
         if isinstance(index, slice):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)

@@ -21,7 +21,6 @@ def complain(error: type[Exception], name: str, expected: str, value: Any) -> Ex
 
 
 def _shown(value: Any) -> str:
-    """A value in one line of at most 200 characters."""
     return " ".join(repr(value).split())[:200]
 
 

@@ -12,8 +12,6 @@ from attrs import field, frozen
 from continuation.arguments.checks import expect
 
 ATTRIBUTES = ("parameter_name", "names", "units")
-"""Attributes of homotopies and archive roots."""
-
 _LONGEST = 100
 """Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 roots exhaust matplotlib's stack."""
 

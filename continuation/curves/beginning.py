@@ -19,8 +19,6 @@ from continuation.step.start import at_parameter
 from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
-"""Kinds that define a condition."""
-
 NEAREST = 40
 """Eigenvalues nearest to zero among which a Hopf pair is searched: the others are far on the stable side."""
 

@@ -100,7 +100,6 @@ def sizes(u: Array) -> Array:
 
 
 def _central(residual: Residual, u: Array, w: Array) -> Array:
-    """Half of the change from u - w to u + w."""
     ahead, behind = u + w, u - w
     # Residuals may reuse their arrays.
     change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))

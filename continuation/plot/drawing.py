@@ -55,17 +55,7 @@ StableParts: TypeAlias = tuple[Sequence[float], bool] | None
 class Drawing:
     """One number along a path.
 
-    Attributes
-    ----------
-    path : Path
-    s, u : ndarray
-        Points of the curve.
-    y, at : sequence of float
-        The number at points and at events.
-    label : str
-    k : int
-        Of colours and dashes.
-    parts : StableParts
+    `s`, `u`: points of the curve. `y`, `at`: the number at points and at events. `k`: of colours and dashes.
     """
 
     path: Drawn

@@ -205,4 +205,3 @@ def random_directions(n: int, count: int, seed: int) -> list[Array]:
 
 
 Examination = Callable[[Subject], None]
-"""A check; raises `CheckFailure`."""

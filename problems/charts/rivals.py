@@ -47,7 +47,6 @@ class _Curve:
         return np.asarray(self.subject.residual(u[:-1], float(u[-1])))
 
     def jacobian(self, u: Array) -> tuple[Any, Array]:
-        """H_y, a numpy or scipy matrix, and H_lam."""
         self.counts.factorizations += 1
         H_y, H_lam = self.subject.jacobian(u[:-1], float(u[-1]))
         return H_y.tosparse() if isinstance(H_y, Banded) else H_y, H_lam

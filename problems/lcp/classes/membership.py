@@ -92,12 +92,8 @@ ValueError
 
 
 def matrix_class(name: str, cited: str) -> Callable[[Callable[[ExactMatrix], Membership]], Callable[[Any], Membership]]:
-    """Decorate a test of exact matrices: it takes any matrix, and its answers have the class's name and source.
-
-    Parameters
-    ----------
-    name, cited : str
-        As in `Membership`.
+    """Decorate a test of exact matrices: it takes any matrix, and its answers have the class's `name` and `cited`
+    source.
     """
 
     def decorated(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:

@@ -64,7 +64,7 @@ class RelativeMetric:
 
 
 class OwnMetric:
-    """A homotopy's metric; of its class, an LCP's."""
+    """The attribute `metric`: a homotopy's `own_metric`; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
         return RelativeMetric() if homotopy is None else homotopy.own_metric
@@ -72,7 +72,7 @@ class OwnMetric:
 
 @frozen(eq=False, slots=False)
 class System:
-    """H' at a point."""
+    """H' of the homotopy `of` at a point."""
 
     of: Any
     y: Array
@@ -145,13 +145,7 @@ def proof_engine(self: Any) -> ByProducts:
 
 
 def certify_end(self: Any, y: Array) -> str:
-    """A sentence on the exact solution near x, or "".
-
-    Parameters
-    ----------
-    y : ndarray
-        The end of a path.
-    """
+    """A sentence on the exact solution near the end y of a path, or ""."""
     return exact_end(self.problem, y[: self.n])
 
 

@@ -20,11 +20,7 @@ LARGEST_LISTED = 10
 def rays(S: Array, r: Array) -> list[Ray]:
     """All rays that are alone on their piece, including that of arrival; one of many switches, by Lemke's method.
 
-    Parameters
-    ----------
-    S : ndarray, shape (m, m)
-    r : ndarray, shape (m,)
-        The path arrived with e' = 1 and u' = r <= 0.
+    `S`, (m, m), `r`, (m,): the path arrived with e' = 1 and u' = r <= 0.
     """
     m = r.size
     if m > LARGEST_LISTED:

@@ -164,13 +164,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @_quiet
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite, immutable x.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : Array of shape (n,)
-    """
+    """The certificate of a finite, immutable x, shape (n,)."""
     terms = row_terms(problem, x)
     relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     # The shares of x in rows matter only where w is off.
