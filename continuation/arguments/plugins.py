@@ -6,7 +6,7 @@ In the ``pyproject.toml`` of a package::
     truss = "snapthrough:VonMisesTruss"
 
 The object is a class or function that returns a homotopy; its parameters are the options, its docstring's first line
-the summary, its attributes `problem_class` and `references` purpose and sources. It is imported on use.
+the summary, its attributes `problem_class` and `references` purpose and sources.
 """
 
 from __future__ import annotations

@@ -198,7 +198,6 @@ def _cell(a: PathNode, b: PathNode) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """Weights of the next step, stored or by the rule."""
     rule, out = metric_of(homotopy, path), list[Array]()
     for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)

@@ -162,7 +162,6 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
 
 
 def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
-    """Cell index + parameter of each event near the curve, else None."""
     places = [_place(cells, event, path) for event in path.events]
     known = [k for k, place in enumerate(places) if place is not None]
     if known:

@@ -21,7 +21,6 @@ from continuation.chart.results import WORK, Results, Row, excess, some
 from continuation.plot.drawing import COLOURS, Axes
 
 Labelled = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
-"""Name, style, points."""
 
 
 def _names(value: str | Sequence[str]) -> tuple[str, ...]:

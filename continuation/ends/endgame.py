@@ -99,7 +99,6 @@ class Endgame:
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
-                # The path turns off: the limit is another branch's.
                 return None
             here, noise = tracked
             taken.append(_sample(here, noise))

@@ -91,7 +91,6 @@ class Ends:
         return as_ends(other) - self
 
     def __mul__(self, other: Ends | float) -> Ends:
-        """The product; a square if other is self."""
         return whole_power(self, 2) if other is self else self._times(as_ends(other))
 
     __rmul__ = __mul__

@@ -99,7 +99,6 @@ class Advance:
         self.target = Target(solver, settings.target)
         self.landing = None if settings.target is None else Landing(self.stepper, settings.target)
         self.examiner = Examiner(solver, settings, self.target, self.pieces)
-        # isinstance is slow: ask once.
         self.extent = settings.metric if isinstance(settings.metric, SupportsExtent) else None
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:

@@ -57,7 +57,6 @@ class Stepper:
             room = self.fraction * max_step(point.u, prediction(h) - point.u)
             if room >= 1.0:
                 return h
-            # Curved predictions may need more cuts.
             h *= max(room, SHORTEST)
         return h
 

@@ -103,7 +103,6 @@ def _mat(file: str) -> Mapping[str, Any]:
 
 
 def _hdf5(file: str) -> Mapping[str, Any]:
-    """The `WANTED` arrays at the root of an HDF5 file, or in its group `problem`."""
     image = Image(Path(file))
     allowance = Allowance(image.length - image.missing)
     try:
